@@ -16,7 +16,7 @@
 namespace tress::models {
 
 /// How a step is computed, by the names of the integrators' catalogue: the equations are
-/// theirs (models/head/lane_method.h).
+/// theirs (models/head/stepping/lane_method.h).
 enum class HeadMethod {
   semi_implicit_euler,
   linearly_implicit_midpoint,
@@ -42,7 +42,7 @@ struct HeadOptions {
   int newton_iterations = 20;
   /// By tr_bdf2 every strand takes steps of its own, as long as its own error allows, as
   /// Options::tolerance; 0: equal steps. Newton's tolerance follows from it. See
-  /// models/head/controlled_steps.h.
+  /// models/head/stepping/controlled_steps.h.
   double tolerance = 0;
   double min_step = 0;  // s, with a tolerance: strands that need less are lost
   /// On every strand, in addition: gravity and linear drag join the numbers above, bodies

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "contract/input_error.h"
-#include "models/head/lane_method.h"
+#include "models/head/stepping/lane_method.h"
 #include "models/motion/root_motion.h"
 #include "simulation/export/head_frames.h"
 #include "simulation/files/csv.h"

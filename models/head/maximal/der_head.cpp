@@ -6,14 +6,14 @@
 
 #include "models/head/maximal/der_strand.h"
 #include "models/head/maximal/edge_model.h"
-#include "models/head/stepping_head.h"
+#include "models/head/stepping/stepping_head.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"
 
 namespace tress::models {
 namespace {
 
-/// DerStrand as a Model of models/head/stepped_model.h.
+/// DerStrand as a Model of models/head/stepping/stepped_model.h.
 template <class Pack, bool exact>
 class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
  public:

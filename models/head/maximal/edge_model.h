@@ -10,10 +10,10 @@
 
 namespace tress::models {
 
-/// What Models of models/head/stepped_model.h have in common whose strands are chains of
-/// edges from the root on: `per_element` numbers of an edge, the first three the vector
-/// along it, in axes of the world. The rate of the first edge is that of its end. Flat as
-/// ReducedLoads.
+/// What Models of models/head/stepping/stepped_model.h have in common whose strands are
+/// chains of edges from the root on: `per_element` numbers of an edge, the first three
+/// the vector along it, in axes of the world. The rate of the first edge is that of its
+/// end. Flat as ReducedLoads.
 template <class Pack, int per_element>
 class EdgeModel {
  public:

@@ -4,13 +4,13 @@
 #include "models/head/maximal/edge_model.h"
 #include "models/head/maximal/node_loads.h"
 #include "models/head/maximal/spring_strand.h"
-#include "models/head/stepping_head.h"
+#include "models/head/stepping/stepping_head.h"
 #include "models/maximal/nodal_strand.h"
 
 namespace tress::models {
 namespace {
 
-/// SpringStrand as a Model of models/head/stepped_model.h.
+/// SpringStrand as a Model of models/head/stepping/stepped_model.h.
 template <class Pack>
 class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
  public:

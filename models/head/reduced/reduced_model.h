@@ -11,12 +11,13 @@
 #include "models/head/reduced_kernel.h"
 #include "models/head/reduced_loads.h"
 #include "models/head/reduced_material.h"
-#include "models/head/stepping_head.h"
+#include "models/head/stepping/stepping_head.h"
 #include "models/reduced/reduced_strand.h"
 
 namespace tress::models {
 
-/// ReducedKernel as a Model of models/head/stepped_model.h, for methods that iterate.
+/// ReducedKernel as a Model of models/head/stepping/stepped_model.h, for methods that
+/// iterate.
 template <class Kind>
 class ReducedModel {
  public:

@@ -9,7 +9,7 @@
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/head/lane_method.h"
+#include "models/head/stepping/lane_method.h"
 #include "tests/models/head/mixed_hairs.h"
 
 /// Errors of heads whose strands choose their steps by a tolerance, against equal steps

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "models/head/lane_work.h"
-#include "models/head/newton_course.h"
+#include "models/head/stepping/lane_work.h"
+#include "models/head/stepping/newton_course.h"
 
 namespace tress::models {
 

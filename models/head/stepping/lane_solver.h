@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "models/head/head.h"
-#include "models/head/lane_strands.h"
-#include "models/head/lone_strand.h"
-#include "models/head/newton_course.h"
+#include "models/head/stepping/lane_strands.h"
+#include "models/head/stepping/lone_strand.h"
+#include "models/head/stepping/newton_course.h"
 
 namespace tress::models {
 

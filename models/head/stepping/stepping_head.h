@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "models/head/controlled_steps.h"
 #include "models/head/head_bodies.h"
 #include "models/head/lane_head.h"
-#include "models/head/lane_solver.h"
-#include "models/head/stepped_model.h"
+#include "models/head/stepping/controlled_steps.h"
+#include "models/head/stepping/lane_solver.h"
+#include "models/head/stepping/stepped_model.h"
 
 namespace tress::models {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "models/head/lane_error.h"
-#include "models/head/lane_solver.h"
-#include "models/head/step_limits.h"
+#include "models/head/stepping/lane_error.h"
+#include "models/head/stepping/lane_solver.h"
+#include "models/head/stepping/step_limits.h"
 
 namespace tress::models {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "models/head/lane_work.h"
+#include "models/head/stepping/lane_work.h"
 
 /// How Newton's iterations of strands side by side go on and end: each lane by the sizes
 /// of its own corrections, so that no strand depends on its neighbours. A Course has

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "math/lane_choice.h"
-#include "models/head/lane_method.h"
 #include "models/head/lane_numbers.h"
-#include "models/head/lane_work.h"
-#include "models/head/step_length.h"
+#include "models/head/stepping/lane_method.h"
+#include "models/head/stepping/lane_work.h"
+#include "models/head/stepping/step_length.h"
 
 namespace tress::models {
 
@@ -21,8 +21,8 @@ struct LaneQueue {
 };
 
 /// The strands of a head in blocks of as many as a pack has lanes, and their ways into
-/// lanes of LaneWork and back. Model: see models/head/stepped_model.h. Strands of one
-/// block must not be put back by several threads at once.
+/// lanes of LaneWork and back. Model: see models/head/stepping/stepped_model.h. Strands
+/// of one block must not be put back by several threads at once.
 template <class Model>
 class LaneStrands {
  public:

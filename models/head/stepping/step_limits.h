@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/head/lane_method.h"
+#include "models/head/stepping/lane_method.h"
 
 namespace tress::models {
 

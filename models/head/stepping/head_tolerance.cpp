@@ -1,7 +1,7 @@
 #include <limits>
 
 #include "models/head/head.h"
-#include "models/head/step_limits.h"
+#include "models/head/stepping/step_limits.h"
 
 namespace tress::models {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "math/lane_choice.h"
-#include "models/head/lane_work.h"
+#include "models/head/stepping/lane_work.h"
 
 namespace tress::models {
 

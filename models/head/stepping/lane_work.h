@@ -5,8 +5,8 @@
 
 #include "contract/system.h"
 #include "math/lane_choice.h"
-#include "models/head/lane_method.h"
 #include "models/head/lane_numbers.h"
+#include "models/head/stepping/lane_method.h"
 #include "models/motion/root_motion.h"
 
 namespace tress::models {
@@ -16,8 +16,8 @@ struct StepPoses {
   RootPose from, at, to;
 };
 
-/// The equations of a stage (models/head/lane_method.h) of as many strands as a pack has
-/// lanes. Model: see models/head/stepped_model.h.
+/// The equations of a stage (models/head/stepping/lane_method.h) of as many strands as a
+/// pack has lanes. Model: see models/head/stepping/stepped_model.h.
 template <class Model>
 class LaneWork {
  public:
