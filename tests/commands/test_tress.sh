@@ -7,11 +7,12 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" "$work/a b"
 
-# stand_in NAME: reads the program's body from standard input.
-stand_in() {
-  { echo '#!/usr/bin/env bash'; cat; } >"$work/bin/$1"
-  chmod +x "$work/bin/$1"
+# program_at FILE, stand_in NAME: read the program's body from standard input.
+program_at() {
+  { echo '#!/usr/bin/env bash'; cat; } >"$1"
+  chmod +x "$1"
 }
+stand_in() { program_at "$work/bin/$1"; }
 stand_in apt-get <<<"touch '$work/apt_was_called'; exit 1"
 stand_in sudo <<<'exit 1'
 # shellcheck disable=SC2016  # the stand-in expands it
@@ -59,6 +60,26 @@ usage() {
     env TRESS_CACHE="$work/cache" "$repository/tress" setup
 
   sources
+  left_out
+}
+
+# An experiment that cannot run does not keep one from running whose name ends its own.
+left_out() {
+  local house="$work/house" studies="$work/house/build/release/experiments"
+  everything_installed
+  stand_in cmake <<<'exit 0'
+  stand_in node <<<'exit 0'
+  mkdir -p "$house/cmake" "$studies" "$house/experiments/report/dist"
+  cp "$repository/tress" "$house"
+  cp "$repository"/cmake/*.txt "$house/cmake"
+  touch "$house/experiments/report/dist/report.mjs"
+  echo 'echo /usr' | program_at "$house/cmake/sundials.sh"
+  echo 'echo heads ran' | program_at "$studies/heads"
+  echo heads >"$studies/list.txt"
+  echo 'divided_heads: no MPI' >"$studies/left_out.txt"
+  expect 0 'heads ran' "$house/tress" run
+  expect 0 'heads ran' "$house/tress" run heads
+  expect 2 'divided_heads cannot run here' "$house/tress" run divided_heads
 }
 
 # Source-package entries come from the distribution's own suites only.
