@@ -80,6 +80,7 @@ left_out() {
   expect 0 'heads ran' "$house/tress" run
   expect 0 'heads ran' "$house/tress" run heads
   expect 2 'divided_heads cannot run here' "$house/tress" run divided_heads
+  expect 2 "no experiment '.*_heads'" "$house/tress" run '.*_heads'
 }
 
 # Source-package entries come from the distribution's own suites only.

@@ -17,6 +17,7 @@
 #include "tests/simulation/mutations.h"
 #include "tests/support/groom_bytes.h"
 #include "tests/support/made_groom.h"
+#include "tests/support/refusal.h"
 
 namespace tress::test_groom_files {
 
@@ -47,15 +48,6 @@ struct WrittenFile {
 GroomFile read_bytes(const std::string& format, const std::string& bytes) {
   const WrittenFile written(format, bytes);
   return read_groom(written.name);
-}
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing refused";
 }
 
 MadeGroom few() {

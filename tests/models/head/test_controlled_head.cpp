@@ -4,8 +4,8 @@
 #include <functional>
 #include <numeric>
 
-#include "contract/input_error.h"
 #include "tests/models/head/mixed_hairs.h"
+#include "tests/support/refusal.h"
 
 /// Heads whose strands choose their steps by a tolerance.
 namespace tress::test_controlled_head {
@@ -179,15 +179,6 @@ TEST_P(ControlledHead, LosesStrandsThatNeedShorterStepsThanAllowed) {
     EXPECT_EQ(got[2 * i], want[0]);
   }
   EXPECT_TRUE(calm->losses().empty());
-}
-
-std::string refusal(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST_P(ControlledHead, RefusesWhatItCannotKeep) {

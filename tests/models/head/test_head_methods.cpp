@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "contract/input_error.h"
 #include "tests/models/head/der_strands.h"
 #include "tests/models/head/hairs.h"
 #include "tests/support/apart.h"
+#include "tests/support/refusal.h"
 
 /// What methods of heads are beyond their steps one by one (test_reduced_head.cpp,
 /// test_der_head.cpp): their order, steps of other lengths, steps whose equations are
@@ -26,6 +26,7 @@ using testing_support::head;
 using testing_support::left_by_newton;
 using testing_support::options;
 using testing_support::packs_of;
+using testing_support::refusal;
 using testing_support::rod;
 using testing_support::rod_options;
 using testing_support::RodCase;
@@ -174,15 +175,6 @@ TEST_P(DerHeadMethods, ErrorsFallWithTheOrder) {
 
 INSTANTIATE_TEST_SUITE_P(All, DerHeadMethods, testing::ValuesIn(exact_methods),
                          [](const auto& of) { return std::string(of.param->name); });
-
-std::string refusal(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(HeadMethodsRefused, WithTheReason) {
   for (const HairMethod* method : exact_methods) {
