@@ -242,10 +242,11 @@ std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack)
 
 /// A head of point masses and springs (models/head/maximal/spring_strand.h), `elements`
 /// edges each: mass_spring with angular bending, without torsion, by semi_implicit_euler
-/// with the filtered tangent; of effects beyond gravity and linear drag it has bodies.
-/// Coordinates are the vectors along the edges (m, world axes); the rate of the first is
-/// the velocity of its end. `points`, `twist` and `rotary_inertia` are not read. Numbers
-/// have 64 bits: 32 do not resolve strains of some 1e-6. Throws InputError as above.
+/// with the filtered tangent, or by the other methods with the exact one; of effects
+/// beyond gravity and linear drag it has bodies. Coordinates are the vectors along the
+/// edges (m, world axes); the rate of the first is the velocity of its end. `points`,
+/// `twist` and `rotary_inertia` are not read. Numbers have 64 bits: 32 do not resolve
+/// strains of some 1e-6. Throws InputError as above.
 std::unique_ptr<Head> spring_head(const HeadOptions& options, const HeadPack& pack);
 
 }  // namespace tress::models

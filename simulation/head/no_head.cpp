@@ -23,22 +23,31 @@ bool has_exact_tangent(const Scene& scene) {
   return method && *method != models::HeadMethod::semi_implicit_euler;
 }
 
-std::optional<NoHead> no_springs(const Parameters& p) {
+/// The tangent of the scene's method: all derivatives, or `of_one` for one correction.
+std::optional<NoHead> no_tangent(const Scene& scene, const char* of_one) {
+  const bool exact = has_exact_tangent(scene);
+  const std::string needed = exact ? "exact" : of_one;
+  if (scene.model_options.word("tangent") == needed) return {};
+  return no_option(scene.model_options, "tangent",
+                   fmt::format("give [model] tangent = \"{}\"{}", needed,
+                               exact ? " to " + scene.integrator
+                                     : ", or [integrator] id = \"backward_euler\""));
+}
+
+std::optional<NoHead> no_springs(const Scene& scene) {
+  const Parameters& p = scene.model_options;
   if (p.word("bending") != "angular") {
     return no_option(p, "bending", "give [model] bending = \"angular\"");
   }
   if (p.word("torsion") != "none") {
     return no_option(p, "torsion", "give [model] torsion = \"none\"");
   }
-  if (p.word("tangent") != "filtered") {
-    return no_option(p, "tangent", "give [model] tangent = \"filtered\"");
-  }
-  return {};
+  return no_tangent(scene, "filtered");
 }
 
 std::optional<NoHead> no_model(const Scene& scene) {
   const Parameters& p = scene.model_options;
-  if (steps_springs(scene)) return no_springs(p);
+  if (steps_springs(scene)) return no_springs(scene);
   if (scene.model->id != "super_helix" && !steps_chains(scene)) {
     return NoHead{fmt::format("{} does not come as a head", scene.model->id),
                   "use [model] id = \"super_helix\", \"articulated_chain\" or "
@@ -48,13 +57,7 @@ std::optional<NoHead> no_model(const Scene& scene) {
     return NoHead{"strands of a head bend in both directions",
                   "give [model] modes = \"bend_twist\" or \"bend\""};
   }
-  if (p.word("tangent") != (has_exact_tangent(scene) ? "exact" : "stiff")) {
-    return no_option(p, "tangent",
-                     has_exact_tangent(scene)
-                         ? "give [model] tangent = \"exact\" to " + scene.integrator
-                         : "give [model] tangent = \"stiff\", or [integrator] id = "
-                           "\"backward_euler\"");
-  }
+  if (auto no = no_tangent(scene, "stiff")) return no;
   if (scene.integrator == "tr_bdf2" && p.word("modes") == "bend_twist" &&
       p.word("rotary_inertia") == "off") {
     return NoHead{
@@ -73,14 +76,11 @@ std::optional<NoHead> no_model(const Scene& scene) {
 }
 
 std::optional<NoHead> no_method(const Scene& scene) {
-  if (!head_method(scene) || (has_exact_tangent(scene) && steps_springs(scene))) {
-    return NoHead{fmt::format("{} does not step a head{}", scene.integrator,
-                              steps_springs(scene) ? " of springs" : ""),
-                  steps_springs(scene)
-                      ? "use [integrator] id = \"semi_implicit_euler\""
-                      : "use [integrator] id = \"semi_implicit_euler\", "
-                        "\"linearly_implicit_midpoint\", \"backward_euler\" or "
-                        "\"tr_bdf2\""};
+  if (!head_method(scene)) {
+    return NoHead{fmt::format("{} does not step a head", scene.integrator),
+                  "use [integrator] id = \"semi_implicit_euler\", "
+                  "\"linearly_implicit_midpoint\", \"backward_euler\" or "
+                  "\"tr_bdf2\""};
   }
   if (has_exact_tangent(scene) && scene.options.refresh != Refresh::every_iteration) {
     return NoHead{"heads have a new matrix in every iteration",

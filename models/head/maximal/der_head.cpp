@@ -1,7 +1,4 @@
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "models/head/maximal/der_strand.h"
@@ -22,7 +19,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   using Base = EdgeModel<Real, Kernel::per_element>;
   using Base::clamp, Base::elements;
   using V = Vec3<Real>;
-  static constexpr bool iterates = true, takes_bodies = false;
+  static constexpr bool iterates = true, takes_bodies = false, takes_stresses = false;
   static constexpr double newton_part = 1e-2;
   struct Strand {
     LaneRoot<Real> root;
@@ -60,7 +57,6 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
              1 / (first.length * moment) * stiffness(strand.material, first.section));
     set_lane(m.friction, lane,
              strand.material.internal_friction / (first.length * moment * tau));
-    set_lane(m.rate, lane, typical_rate(strand) * tau);
     const NodalStrand nodal(strand, "der", this->elements());
     const Vec spin = tau * nodal.root.spin;
     for (std::size_t i = 0; i < this->elements(); ++i) {
@@ -104,26 +100,6 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
                            scratch.now.data());
     });
     return size;
-  }
-
-  /// Of nodes over edges, and of angles, as those of a strand by itself are counted.
-  Real coordinate_size(const Strand& strand, const Real* dq) const {
-    V node{};
-    Real far(0), turned(0);
-    for (std::size_t i = 0; i < this->elements(); ++i) {
-      node = node + load3(dq + 4 * i);
-      far = larger(larger(far, magnitude(node.x)),
-                   larger(magnitude(node.y), magnitude(node.z)));
-      turned = larger(turned, magnitude(dq[4 * i + 3]));
-    }
-    return larger(far / strand.material.length, turned);
-  }
-
-  /// Places are known to a rounding of the longest strand, sizes are over edges.
-  double resolved(const Strand& strand, Weights w, int lane) const {
-    constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();
-    return eps / lane_of(strand.material.length, lane) *
-           std::max(1.0, w.vel / (w.pos * lane_of(strand.material.rate, lane)));
   }
 
   LaneEnergies<Real> energies(const Strand& strand, const Element* elements,

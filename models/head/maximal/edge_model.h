@@ -1,11 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 
+#include "contract/system.h"
 #include "math/instructions.h"
+#include "math/lane_choice.h"
 #include "models/head/head.h"
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
+#include "models/maximal/nodal_strand.h"
 #include "models/motion/root_motion.h"
 
 namespace tress::models {
@@ -30,7 +35,7 @@ class EdgeModel {
         mass_damping_(options.mass_damping) {}
 
   /// A strand's root and the numbers of an edge that its Material has in any model: its
-  /// length, mass, drag on velocities, and stiffness E A/l against stretch.
+  /// length, mass, drag on velocities, stiffness E A/l against stretch, and typical rate.
   template <class Strand>
   void describe_edges(const models::Strand& strand, const Vec& centre,
                       const HeadUnits& units, int lane, Strand& to) const {
@@ -46,6 +51,7 @@ class EdgeModel {
     set_lane(to.material.stretch, lane,
              strand.material.youngs_modulus * first.section.area() / first.length * tau *
                  tau / unit_mass);
+    set_lane(to.material.rate, lane, typical_rate(strand) * tau);
   }
   template <class Strand>
   double mass(const Strand& strand, int lane) const {
@@ -60,6 +66,29 @@ class EdgeModel {
   std::size_t unknowns() const { return per_element * n_; }
   double unit(const HeadUnits& units, std::size_t k) const {
     return k % per_element == 3 ? 1 : units.length;
+  }
+
+  /// Of nodes over edges, and of angles, as those of a strand by itself are counted.
+  template <class Strand>
+  Real coordinate_size(const Strand& strand, const Real* dq) const {
+    V node{};
+    Real far(0), turned(0);
+    for (std::size_t i = 0; i < n_; ++i) {
+      node = node + load3(dq + per_element * i);
+      far = larger(larger(far, magnitude(node.x)),
+                   larger(magnitude(node.y), magnitude(node.z)));
+      for (std::size_t k = 3; k < per_element; ++k) {
+        turned = larger(turned, magnitude(dq[per_element * i + k]));
+      }
+    }
+    return larger(far / strand.material.length, turned);
+  }
+  /// Places are known to a rounding of the longest strand, sizes are over edges.
+  template <class Strand>
+  double resolved(const Strand& strand, Weights w, int lane) const {
+    constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();
+    return eps / lane_of(strand.material.length, lane) *
+           std::max(1.0, w.vel / (w.pos * lane_of(strand.material.rate, lane)));
   }
 
   template <class Strand>

@@ -1,32 +1,34 @@
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "math/instructions.h"
 #include "models/head/head_units.h"
-#include "models/head/maximal/spring_strand.h"
+#include "models/head/maximal/spring_elimination.h"
 #include "models/head/near_bodies.h"
 #include "models/head/semidefinite.h"
 
 namespace tress::models {
 
-/// Loads of bodies on the nodes of strands of edges, side by side, in one step; a node
-/// only if it is near in some lane.
-template <class T>
+/// Loads of bodies on the nodes of strands of edges, side by side; a node only if it is
+/// near in some lane. PointLoads are those of one step, ExactLoads those of a state.
+template <class T, template <class> class Load>
 class NodeLoads {
  public:
   using Vec3T = Vec3<T>;
+  using OfNode = NodeLoad<T, Load>;
 
   explicit NodeLoads(std::size_t edges) : loads_(edges), x_(edges), v_(edges) {}
 
-  /// Of the ends of edges, or null; from the motion at the step's end, whose length is h
-  /// (s). `root`: from the head's position, in its units as `length` of an edge, its
-  /// `drag` on the velocity, q and v.
-  TRESS_FLATTEN const NodeLoad<T>* find(std::span<const NearBody> bodies,
-                                        const HeadUnits& units, double h, Vec3T root,
-                                        const T& length, const T& drag, const T* q,
-                                        const T* v) {
+  /// Of the ends of edges, or null; of PointLoads from the motion at the step's end,
+  /// whose length is h (s). `root`: from the head's position, in its units as `length` of
+  /// an edge, its `drag` on the velocity, q and v.
+  TRESS_FLATTEN const OfNode* find(std::span<const NearBody> bodies,
+                                   const HeadUnits& units, double h, Vec3T root,
+                                   const T& length, const T& drag, const T* q,
+                                   const T* v) {
     if (bodies.empty()) return nullptr;
     Vec3T rate{};
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -44,17 +46,21 @@ class NodeLoads {
     for (std::size_t i = 0; i < x_.size(); ++i) {
       if (!any_less(T(0), loads_[i].some)) continue;
       loaded = true;
-      // Of all effects together, linear drag among them, as ReducedLoads.
-      const T own = T(h / units.time) * part(i) * drag;
-      Symmetric3<T>& block = loads_[i].load.block;
-      shift(block, own);
-      block = semidefinite(block, loads_[i].some);
-      shift(block, -own);
+      if constexpr (symmetric) {
+        // Of all effects together, linear drag among them, as ReducedLoads.
+        const T own = T(h / units.time) * part(i) * drag;
+        Symmetric3<T>& block = loads_[i].load.block;
+        shift(block, own);
+        block = semidefinite(block, loads_[i].some);
+        shift(block, -own);
+      }
     }
     return loaded ? loads_.data() : nullptr;
   }
 
  private:
+  static constexpr bool symmetric = std::is_same_v<Load<T>, PointLoad<T>>;
+
   /// Of an edge, at the node at its end.
   T part(std::size_t i) const { return T(i + 1 < x_.size() ? 1 : 0.5); }
 
@@ -65,11 +71,15 @@ class NodeLoads {
     const BodyTouch<T, Shape> of_body(body, shape,
                                       {{one, o, o}, {o, one, o}, {o, o, one}}, h);
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      const T w = part(i) * length;
-      of_body.touch(
-          of_body.in_body(x_[i]), [&] { return v_[i]; },
-          w * T(units.length / units.force()), w * T(1 / units.density), loads_[i].load,
-          loads_[i].some);
+      const T w = part(i) * length, to_force = w * T(units.length / units.force());
+      const Vec3T at = of_body.in_body(x_[i]);
+      const auto velocity = [&] { return v_[i]; };
+      if constexpr (symmetric) {
+        of_body.touch(at, velocity, to_force, w * T(1 / units.density), loads_[i].load,
+                      loads_[i].some);
+      } else {
+        of_body.touch(at, velocity, to_force, units, loads_[i].load, loads_[i].some);
+      }
     }
   }
   static void shift(Symmetric3<T>& block, const T& by) {
@@ -78,7 +88,7 @@ class NodeLoads {
     block.zz += by;
   }
 
-  std::vector<NodeLoad<T>> loads_;
+  std::vector<OfNode> loads_;
   std::vector<Vec3T> x_, v_;  // m, m/s, from the head's position
 };
 

@@ -11,16 +11,17 @@ namespace tress::models {
 namespace {
 
 /// SpringStrand as a Model of models/head/stepping/stepped_model.h.
-template <class Pack>
-class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
+template <class Pack, bool exact>
+class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_element> {
  public:
   using Real = Pack;
-  using Kernel = SpringStrand<Real>;
+  using Kernel = SpringStrand<Real, exact>;
   using Base = EdgeModel<Real, Kernel::per_element>;
   using Base::clamp, Base::elements;
   using V = Vec3<Real>;
-  static constexpr bool iterates = false, takes_bodies = true;
+  static constexpr bool iterates = exact, takes_bodies = true, takes_stresses = exact;
   static constexpr double most_stretched = 1.5;  // runs end where an edge is longer
+  static constexpr double newton_part = 1e-2;
 
   struct Strand {
     LaneRoot<Real> root;
@@ -28,18 +29,35 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
   };
   using Element = SpringEdge<Real>;
   using Clamp = LaneClamp<Real>;
-  struct Scratch {
-    explicit Scratch(const SpringModel& model)
-        : placed(model.elements()), factors(model.elements()), bodies(model.elements()) {}
+  using Load = typename Kernel::Load;
+  using Loads =
+      std::conditional_t<exact, NodeLoads<Real, ExactLoad>, NodeLoads<Real, PointLoad>>;
+  struct StiffScratch {
+    explicit StiffScratch(const SpringModel& model)
+        : placed(model.elements()),
+          factors(model.elements()),
+          loads_on(model.elements()) {}
     std::vector<typename Kernel::Placed> placed;
     std::vector<typename Kernel::Factor> factors;
-    NodeLoads<Real> bodies;
-    const NodeLoad<Real>* loads = nullptr;  // of find_loads()
+    Loads loads_on;
+    const Load* loads = nullptr;  // of find_loads()
   };
+  struct ExactScratch : StiffScratch {
+    explicit ExactScratch(const SpringModel& model)
+        : StiffScratch(model), now(model.elements()), tensions(model.elements()) {}
+    std::vector<typename Kernel::Placed> now;
+    std::vector<Real> tensions;  // of take_stresses()
+    // Of find_loads(): which may touch the strands, and where their roots are.
+    std::span<const NearBody> bodies;
+    V root;
+  };
+  using Scratch = std::conditional_t<exact, ExactScratch, StiffScratch>;
 
+  /// `units`, which are whole with the first strand, must outlive it.
   SpringModel(const HeadOptions& options, const HeadUnits& units,
               Instructions instructions)
       : Base(options),
+        units_(units),
         instructions_(instructions),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -84,24 +102,52 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
   Real length(const Strand& strand) const {
     return Real(static_cast<double>(this->elements())) * strand.material.length;
   }
+  /// Exact ones are found at the states of newton() and again().
   void find_loads(const Strand& strand, std::span<const NearBody> bodies,
-                  const RootPose& pose, const HeadUnits& units, double h, const Real* q,
-                  const Real* v, Scratch& scratch) const {
-    by(instructions_, [&] {
-      scratch.loads =
-          scratch.bodies.find(bodies, units, h, Base::root_at(strand, pose.frame),
-                              strand.material.length, strand.material.drag, q, v);
-    });
+                  const RootPose& pose, const HeadUnits& /*units*/, double h,
+                  const Real* q, const Real* v, Scratch& scratch) const {
+    const V root = Base::root_at(strand, pose.frame);
+    if constexpr (exact) {
+      scratch.bodies = bodies;
+      scratch.root = root;
+    } else {
+      find_loads(strand, bodies, root, h, q, v, scratch);
+    }
   }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
-    Real finite;
+    if constexpr (exact) find_loads(strand, q, v, scratch);
+    Real size;
     by(instructions_, [&] {
-      finite = kernel_.newton(strand.material, elements, clamp, w, q, v, a, scratch.loads,
-                              correction, scratch.placed.data(), scratch.factors.data());
+      const auto solve = [&](auto*... tensions) {
+        return kernel_.newton(strand.material, elements, clamp, w, q, v, a, scratch.loads,
+                              correction, scratch.placed.data(), scratch.factors.data(),
+                              tensions...);
+      };
+      if constexpr (exact) {
+        size = solve(scratch.tensions.data());
+      } else {
+        size = solve();
+      }
     });
-    return finite;
+    return size;
+  }
+  Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
+             const Real* q, const Real* v, const Real* a, Real* correction,
+             Scratch& scratch) const {
+    find_loads(strand, q, v, scratch);
+    Real size;
+    by(instructions_, [&] {
+      size = kernel_.again(strand.material, elements, clamp, w, q, v, a, scratch.loads,
+                           correction, scratch.placed.data(), scratch.factors.data(),
+                           scratch.now.data());
+    });
+    return size;
+  }
+  void take_stresses(const Strand& strand, const Real* q, const Real& which,
+                     Scratch& scratch) const {
+    kernel_.take_tensions(strand.material, q, which, scratch.tensions.data());
   }
 
   LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
@@ -111,6 +157,19 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
   }
 
  private:
+  void find_loads(const Strand& strand, std::span<const NearBody> bodies, const V& root,
+                  double h, const Real* q, const Real* v, StiffScratch& scratch) const {
+    by(instructions_, [&] {
+      scratch.loads = scratch.loads_on.find(
+          bodies, units_, h, root, strand.material.length, strand.material.drag, q, v);
+    });
+  }
+  void find_loads(const Strand& strand, const Real* q, const Real* v,
+                  ExactScratch& scratch) const {
+    find_loads(strand, scratch.bodies, scratch.root, 0, q, v, scratch);
+  }
+
+  const HeadUnits& units_;
   Instructions instructions_;
   Kernel kernel_;
 };
@@ -119,15 +178,18 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack>::per_element> {
 
 std::unique_ptr<Head> spring_head(const HeadOptions& options, const HeadPack& pack) {
   check_for_head(options);
-  refuse_if(options.method != HeadMethod::semi_implicit_euler,
-            "a method that iterates, with point masses and springs", place_of_head,
-            "use semi_implicit_euler");
   // The strain of a hair under its weight is some 1e-6: 32 bits know it to 6 %.
   refuse_if(pack.number != HeadNumber::float64,
             "springs in 32 bits, which do not resolve their strains", place_of_head,
             "use 64 bits");
+  check_resolved(options, pack);
+  if (options.method == HeadMethod::semi_implicit_euler) {
+    return on_pack<false>(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
+      return std::make_unique<SteppingHead<SpringModel<T, false>>>(options, set);
+    });
+  }
   return on_pack<false>(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-    return std::make_unique<SteppingHead<SpringModel<T>>>(options, set);
+    return std::make_unique<SteppingHead<SpringModel<T, true>>>(options, set);
   });
 }
 

@@ -24,7 +24,8 @@ class ReducedModel {
   using Real = typename Kind::Real;
   using V = Vec3<Real>;
   using Kernel = ReducedKernel<Kind>;
-  static constexpr bool iterates = true, takes_bodies = true, straight = Kind::straight;
+  static constexpr bool iterates = true, takes_bodies = true, takes_stresses = false,
+                        straight = Kind::straight;
   static constexpr double most_stretched = 1;
   static constexpr double newton_part = 0.03;
   static constexpr const char* use_others =

@@ -207,7 +207,7 @@ class LaneSolver {
         }
         refill = false;
       }
-      const auto verdicts = course.go_on(work, work.newton(model_));
+      const auto verdicts = course.go_on(work, work.newton(model_, Course::whole));
       lanes += T::lanes;
       bool ended = false;
       for (std::size_t k = 0; k < home.size(); ++k) {

@@ -74,6 +74,9 @@ class LaneWork {
     clamp_ = model.clamp(strand, poses.at);
     const double s = of.gamma * h;
     weights = {1, s, s * s};
+    if constexpr (Model::takes_stresses) {
+      model.take_stresses(strand, q_n, starts, scratch);
+    }
     place();
   }
   void place() {
@@ -131,8 +134,12 @@ class LaneWork {
   double resolved(const Model& model, int lane) const {
     return model.resolved(strand, weights, lane);
   }
-  /// step = S^-1 r; its size, per lane.
-  T newton(const Model& model) {
+  /// step = S^-1 r; its size, per lane. Where corrections are `whole`, the stresses that
+  /// the last one has found serve this one; at first those at the start of the step.
+  T newton(const Model& model, bool whole) {
+    if constexpr (Model::takes_stresses) {
+      if (!whole) model.take_stresses(strand, q.data(), T(1), scratch);
+    }
     return model.newton(strand, elements.data(), clamp_, weights, q.data(), v.data(), a(),
                         step.data(), scratch);
   }

@@ -71,7 +71,7 @@ class LoneStrand {
     course.start(0, work_);
     NewtonVerdict verdict = NewtonVerdict::go_on;
     while (verdict == NewtonVerdict::go_on) {
-      verdict = course.go_on(work_, work_.newton(model_))[0];
+      verdict = course.go_on(work_, work_.newton(model_, course.whole))[0];
       ++iterations;
     }
     iterations += course.iterations;
@@ -110,7 +110,8 @@ class LoneStrand {
     if (stage.gamma > 0) return damped_from_anywhere(first);
     SingleCourse<Model> course;
     ++iterations;
-    return course.go_on(work_, work_.newton(model_))[0] == NewtonVerdict::converged;
+    return course.go_on(work_, work_.newton(model_, course.whole))[0] ==
+           NewtonVerdict::converged;
   }
 
   const Model& model_;

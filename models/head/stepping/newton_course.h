@@ -14,7 +14,8 @@
 ///     start(lane, work)                // of a strand that has come into this lane
 ///     go_on(work, size) -> verdicts    // after a correction of all lanes: moves a
 ///
-/// and, if it does more than one kernel call for each correction, counts those.
+/// and, if it does more than one kernel call for each correction, counts those. `whole`:
+/// whether it goes on by whole corrections (LaneWork::newton).
 namespace tress::models {
 
 enum class NewtonVerdict { go_on, converged, failed };
@@ -44,6 +45,7 @@ class SingleCourse {
  public:
   using T = typename Model::Real;
   using Verdicts = std::array<NewtonVerdict, static_cast<std::size_t>(T::lanes)>;
+  static constexpr bool whole = false;  // there is none before
 
   void start(int /*lane*/, const LaneWork<Model>& /*work*/) {}
   Verdicts go_on(LaneWork<Model>& work, const T& size) {
@@ -64,6 +66,7 @@ class PlainCourse {
  public:
   using T = typename Model::Real;
   using Verdicts = std::array<NewtonVerdict, static_cast<std::size_t>(T::lanes)>;
+  static constexpr bool whole = true;
 
   /// `left`: the part of the tolerance that may be left.
   PlainCourse(const Model& model, double tolerance, double left, int iterations)
@@ -120,6 +123,7 @@ class DampedCourse {
   using T = typename Model::Real;
   static constexpr auto width = static_cast<std::size_t>(T::lanes);
   using Verdicts = std::array<NewtonVerdict, width>;
+  static constexpr bool whole = false;
 
   DampedCourse(const Model& model, double tolerance, int most_iterations)
       : model_(model),

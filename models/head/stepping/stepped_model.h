@@ -26,6 +26,11 @@ namespace tress::models {
 ///     newton_part                           // of a strand's tolerance, Newton's
 ///     coordinate_size(Strand, dq)           // over those of System::scale
 ///     use_others                            // remedy for effects that it has not
+///     takes_stresses                        // whether it has
+///     take_stresses(Strand, q, which, Scratch&)   // from where terms of second order of
+///                                           // the next newton() have stresses, in lanes
+///                                           // where which > 0; from then on those that
+///                                           // each correction has found (StressForm)
 ///     straight                              // whether elements are
 ///     element_length(Strand)
 ///     takes_bodies                          // whether it has these, too:

@@ -12,13 +12,19 @@ namespace tress::testing_support {
 
 /// Makes a head of one of the models that have tr_bdf2.
 struct HeadMaker {
-  const char* name;
+  const char *name, *model;
   std::unique_ptr<models::Head> (*make)(const models::HeadOptions&,
                                         const models::HeadPack&);
+  bool stretches, narrow;  // elements; whether numbers may have 32 bits
 };
-inline constexpr HeadMaker controlled_heads[] = {{"Helices", models::helix_head},
-                                                 {"Chains", models::chain_head},
-                                                 {"Rods", models::der_head}};
+inline void PrintTo(const HeadMaker& m, std::ostream* out) { *out << m.name; }  // NOLINT
+inline constexpr HeadMaker helix_hairs{"Helices", "super_helix", models::helix_head,
+                                       false, true},
+    linked_hairs{"Chains", "articulated_chain", models::chain_head, false, true},
+    rods{"Rods", "der", models::der_head, true, true},
+    spring_masses{"Springs", "mass_spring", models::spring_head, true, false};
+inline constexpr HeadMaker controlled_heads[] = {helix_hairs, linked_hairs, rods,
+                                                 spring_masses};
 
 /// Straight, wavy and curled hairs, of each a soft one, one that is 8 times as stiff to
 /// bend, and two between them.

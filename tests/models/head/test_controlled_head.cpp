@@ -34,6 +34,7 @@ TEST_P(ControlledHead, AStrandIsTheSameBitsInAnyCompany) {
   for (const auto& [number, tolerance] : {std::pair{HeadNumber::float64, 1e-3},
                                           {HeadNumber::float64, 1e-2},
                                           {HeadNumber::float32, 1e-2}}) {
+    if (number == HeadNumber::float32 && !GetParam().narrow) continue;
     std::vector<std::vector<double>> want;
     const bool long_ones = number == HeadNumber::float64;
     for (const int lanes : long_ones ? std::vector{1, 4, 8} : std::vector{8, 16}) {
@@ -132,7 +133,7 @@ TEST_P(ControlledHead, LosesStrandsByNameAndGoesOn) {
 // on.
 TEST_P(ControlledHead, TakesShorterStepsWhereNewtonsIterationFails) {
   HeadOptions options = mixed_options(1e-2);
-  options.newton_iterations = 2;
+  options.newton_iterations = 1;
   const auto few = head(options, wide);
   const HeadWork work = advance(*few, 0, intervals);
   EXPECT_GT(work.rejected_by_newton, 0);
@@ -189,7 +190,7 @@ TEST_P(ControlledHead, RefusesWhatItCannotKeep) {
   };
   const auto tr_bdf2 = HeadMethod::tr_bdf2;
   EXPECT_EQ(why(1e-6, HeadNumber::float64, tr_bdf2), "");
-  EXPECT_EQ(why(1e-2, HeadNumber::float32, tr_bdf2), "");
+  EXPECT_EQ(why(1e-2, HeadNumber::float32, tr_bdf2) == "", GetParam().narrow);
   EXPECT_THAT(why(1e-3, HeadNumber::float32, tr_bdf2), HasSubstr("use 64 bits"));
   EXPECT_THAT(why(1e-12, HeadNumber::float64, tr_bdf2), HasSubstr("do not resolve"));
   for (const double tolerance : {-1e-3, 1.0, std::nan("")}) {

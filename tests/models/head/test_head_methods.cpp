@@ -3,6 +3,7 @@
 
 #include "tests/models/head/der_strands.h"
 #include "tests/models/head/hairs.h"
+#include "tests/models/head/mixed_hairs.h"
 #include "tests/support/apart.h"
 #include "tests/support/refusal.h"
 
@@ -23,6 +24,7 @@ using testing_support::hair_models;
 using testing_support::HairMethod;
 using testing_support::HairModel;
 using testing_support::head;
+using testing_support::HeadMaker;
 using testing_support::left_by_newton;
 using testing_support::options;
 using testing_support::packs_of;
@@ -30,6 +32,8 @@ using testing_support::refusal;
 using testing_support::rod;
 using testing_support::rod_options;
 using testing_support::RodCase;
+using testing_support::rods;
+using testing_support::spring_masses;
 using testing_support::strand;
 
 /// Points of all strands.
@@ -157,31 +161,40 @@ INSTANTIATE_TEST_SUITE_P(All, HeadMethods,
                                   std::get<1>(of.param)->name;
                          });
 
-class DerHeadMethods : public testing::TestWithParam<const HairMethod*> {};
+/// Heads whose elements stretch.
+using Stretched = std::tuple<const HeadMaker*, const HairMethod*>;
+class StretchedMethods : public testing::TestWithParam<Stretched> {};
 
-// Rods so soft, and steps so short, that stretching is resolved.
-TEST_P(DerHeadMethods, ErrorsFallWithTheOrder) {
+// So soft, and steps so short, that stretching is resolved.
+TEST_P(StretchedMethods, ErrorsFallWithTheOrder) {
+  const auto& [maker, method] = GetParam();
   const RodCase c{
       .name = "", .elements = 4, .moves = true, .sprung = false, .youngs_modulus = 1e7};
-  expect_order(*GetParam(), 0.032, 512,
-               [&c](const HairMethod& method, double t, int steps) {
-                 HeadOptions options = rod_options(c);
-                 options.method = method.method;
-                 const auto all = der_head(options, {HeadNumber::float64, 4});
-                 for (std::size_t k = 0; k < 4; ++k) all->add(rod(c, k));
-                 return after(*all, t, steps);
-               });
+  expect_order(*method, 0.032, 512, [&](const HairMethod& of, double t, int steps) {
+    HeadOptions options = rod_options(c);
+    options.method = of.method;
+    const auto all = maker->make(options, {HeadNumber::float64, 4});
+    for (std::size_t k = 0; k < 4; ++k) all->add(rod(c, k));
+    return after(*all, t, steps);
+  });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DerHeadMethods, testing::ValuesIn(exact_methods),
-                         [](const auto& of) { return std::string(of.param->name); });
+INSTANTIATE_TEST_SUITE_P(All, StretchedMethods,
+                         testing::Combine(testing::Values(&rods, &spring_masses),
+                                          testing::ValuesIn(exact_methods)),
+                         [](const auto& of) {
+                           return std::string(std::get<0>(of.param)->name) +
+                                  std::get<1>(of.param)->name;
+                         });
 
 TEST(HeadMethodsRefused, WithTheReason) {
   for (const HairMethod* method : exact_methods) {
     HeadOptions of_rods = rod_options({""});
     of_rods.method = method->method;
-    EXPECT_THAT(refusal([&] { spring_head(of_rods, {}); }),
-                HasSubstr("use semi_implicit_euler"));
+    EXPECT_THAT(refusal([&] {
+                  spring_head(of_rods, {HeadNumber::float32, 8});
+                }),
+                HasSubstr("use 64 bits"));
     HeadOptions weightless = of_rods;
     weightless.rotary_inertia = false;
     const bool starts = method->method == HeadMethod::tr_bdf2;
@@ -200,7 +213,7 @@ TEST(HeadMethodsRefused, WithTheReason) {
     }
     EXPECT_EQ(refusal([&] { helix_head(of_rods, narrow); }), "");
     weightless.twist = false;
-    for (const auto make : {helix_head, chain_head}) {
+    for (const auto make : {helix_head, chain_head, spring_head}) {
       EXPECT_EQ(refusal([&] { make(weightless, {}); }), "");
     }
   }
