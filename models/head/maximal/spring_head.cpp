@@ -36,10 +36,10 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
     explicit StiffScratch(const SpringModel& model)
         : placed(model.elements()),
           factors(model.elements()),
-          loads_on(model.elements()) {}
+          node_loads(model.elements()) {}
     std::vector<typename Kernel::Placed> placed;
     std::vector<typename Kernel::Factor> factors;
-    Loads loads_on;
+    Loads node_loads;
     const Load* loads = nullptr;  // of find_loads()
   };
   struct ExactScratch : StiffScratch {
@@ -160,7 +160,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   void find_loads(const Strand& strand, std::span<const NearBody> bodies, const V& root,
                   double h, const Real* q, const Real* v, StiffScratch& scratch) const {
     by(instructions_, [&] {
-      scratch.loads = scratch.loads_on.find(
+      scratch.loads = scratch.node_loads.find(
           bodies, units_, h, root, strand.material.length, strand.material.drag, q, v);
     });
   }

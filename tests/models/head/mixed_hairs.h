@@ -81,6 +81,14 @@ inline models::HeadOptions mixed_options(double tolerance) {
   return o;
 }
 
+/// On which some of the hairs lie.
+inline models::Effects mixed_body() {
+  return {std::make_shared<models::Body>(
+      models::Ellipsoid({0.1, 0.1, 0.1}), models::StrandPlace{{0, 0.08, -0.12}, {}},
+      models::BodyContact{
+          .stiffness = 1, .damping = 0.1, .friction = 0.2, .offset = 4e-5})};
+}
+
 inline constexpr models::HeadPack wide{models::HeadNumber::float64, 4};
 inline constexpr double interval = 0.04;  // s
 inline constexpr int intervals = 8;

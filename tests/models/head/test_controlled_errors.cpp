@@ -154,10 +154,7 @@ std::vector<Other> others(const HeadMaker& maker) {
     all.back().options.twist = false;
   }
   all.push_back({.name = "a body"});
-  HeadOptions& on_body = all.back().options;
-  on_body.effects = {std::make_shared<Body>(
-      Ellipsoid({0.1, 0.1, 0.1}), StrandPlace{{0, 0.08, -0.12}, {}},
-      BodyContact{.stiffness = 1, .damping = 0.1, .friction = 0.2, .offset = 4e-5})};
+  all.back().options.effects = mixed_body();
   return all;
 }
 
