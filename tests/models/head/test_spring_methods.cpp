@@ -279,7 +279,8 @@ TEST(SpringNewton, ConvergesAsThatOfTheStrandAlone) {
   }
 }
 
-// In blocks as many as a call has.
+// In blocks as many as a call has, by whole corrections: lanes_per_iteration of
+// experiments/heads. Strands that are retried one by one take a whole pack each.
 TEST(SpringNewton, WastesFewLanes) {
   for (const HairMethod* method : {&newton, &tr_bdf2}) {
     for (const auto& [h, most] : {std::pair{1.0 / 120, 1.2}, {1.0 / 30, 1.5}}) {
