@@ -21,10 +21,6 @@ constexpr double stagnation = 1e4, largest_rounding = 1e-6;
 // After this many growing corrections the iteration counts as not converging.
 constexpr int most_grown = 2;
 
-// The first solution with contact is sought so often by all means, with a penalty of its
-// own each time, then so often by Newton's method alone.
-constexpr int whole_attempts = 2, plain_attempts = 3;
-
 }  // namespace
 
 Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
@@ -36,6 +32,7 @@ Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
       tolerance_(options.newton_tolerance),
       remaining_(ending.remaining * tolerance_),
       turned_(ending.turned),
+      foresees_(contacts_ != nullptr && remaining_ < tolerance_),
       rounding_(
           std::max(tolerance_, std::min(stagnation * tolerance_, largest_rounding))),
       iterations_(options.newton_iterations),
@@ -54,6 +51,9 @@ Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
       lambda_step_(c_.size()),
       a_held_(q_.size()),
       lambda_held_(c_.size()),
+      r_free_(q_.size()),
+      q_next_(q_.size()),
+      v_next_(q_.size()),
       q_start_(q_.size()),
       a_part_(q_.size()),
       lambda_part_(c_.size()),
@@ -131,53 +131,15 @@ Status Stage::newton_step(double t, Weights w, In a, In lambda, Out a_step,
   return std::isfinite(size) ? Status::ok : Status::retry;
 }
 
-Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
-                    Matrix matrix, Effort effort) noexcept {
-  if (contacts_ == nullptr) {
-    return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix, effort);
-  }
-  std::ranges::copy(a, a_held_.begin());
-  std::ranges::copy(lambda, lambda_held_.begin());
-  Status s = Status::retry;
-  for (int i = 0; s == Status::retry && i < whole_attempts + plain_attempts; ++i) {
-    std::ranges::copy(a_held_, a.begin());
-    std::ranges::copy(lambda_held_, lambda.begin());
-    s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix,
-                      i < whole_attempts ? Effort::whole : Effort::plain);
-  }
-  if (s != Status::ok) return s;
-  double violation = 0;
-  for (int i = 1;; ++i) {
-    violation = contacts_->improve(t, q_, v_);
-    ++dynamics_.stats.contact_iterations;
-    if (violation <= contact_tolerance_ || i == contact_iterations_) break;
-    std::ranges::copy(a, a_held_.begin());
-    std::ranges::copy(lambda, lambda_held_.begin());
-    s = solve_smooth(t, q_bar, v_bar, w, a, lambda, Matrix::own, Effort::whole);
-    if (s == Status::ok) continue;
-    if (s == Status::fatal) return s;
-    std::ranges::copy(a_held_, a.begin());
-    std::ranges::copy(lambda_held_, lambda.begin());
-    place(q_bar, v_bar, w, a);
-    break;
-  }
-  if (violation <= contact_tolerance_) return Status::ok;
-  ++dynamics_.stats.contact_unfinished;
-  double& worst = dynamics_.stats.contact_violation;
-  worst = std::max(worst, violation);
-  return Status::ok;
-}
-
-Status Stage::first_contact(double t, In q_bar, In v_bar, Weights w, InOut a,
-                            InOut lambda, Matrix matrix, Effort effort) noexcept {
-  const double tau = w.pos / w.vel;
-  shifted(q_start_, q_bar, -tau, v_bar);
-  contacts_->begin(t, tau, q_start_, v_bar);
-  return solve_smooth(t, q_bar, v_bar, w, a, lambda, matrix, effort);
-}
-
 Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                            Matrix matrix, Effort effort) noexcept {
+  const Status s = by_newton(t, q_bar, v_bar, w, a, lambda, matrix);
+  if (s != Status::retry || effort == Effort::plain) return s;
+  return by_all_means(t, q_bar, v_bar, w, a, lambda);
+}
+
+Status Stage::by_newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                        Matrix matrix) noexcept {
   std::ranges::copy(a, a_guess_.begin());
   std::ranges::copy(lambda, lambda_guess_.begin());
   Status s = newton(t, q_bar, v_bar, w, refresh_, matrix, a, lambda);
@@ -195,8 +157,14 @@ Status Stage::solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InO
     stresses_ = form;
   }
   if (s == Status::retry) s = on_jump(t, q_bar, v_bar, w, a, lambda);
-  if (effort == Effort::plain && s != Status::ok) return s;
-  // From the guess, from zero acceleration, from standstill.
+  if (s == Status::ok && left_) leave(t, q_);
+  return s;
+}
+
+/// From the guess of by_newton(), from zero acceleration, from standstill.
+Status Stage::by_all_means(double t, In q_bar, In v_bar, Weights w, InOut a,
+                           InOut lambda) noexcept {
+  Status s = Status::retry;
   for (int start = 0; s == Status::retry && start < 3; ++start) {
     for (std::size_t i = 0; i < a.size(); ++i) {
       a[i] = start == 0 ? a_guess_[i] : start == 1 ? 0 : -v_bar[i] / w.vel;
@@ -234,20 +202,31 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
   for (int i = 0; i < iterations_; ++i) {
     double correction = 0;
     if (linearize) take_stresses(t, i == 0);
+    const bool foreseen = linearize && squared_ > 0;
+    const std::size_t cases = foreseen ? contacts_->cases(t, q_, v_) : 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
     rate = rate_ = correction / previous;
     // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
     // this one.
-    const double expected = i > 0 ? rate : expected_rate(correction);
+    double expected = i > 0 ? rate : expected_rate(correction);
+    if (foreseen) {
+      const double next = squared_ * correction;
+      expected = i > 0 ? std::min(next, rate) : next;
+    }
     const double error_left = expected > 0 && expected < 1
                                   ? correction * expected / (1 - expected)
                                   : correction;
+    if (i > 0 && linearize && foresees_) {
+      squared_ = std::max(i > 1 ? squared_ : 0.0, rate / previous);
+    }
     if (i > 0 && !linearize) {
       contraction_ = rate;
       contracted_ = previous;
     }
-    if (correction <= tolerance_ || error_left <= remaining_) return Status::ok;
+    if (correction <= tolerance_) return Status::ok;
+    const bool same = !foreseen || contacts_->cases(t, q_, v_) == cases;
+    if (error_left <= remaining_ && same) return Status::ok;
     if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
     const bool slow = i > 0 && (rate >= 1 || std::log(remaining_ / correction) <

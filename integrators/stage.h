@@ -91,12 +91,39 @@ class Stage {
     double size = 0;  // of a_step
   };
 
-  /// The first solution, with multipliers of contact as they are at the start.
+  /// The first solution, with multipliers of contact as they are at the start, and a
+  /// penalty of its own for every attempt.
   Status first_contact(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                        Matrix matrix, Effort effort) noexcept;
+  /// Later ones.
+  Status next_contact(double t, In q_bar, In v_bar, Weights w, InOut a,
+                      InOut lambda) noexcept;
+  /// The state and the forces of rigid contacts at once: each iteration solves the
+  /// equations and the laws of contact, linear about the last state [Josephy 1979], and
+  /// is damped as those of damped() are. `touched`: something may have been in contact.
+  Status with_forces(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                     bool& touched) noexcept;
+  Status iterate_with_forces(double t, In q_bar, In v_bar, Weights w, InOut a,
+                             InOut lambda, bool& touched) noexcept;
+  /// How the contacts' velocities respond to forces, by the matrix of now.
+  Status find_compliance(double t, Weights w, In a, In lambda,
+                         std::size_t count) noexcept;
+  /// From q_, v_ and the forces of now to those with which the step obeys the laws.
+  Status balanced_step(double t, Weights w, In a, In lambda, Out a_step, Out lambda_step,
+                       double& size) noexcept;
+  /// Takes the step a_step_, lambda_step_ and that of the forces, or the largest halving
+  /// of it after which the next one, by the same matrix, is smaller.
+  Status halve_with_forces(double t, In q_bar, In v_bar, Weights w, double size, InOut a,
+                           InOut lambda) noexcept;
+  void go(In q_bar, In v_bar, Weights w, double part, InOut a, InOut lambda) noexcept;
   /// The equations with multipliers of contact as they are.
   Status solve_smooth(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                       Matrix matrix, Effort effort) noexcept;
+  Status by_newton(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+                   Matrix matrix) noexcept;
+  /// After by_newton() has failed.
+  Status by_all_means(double t, In q_bar, In v_bar, Weights w, InOut a,
+                      InOut lambda) noexcept;
   void place(In q_bar, In v_bar, Weights w, In a) noexcept;
   double size_of(In correction, Weights w) const noexcept;
   /// The rate to expect after a first correction with a matrix that was used before; 0:
@@ -145,6 +172,7 @@ class Stage {
   double contact_tolerance_;
   int contact_iterations_;
   double tolerance_, remaining_, turned_;
+  bool foresees_;    // with contacts, unless Newton's tolerance has its margin already
   double rounding_;  // corrections below it may be rounding errors
   int iterations_;
   Refresh refresh_;
@@ -153,6 +181,10 @@ class Stage {
   std::optional<SecantUpdates> updates_;  // of that matrix
   // The last such rate with the present matrix, 0: none, and the correction before it.
   double contraction_ = 0, contracted_ = 1;
+  // Of newton() with matrices of its own, since the start of solve(): a correction over
+  // the square of the one before, 0: unknown. It tells the next one before contacts are
+  // solved again, unless some contact has come into another case of its laws.
+  double squared_ = 0;
   bool shares_ = true;  // the last matrix of this step served all stages so far
   long matrix_ = -1;    // its Dynamics::matrix(); other callers may have factored since
   double t_left_ = 0;
@@ -162,8 +194,11 @@ class Stage {
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps
   std::vector<double> a_held_, lambda_held_;                         // of contacts
-  std::vector<double> q_start_, a_part_, lambda_part_, a_before_;    // of short ones
-  Side here_, there_, middle_;                                       // of a jump
+  // Forces of contacts and velocities that they cause, and the matrix between both.
+  std::vector<double> force_, force_kept_, force_step_, velocity_, change_, compliance_;
+  std::vector<double> r_free_, q_next_, v_next_;
+  std::vector<double> q_start_, a_part_, lambda_part_, a_before_;  // of short ones
+  Side here_, there_, middle_;                                     // of a jump
   OnPath path_, next_;
 };
 

@@ -63,7 +63,7 @@ std::vector<ModelEntry> built_in_models() {
       ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"super_clothoid", "inextensible rod of n clothoids; 6n, 4n or 2n curvatures and twists", "Casati 2013", super_clothoid_parameters(), on_described_strand<make_super_clothoid>, make_super_clothoid, together<super_clothoid_batch>, Roots::clamped_or_free, 4},
       ModelEntry{"super_clothoid_tree", "the same, branching: the trees of super_helix_tree", "Casati 2013", super_clothoid_tree_parameters(), make_super_clothoid_tree, nullptr, nullptr, Roots::clamped_or_free, 4},
-      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), on_described_strand<make_articulated_chain>, make_articulated_chain, together<articulated_chain_batch>, Roots::clamped},
+      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), on_described_strand<make_articulated_chain>, make_articulated_chain, together<articulated_chain_batch>},
       ModelEntry{"force_transport", "the same, what lies beyond a joint moving rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), on_described_strand<make_force_transport>, make_force_transport, together<force_transport_batch>, Roots::clamped},
       der_entry(),
       corde_entry(),

@@ -5,7 +5,7 @@
 
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
-#include "models/effects/held_contacts.h"
+#include "models/held/held_contacts.h"
 
 namespace tress::models {
 

@@ -42,6 +42,13 @@ double weighed(const Vec& u, double friction) {
 
 }  // namespace
 
+Mat3 axes_about(const Vec& normal) {
+  const Vec aside = std::abs(normal.x) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
+  const Vec across = cross(normal, aside);
+  const Vec first = (1 / norm(across)) * across;
+  return {normal, first, cross(normal, first)};
+}
+
 void ContactProblem::Compliance::set(In blocks) {
   points_ = static_cast<std::size_t>(std::lround(std::sqrt(blocks.size() / 9)));
   columns_.resize(blocks.size() / 3);

@@ -14,6 +14,9 @@
 
 namespace tress::models {
 
+/// Axes of a contact: its normal (of length 1), two tangents.
+Mat3 axes_about(const Vec& normal);
+
 /// Contacts between points of bodies whose velocities respond linearly to forces: u = W r
 /// + b with the laws of contact_force() at every contact. W has one dense block per body,
 /// its compliance. Solved by block Gauss-Seidel over contacts, each exactly [Jourdan,

@@ -17,7 +17,10 @@ struct HeldContact {
   /// closed contact what the tolerance left in the last step, which divided by a much
   /// shorter one would be a speed.
   double rest_gap = 0;
-  double gap = 0;  // of the last solution, m
+  double gap = 0;     // of the last solution, m
+  double leaves = 0;  // part of its error that an improvement leaves, 0: unknown
+
+  bool some() const { return normal > 0 || dot(tangential, tangential) > 0; }
 };
 
 /// Contact force on a point of a strand by the laws of Signorini and Coulomb:
@@ -33,7 +36,8 @@ struct HeldContact {
 ///
 /// w is the gap less rest_gap over tau, the time in which velocities move the point, or
 /// the excess u_n + e u_0 of the speed at which a point rebounds that came at u_0 < 0.
-/// The law holds where the multipliers are the forces.
+/// The law holds where the multipliers are the forces. Without a penalty a rigid
+/// contact's force is its multiplier.
 struct ExactContact {
   NormalContact compliance;
   bool rigid = false;
@@ -50,8 +54,10 @@ struct ExactContact {
 
   /// Distance from the surface (m) from which on the force is 0.
   double reach(const HeldContact& held, const Penalty& penalty) const {
-    if (!rigid || penalty.rho == 0) return compliance.offset;
-    if (penalty.rebound) return std::numeric_limits<double>::infinity();
+    constexpr double everywhere = std::numeric_limits<double>::infinity();
+    if (!rigid) return compliance.offset;
+    if (constant(penalty)) return held.some() ? everywhere : compliance.offset;
+    if (penalty.rebound) return everywhere;
     const double pulls = held.normal * penalty.tau / penalty.rho;
     return compliance.offset + held.rest_gap + pulls;
   }
@@ -71,10 +77,15 @@ struct ExactContact {
                           : penalty.length * normal_.load),
           slide_(normal_.slide(u)),
           pull_(in_plane(held.tangential) - penalty.rho * slide_),
-          slips_(norm(pull_) > law.friction * load_) {
+          slips_(!law.constant(penalty) && norm(pull_) > law.friction * load_) {
       tangential_ = slips_ ? (law.friction * load_ / norm(pull_)) * pull_ : pull_;
     }
-    double gap() const { return -normal_.depth; }          // m
+    double gap() const { return -normal_.depth; }  // m
+    const Vec& outwards() const { return normal_.n; }
+    /// What the laws of a rigid contact are about: w n + u_t, m/s.
+    Vec excess() const {
+      return law_.excess(held_, penalty_, normal_) * normal_.n + slide_;
+    }
     double normal() const { return load_; }                // N
     const Vec& tangential() const { return tangential_; }  // T
     bool slips() const { return slips_; }
@@ -144,7 +155,11 @@ struct ExactContact {
  private:
   double gap_rate(const HeldContact& held, const Penalty& penalty,
                   const NormalContact::State& at) const {
-    if (!rigid || penalty.rho == 0) return 0;
+    return rigid && !constant(penalty) ? excess(held, penalty, at) : 0;
+  }
+  bool constant(const Penalty& penalty) const { return rigid && penalty.rho == 0; }
+  static double excess(const HeldContact& held, const Penalty& penalty,
+                       const NormalContact::State& at) {
     if (penalty.rebound) return at.speed_away - *penalty.rebound;
     return (-at.depth - held.rest_gap) / penalty.tau;
   }

@@ -65,13 +65,35 @@ struct Outline {
   Frame frame;             // its axes
 };
 
+/// A rigid contact of a point.
+struct RigidTouch {
+  std::size_t point = 0;
+  Vec normal;    // outwards, of length 1
+  Vec velocity;  // that its laws are about (Complementarity), m/s
+  Vec force;     // N
+  double friction = 0;
+};
+
 /// Contact forces that an effect holds between the steps of one strand: the part of
-/// ContactForm (contract/system.h) that concerns its points.
+/// ContactForm (contract/system.h) that concerns its points. Those of rigid contacts can
+/// be taken out of its hands, for a Complementarity.
 class Multipliers {
  public:
   virtual ~Multipliers() = default;
+  virtual bool rigid() const = 0;
+  /// Takes points that hold forces or overlap, beside those that are taken. All forces
+  /// are constants until give_back().
+  virtual void take(double t, const Points& p) noexcept = 0;
+  /// Appends those of the points that are taken.
+  virtual void touches(double t, const Points& p,
+                       std::vector<RigidTouch>& to) const noexcept = 0;
+  virtual void set_force(double t, std::size_t point, double normal,
+                         const Vec& tangential) noexcept = 0;
+  virtual void give_back(const Points& p) noexcept = 0;
   virtual void begin(double t, double tau, const Points& p) noexcept = 0;
   virtual double improve(double t, const Points& p) noexcept = 0;
+  virtual std::size_t cases(double t, const Points& p) const noexcept = 0;
+  virtual void extrapolate() noexcept = 0;
   virtual double approach(double t, const Points& p) noexcept = 0;
   virtual void release() noexcept = 0;
   virtual bool rebounds() const = 0;

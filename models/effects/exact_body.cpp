@@ -19,7 +19,7 @@ constexpr double first_penalty = 100;
 // up to a factor at which rounding errors of the gap still leave 1e-9 of a force.
 constexpr double rise = 10, largest_rise = 1e5;
 
-constexpr std::size_t per_point = 6;
+constexpr std::size_t per_point = 7;
 
 // The law's solution does not depend on the penalty, but whether Newton's method finds
 // one does, without a rule: where it has failed, these are tried in turn, over the first
@@ -31,6 +31,8 @@ constexpr std::array<double, 4> other_penalties = {1, 100, 10, 0.01};
 // since the last that did not.
 enum Header : std::size_t { phase, stiffer, improved, failed, header };
 constexpr double not_begun = 0, unsettled = 1, settled = 2;  // of phase
+// Errors of multipliers that fall by less are not of one kind.
+constexpr double most_left = 0.5;
 // Largest violation (m/s) after which what is left of gaps is due to the tolerance.
 constexpr double settled_below = 1e-6;
 
@@ -62,6 +64,10 @@ std::unique_ptr<Effect> ExactBody::for_strand(std::size_t points) const {
   own->penalties_.assign(points, {});
   own->open_.assign(points, true);
   own->rest_gaps_.assign(points, 0.0);
+  own->taken_.assign(points, false);
+  own->leaves_.assign(points, 0.0);
+  own->change_.assign(points, {});
+  own->change_before_.assign(points, {});
   return own;
 }
 
@@ -77,16 +83,19 @@ ExactContact::Penalty ExactBody::penalty(const Points& p, std::size_t point) con
   return own;
 }
 
+bool ExactBody::touchable(const Points& p, std::size_t point) {
+  return point >= static_cast<std::size_t>(p.held) && p.length[point] > 0;
+}
+
 double ExactBody::reach(const Points& p, std::size_t point) const {
-  const bool held_by_root = point < static_cast<std::size_t>(p.held);
-  if (held_by_root || p.length[point] == 0) return nowhere;
+  if (!touchable(p, point)) return nowhere;
   return law_.reach(held(point), penalty(p, point));
 }
 
 HeldContact ExactBody::held(std::size_t point) const {
   if (values_.empty()) return {};
   const double* at = &values_[header + per_point * point];
-  return {at[0], load3(at + 1), at[4], at[5]};
+  return {at[0], load3(at + 1), at[4], at[5], at[6]};
 }
 
 void ExactBody::hold(std::size_t point, const HeldContact& contact) {
@@ -95,6 +104,7 @@ void ExactBody::hold(std::size_t point, const HeldContact& contact) {
   store3(contact.tangential, at + 1);
   at[4] = contact.rest_gap;
   at[5] = contact.gap;
+  at[6] = contact.leaves;
 }
 
 /// After a failure: the next one that is not the one of now.
@@ -127,8 +137,10 @@ void ExactBody::begin(double t, double tau, const Points& p) noexcept {
         std::max(1.0, improvements == 1 ? values_[stiffer] / rise : values_[stiffer]);
   }
   violation_ = 0;
+  change_.assign(change_.size(), {});
   for (std::size_t i = 0; i < penalties_.size(); ++i) {
     open_[i] = held(i).normal == 0;
+    leaves_[i] = held(i).leaves;
     rest_gaps_[i] = held(i).rest_gap;
     penalties_[i] = {};
     penalties_[i].tau = tau;
@@ -166,9 +178,15 @@ double ExactBody::improve(double t, const Points& p) noexcept {
   violation_ = 0;
   ++values_[improved];
   std::size_t next = 0;
+  change_.swap(change_before_);
+  const auto take = [&](std::size_t point, const HeldContact& found) {
+    const HeldContact was = held(point);
+    change_[point] = {found.normal - was.normal, found.tangential - was.tangential};
+    hold(point, found);
+  };
   const auto open_until = [&](std::size_t point) {  // what is out of reach holds nothing
     for (; next < point; ++next)
-      hold(next, {0, {}, std::min(0.0, held(next).rest_gap), 0});
+      take(next, {0, {}, std::min(0.0, held(next).rest_gap), 0, 0});
   };
   for_touching<RigidBody::With::velocity>(
       body_->pose(t), p,
@@ -176,16 +194,56 @@ double ExactBody::improve(double t, const Points& p) noexcept {
         open_until(at.point);
         next = at.point + 1;
         violation_ = std::max(violation_, state.violation());
-        hold(at.point,
-             {state.normal(), state.tangential(), held(at.point).rest_gap, state.gap()});
+        take(at.point, {state.normal(), state.tangential(), held(at.point).rest_gap,
+                        state.gap(), held(at.point).leaves});
       });
   open_until(penalties_.size());
   if (violation_ <= settled_below) values_[phase] = settled;
   if (before > 0 && violation_ > before / rise && values_[stiffer] < largest_rise) {
     values_[stiffer] *= rise;
     set_penalties(p);
+    leaves_.assign(leaves_.size(), 0.0);
+    change_.assign(change_.size(), {});
   }
   return violation_;
+}
+
+std::size_t ExactBody::cases(double t, const Points& p) const noexcept {
+  constexpr std::size_t prime = 1099511628211;  // of FNV-1a
+  std::size_t sum = 0;
+  for_touching<RigidBody::With::velocity>(
+      body_->pose(t), p,
+      [&](const RigidBody::Near& at, const ExactContact::State& state) {
+        if (state.normal() == 0) return;
+        sum = (sum ^ (2 * at.point + (state.slips() ? 1 : 0) + 1)) * prime;
+      });
+  return sum;
+}
+
+/// An improvement leaves a part r of the error of a contact's multipliers, by how stiffly
+/// the contact responds: where lambda became f, the law holds near f + r/(1 - r) (f -
+/// lambda) [Aitken's process]. Two changes of multipliers, of which the second is s times
+/// the first, tell that r is s (1 - r) more than was assumed between them. The first r of
+/// a step is remembered for those that follow: later ones are of smaller errors.
+void ExactBody::extrapolate() noexcept {
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    HeldContact contact = held(i);
+    if (contact.normal == 0) continue;
+    const Change& now = change_[i];
+    const double size = change_before_[i].times(change_before_[i]);
+    double& r = leaves_[i];
+    if (size > 0) {
+      const double s = now.times(change_before_[i]) / size;
+      const double more = r + s * (1 - r);
+      const bool first = r == 0;
+      r = std::abs(s) < most_left && more > 0 && more < most_left ? more : 0;
+      if (first) contact.leaves = r;
+    }
+    const double further = r / (1 - r);
+    contact.normal = std::max(0.0, contact.normal + further * now.normal);
+    contact.tangential = contact.tangential + further * now.tangential;
+    hold(i, contact);
+  }
 }
 
 double ExactBody::approach(double t, const Points& p) noexcept {
@@ -209,6 +267,46 @@ void ExactBody::release() noexcept {
     hold(i, contact);
     penalties_[i] = {};
   }
+}
+
+void ExactBody::take(double t, const Points& p) noexcept {
+  for (ExactContact::Penalty& penalty : penalties_) penalty.rho = 0;
+  body_->for_near<RigidBody::With::position>(
+      body_->pose(t), p,
+      [&](std::size_t point) {
+        if (taken_[point] || !touchable(p, point)) return nowhere;
+        const HeldContact contact = held(point);
+        if (contact.normal > 0 || penalties_[point].rebound) return everywhere;
+        return law_.compliance.offset + contact.rest_gap;
+      },
+      [&](const RigidBody::Near& at) { taken_[at.point] = true; });
+}
+
+void ExactBody::touches(double t, const Points& p,
+                        std::vector<RigidTouch>& to) const noexcept {
+  const BodyPose now = body_->pose(t);
+  body_->for_near<RigidBody::With::velocity>(
+      now, p, [&](std::size_t point) { return taken_[point] ? everywhere : nowhere; },
+      [&](const RigidBody::Near& at) {
+        const HeldContact contact = held(at.point);
+        const ExactContact::Penalty penalty = this->penalty(p, at.point);
+        const ExactContact::State state(law_, contact, penalty, at.to, at.u);
+        to.push_back({at.point, now.frame * state.outwards(), now.frame * state.excess(),
+                      now.frame * state.load(), law_.friction});
+      });
+}
+
+void ExactBody::set_force(double t, std::size_t point, double normal,
+                          const Vec& tangential) noexcept {
+  HeldContact contact = held(point);
+  contact.normal = normal;
+  contact.tangential = body_->pose(t).frame.back(tangential);
+  hold(point, contact);
+}
+
+void ExactBody::give_back(const Points& p) noexcept {
+  taken_.assign(taken_.size(), false);
+  set_penalties(p);
 }
 
 template <RigidBody::With with, class See>

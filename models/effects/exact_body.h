@@ -39,13 +39,23 @@ class ExactBody final : public Effect, private Multipliers {
   std::shared_ptr<const Obstacle> obstacle() const override;
 
  private:
+  bool rigid() const override { return law_.rigid; }
+  void take(double t, const Points& p) noexcept override;
+  void touches(double t, const Points& p,
+               std::vector<RigidTouch>& to) const noexcept override;
+  void set_force(double t, std::size_t point, double normal,
+                 const Vec& tangential) noexcept override;
+  void give_back(const Points& p) noexcept override;
   void begin(double t, double tau, const Points& p) noexcept override;
   double improve(double t, const Points& p) noexcept override;
+  std::size_t cases(double t, const Points& p) const noexcept override;
+  void extrapolate() noexcept override;
   double approach(double t, const Points& p) noexcept override;
   void release() noexcept override;
   bool rebounds() const override { return law_.restitution > 0; }
   InOut values() noexcept override { return values_; }
 
+  static bool touchable(const Points& p, std::size_t point);
   double reach(const Points& p, std::size_t point) const;
   ExactContact::Penalty penalty(const Points& p, std::size_t point) const;
   HeldContact held(std::size_t point) const;
@@ -64,6 +74,18 @@ class ExactBody final : public Effect, private Multipliers {
   // At begin(): contacts that are open, and rest gaps.
   std::vector<bool> open_;
   std::vector<double> rest_gaps_;
+  std::vector<bool> taken_;
+  std::vector<double> leaves_;  // HeldContact::leaves, of this solution
+  // Of multipliers by an improvement, N: the last one and the one before, 0: none.
+  struct Change {
+    double normal = 0;
+    Vec tangential;
+
+    double times(const Change& other) const {
+      return normal * other.normal + dot(tangential, other.tangential);
+    }
+  };
+  std::vector<Change> change_, change_before_;
 };
 
 }  // namespace tress::models

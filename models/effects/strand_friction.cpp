@@ -69,14 +69,6 @@ StrandFriction::Law law_of(const Parameters& p) {
           .sweeps = p.whole("sweeps")};
 }
 
-/// Axes with the normal first.
-Mat3 axes_of(const Vec& normal) {
-  const Vec aside = std::abs(normal.x) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
-  const Vec across = cross(normal, aside);
-  const Vec first = (1 / norm(across)) * across;
-  return {normal, first, cross(normal, first)};
-}
-
 /// Ascending, each once.
 void unique(std::vector<std::size_t>& strands) {
   std::ranges::sort(strands);
@@ -92,7 +84,7 @@ constexpr auto pair_of = [](const auto& known) {
 
 /// With the force (N, world) that it had in the last step.
 void StrandFriction::Known::start_from(const Vec& last, const Vec& normal) {
-  force = axes_of(normal) * last;
+  force = axes_about(normal) * last;
   world = last;
 }
 
@@ -332,7 +324,7 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
   const bool on_obstacle = known.second < 0;
   const Vec& normal = on_obstacle ? known.plane.normal : known.at.normal;
   ContactProblem::Contact contact{};
-  contact.axes = axes_of(normal);
+  contact.axes = axes_about(normal);
   contact.friction =
       on_obstacle ? obstacles_[code_obstacle(known.second)]->friction() : law_.friction;
   const OnPoints on = on_points(known);

@@ -172,6 +172,18 @@ double CoupledStrands::improve(double t, In q, In v) noexcept {
   return worst;
 }
 
+std::size_t CoupledStrands::cases(double t, In q, In v) noexcept {
+  std::size_t sum = 0;
+  for (const std::size_t k : held_contacts_) {
+    sum = 31 * sum + strand(k).contact_form()->cases(t, part(q, k), part(v, k));
+  }
+  return sum;
+}
+
+void CoupledStrands::extrapolate() noexcept {
+  for (const std::size_t k : held_contacts_) strand(k).contact_form()->extrapolate();
+}
+
 double CoupledStrands::approach(double t, In q, In v) noexcept {
   double fastest = 0;
   for (const std::size_t k : held_contacts_) {

@@ -56,6 +56,8 @@ class CoupledStrands final : public StrandBlock,
   void recall(In memory) override;
   void begin(double t, double tau, In q0, In v0) noexcept override;
   double improve(double t, In q, In v) noexcept override;
+  std::size_t cases(double t, In q, In v) noexcept override;
+  void extrapolate() noexcept override;
   double approach(double t, In q, In v) noexcept override;
   void release() noexcept override;
   bool rebounds() const override;

@@ -10,7 +10,7 @@
 #include "models/constrained/constraint_set.h"
 #include "models/effects/coupled_solver.h"
 #include "models/effects/effect.h"
-#include "models/effects/held_contacts.h"
+#include "models/held/held_contacts.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/point_directions.h"
 

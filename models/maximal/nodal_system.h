@@ -6,7 +6,7 @@
 #include "linear/linear_solver.h"
 #include "math/dual.h"
 #include "models/effects/effect.h"
-#include "models/effects/held_contacts.h"
+#include "models/held/held_contacts.h"
 #include "models/maximal/staggered_rod.h"
 
 namespace tress::models {

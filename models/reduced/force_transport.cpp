@@ -1,5 +1,6 @@
 #include "models/reduced/force_transport.h"
 
+#include "contract/input_error.h"
 #include "linear/dense_factor.h"
 #include "models/reduced/ball_chain.h"
 #include "models/reduced/composite_matrix.h"
@@ -92,6 +93,11 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
 std::unique_ptr<System> force_transport(const Strand& strand,
                                         const ReducedOptions& options, Effects effects) {
   check_unbranched(strand, "force_transport");
+  if (strand.free_root) {
+    throw InputError("a root that moves freely is not among its joints",
+                     "model force_transport",
+                     "use motion = free with articulated_chain or super_helix");
+  }
   ReducedStrand reduced =
       reduced_strand(strand, Unknown::joint_angle, options, std::move(effects));
   const bool dense = options.method == TreeMethod::composite;

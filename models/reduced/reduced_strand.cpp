@@ -224,10 +224,6 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   check(strand);
   const bool joints = unknown == Unknown::joint_angle;
   if (options.dofs == 1) check_plane(strand);
-  if (joints && strand.free_root) {
-    throw InputError("a ball joint at a free root moves nothing", "model option motion",
-                     "use motion = free with super_helix");
-  }
   const Material& material = strand.material;
   const bool linear = unknown == Unknown::linear_curvature;
   const Vec free = unknowns(options.dofs), held = Vec{1, 1, 1} - free;
@@ -290,7 +286,9 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   reduced.length = strand.length();
   reduced.rate = reduced_rate(strand);
   reduced.unknown_scale = reduced_scale(strand, joints);
-  reduced.regular_mass = options.dofs < 3 || options.rotary_inertia;
+  // A free root's frame before the first joint has no mass.
+  const bool massless_root = joints && strand.free_root.has_value();
+  reduced.regular_mass = (options.dofs < 3 || options.rotary_inertia) && !massless_root;
   return reduced;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "contract/natural_strains.h"
-#include "models/effects/held_contacts.h"
+#include "models/held/held_contacts.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"

@@ -71,8 +71,8 @@ TEST(EachMethod, LeavesOutModelsThatCannotDoTheScene) {
         method_cases(line, TRESS_SCENES "/accuracy/" + scene),
         [model](const Case& one) { return one.identity.text("model") == model; });
   };
-  EXPECT_TRUE(has("release.toml", "articulated_chain"));
-  EXPECT_FALSE(has("flight.toml", "articulated_chain"));  // no free root
+  EXPECT_TRUE(has("release.toml", "force_transport"));
+  EXPECT_FALSE(has("flight.toml", "force_transport"));  // no free root
   EXPECT_TRUE(has("flight.toml", "der"));
 }
 

@@ -193,7 +193,7 @@ TEST(HardCaseJudge, SaysWhyThereIsNoReferenceAndIsStableAtMost) {
 
 TEST(HardCaseJudge, RefusesInTheWordsOfTheLibrary) {
   const Survival no_free_root =
-      survived("million_steps", "articulated_chain", "backward_euler", 1e-3);
+      survived("million_steps", "force_transport", "backward_euler", 1e-3);
   EXPECT_EQ(no_free_root.outcome, Outcome::refused);
   EXPECT_THAT(no_free_root.why, HasSubstr("free"));
   const Survival no_compliance = survived("straight", "super_helix", "xpbd", 1e-3);

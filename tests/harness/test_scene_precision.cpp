@@ -273,7 +273,7 @@ TEST(SceneCosts, OfSeveralStrandsGrowWithTheirNumber) {
 
 TEST(SceneCosts, OfAModelThatCannotDoTheSceneAreARefusal) {
   std::string flying = soft + "\n[root]\nmotion = \"free\"\n";
-  const CommandLine line = line_of({"articulated_chain"}, {});
+  const CommandLine line = line_of({"force_transport"}, {});
   for (const Row& row : costs(file("flying.toml", flying), line)) {
     EXPECT_EQ(row.status(), "refused");
     EXPECT_THAT(std::string(row.text("reason")), HasSubstr("free"));

@@ -247,6 +247,8 @@ TEST_P(TiltedPlane, RegularisedFrictionCreeps) {
 
 TEST_P(TiltedPlane, SticksByTolerance) {
   for (const std::string integrator : {"tr_bdf2", "esdirk43"}) {
+    // The frame of a chain's free root has no acceleration to start a stage from.
+    if (GetParam().model == "articulated_chain") GTEST_SKIP() << "no mass at its root";
     Options options;
     options.tolerance = 1e-3;
     options.max_step = 1.0 / 30;

@@ -160,6 +160,7 @@ TEST_P(MomentumOfAThrow, DriftsAtOrder2) {
 INSTANTIATE_TEST_SUITE_P(
     Reduced, MomentumOfAThrow,
     testing::ValuesIn(ways({{"straight", "super_helix", with(ten, thrown)},
+                            {"links", "articulated_chain", with(ten, thrown)},
                             {"curly_bend", "super_helix",
                              with(with(curly, bend), thrown)},
                             {"algae_bend", "super_helix_tree", with(algae, bend)}},

@@ -1,4 +1,4 @@
-#include "models/effects/held_contacts.h"
+#include "models/held/held_contacts.h"
 
 #include <algorithm>
 
@@ -28,6 +28,17 @@ double HeldContacts::improve(double t, In q, In v) noexcept {
   return worst;
 }
 
+std::size_t HeldContacts::cases(double t, In q, In v) noexcept {
+  const Points p = points_at_(t, q, v);
+  std::size_t sum = 0;
+  for (const auto& effect : held_) sum = 31 * sum + effect->multipliers()->cases(t, p);
+  return sum;
+}
+
+void HeldContacts::extrapolate() noexcept {
+  for (const auto& effect : held_) effect->multipliers()->extrapolate();
+}
+
 double HeldContacts::approach(double t, In q, In v) noexcept {
   const Points p = points_at_(t, q, v);
   double fastest = 0;
@@ -44,6 +55,14 @@ void HeldContacts::release() noexcept {
 bool HeldContacts::rebounds() const {
   return std::ranges::any_of(
       held_, [](const auto& effect) { return effect->multipliers()->rebounds(); });
+}
+
+Complementarity* HeldContacts::complementarity() {
+  const auto rigid = [](const auto& effect) { return effect->multipliers()->rigid(); };
+  if (!std::ranges::all_of(held_, rigid)) return nullptr;
+  ContactForm& own = *this;
+  if (!taken_) taken_ = std::make_unique<TakenContacts>(own, held_, points_at_);
+  return taken_.get();
 }
 
 std::vector<double> HeldContacts::multipliers() const {
