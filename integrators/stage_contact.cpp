@@ -109,6 +109,7 @@ Status Stage::with_forces(double t, In q_bar, In v_bar, Weights w, InOut a, InOu
   touched = law->take(t, q_, v_, q_, v_) > 0;
   const Status s = iterate_with_forces(t, q_bar, v_bar, w, a, lambda, touched);
   law->let_go(s == Status::ok);
+  if (s == Status::ok && left_) leave(t, q_);
   return s;
 }
 
