@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -72,33 +71,6 @@ void sort(std::vector<int>& numbers) {
   }
 }
 
-/// What a search needs for a moment: of a thread, as it is more than strands keep.
-struct Search {
-  std::vector<int> found;
-  std::vector<SegmentRun> runs;
-  std::vector<std::uint64_t> seen;  // a bit for each segment, 0 between searches
-
-  /// Drops what was found before, of segments below `end`.
-  void leave_once(std::size_t end) {
-    constexpr std::size_t bits = 64;
-    seen.resize(std::max(seen.size(), end / bits + 1));
-    const auto word = [&](int i) -> std::uint64_t& {
-      return seen[static_cast<std::size_t>(i) / bits];
-    };
-    std::size_t count = 0;
-    for (const int i : found) {
-      const std::uint64_t bit = std::uint64_t{1} << (static_cast<std::size_t>(i) % bits);
-      std::uint64_t& marks = word(i);
-      found[count] = i;
-      count += (marks & bit) == 0 ? 1 : 0;
-      marks |= bit;
-    }
-    found.resize(count);
-    for (const int i : found) word(i) = 0;
-  }
-};
-thread_local Search search_of_thread;
-
 }  // namespace
 
 PointGroups::PointGroups(const StrandPartners& partners, int strand,
@@ -136,33 +108,42 @@ void PointGroups::ready(In x, In length) {
 bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const long updates = partners_->updates() - group.update;
   if (group.lists != partners_->lists() || updates > 1) return false;
-  double most = 0;
+  GroupVectors moved;
+  alignas(GroupNumbers) std::array<int, eight> cells;
   by_packs(instructions_, [&]<class P>(std::size_t from, const P&) {
     const Vec3<P> now = load<P>(x, from),
                   before = updates == 1 ? partners_->before(now) : now;
-    Vec3<P> off = before - load<P>(group.x, from);
-    P spread(0);
-    if (updates == 1) {
-      const auto cells = partners_->cells(partners_->at_epoch(now));
-      Vec3<P> middle;
-      for (int lane = 0; lane < lanes<P>; ++lane) {
-        const LocalDrift::Spread& near =
-            partners_->drift(cells[static_cast<std::size_t>(lane)]);
-        set_lane(middle, lane, near.middle);
-        spread.set(lane, near.radius);
-      }
-      off = off - middle;
-    }
-    const P nearer = where_less(spread, P(0), P(0), square_root(square_of(off)) + spread);
-    for (int lane = 0; lane < lanes<P>; ++lane) {
-      if (!is_finite(lane_of(now, lane))) continue;
-      // What had no place before may be anywhere.
-      const double by = nearer[lane];
-      most = std::max(most, is_finite(by) ? by : std::numeric_limits<double>::infinity());
-    }
+    store(before - load<P>(group.x, from), from, moved);
+    const auto of_lanes = partners_->cells(partners_->at_epoch(now));
+    std::ranges::copy(of_lanes, cells.begin() + from);
   });
-  group.used += most;
-  return group.used <= group.room - partners_->range();
+  std::array<bool, eight> there;
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    there[lane] = is_finite(lane_of(x, lane));
+  }
+  Box drift{{0, 0, 0}, {0, 0, 0}};
+  if (updates == 1) {
+    drift = Box::none();
+    int last = -1;
+    for (std::size_t lane = 0; lane < eight; ++lane) {
+      if (!there[lane] || cells[lane] == last) continue;
+      last = cells[lane];
+      drift.include(partners_->drift(last));
+    }
+    if (drift.empty()) return true;  // nothing is near
+  }
+  const Vec middle = 0.5 * (drift.least + drift.most);
+  double most = 0;
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    const Vec off = lane_of(moved, lane) - middle;
+    const double square = dot(off, off);
+    if (there[lane] && !(square <= most)) most = square;
+  }
+  group.used += 0.5 * norm(drift.most - drift.least);
+  const double left = group.room - partners_->range() - group.used;
+  if (!(left >= 0) || !(most <= left * left)) return false;
+  group.used += std::sqrt(most);
+  return true;
 }
 
 void PointGroups::list(Group& group) {
@@ -172,21 +153,24 @@ void PointGroups::list(Group& group) {
   group.room = partners_->margin() + partners_->range();
   group.list.clear();
   const double wide = (partners_->reach() + group.room) * rounding;
-  const SegmentCells& segments = partners_->segments();
-  Search& of_thread = search_of_thread;
-  std::vector<int>& found = of_thread.found;
-  search(group, wide + partners_->moved(), found);
-  of_thread.leave_once(segments.points());
-  keep_near(group, wide, found);
-  for (const int i : segments.long_segments()) {
-    if (segments.polyline(i) != strand_) found.push_back(i);
+  Box box = Box::none();
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    const Vec at = partners_->at_epoch(lane_of(group.x, lane));
+    if (is_finite(at)) box.include(at);
   }
-  sort(found);
-  std::vector<SegmentRun>& runs = of_thread.runs;
-  runs.clear();
-  for (const int i : found) {
-    if (!runs.empty()) {
-      SegmentRun& run = runs.back();
+  if (box.empty()) return;
+  box.grow(wide + partners_->moved());
+  const SegmentCells& segments = partners_->segments();
+  segments.reaching_into(box, found_);
+  keep_near(group, wide);
+  for (const int i : segments.long_segments()) {
+    if (segments.polyline(i) != strand_) found_.push_back(i);
+  }
+  sort(found_);
+  runs_.clear();
+  for (const int i : found_) {
+    if (!runs_.empty()) {
+      SegmentRun& run = runs_.back();
       const int next = run.first + static_cast<int>(run.count);
       if (i < next) continue;  // one of those before
       if (i == next) {
@@ -195,55 +179,21 @@ void PointGroups::list(Group& group) {
       }
       run.last = segments.polyline(run.first) != segments.polyline(i) ? 1 : 0;
     }
-    runs.push_back({i, 1, 1});
+    runs_.push_back({i, 1, 1});
   }
-  group.list = runs;
-}
-
-/// Sets `found` to what may come within the distance of a point, and some more, some of
-/// it more than once. Points that follow each other are looked around together where
-/// that takes less space than one by one.
-void PointGroups::search(const Group& group, double distance,
-                         std::vector<int>& found) const {
-  const SegmentCells& segments = partners_->segments();
-  found.clear();
-  const double across = 2 * distance + segments.longest_part();
-  const auto space = [across](const Box& box) {
-    const Vec side = box.most - box.least;
-    return (side.x + across) * (side.y + across) * (side.z + across);
-  };
-  const auto look = [&](Box box) {
-    if (box.empty()) return;
-    box.grow(distance);
-    segments.reaching_into(box, found);
-  };
-  Box box = Box::none();
-  for (std::size_t lane = 0; lane < eight; ++lane) {
-    const Vec at = partners_->at_epoch(lane_of(group.x, lane));
-    if (!is_finite(at)) continue;
-    Box more = box;
-    more.include(at);
-    const Box alone{at, at};
-    if (!box.empty() && space(more) > space(box) + space(alone)) {
-      look(box);
-      more = alone;
-    }
-    box = more;
-  }
-  look(box);
+  group.list = runs_;
 }
 
 /// Drops what is farther from all points than that, and the own strand.
-void PointGroups::keep_near(const Group& group, double distance,
-                            std::vector<int>& found) const {
+void PointGroups::keep_near(const Group& group, double distance) {
   const SegmentCells& segments = partners_->segments();
   const int own = segments.first(static_cast<std::size_t>(strand_)),
             other = segments.first(static_cast<std::size_t>(strand_) + 1);
   const auto is_own = [=](int i) { return i >= own && i < other; };
   std::size_t near = 0;
-  for (const int i : found) partners_->fetch_place(i);
+  for (const int i : found_) partners_->fetch_place(i);
   const auto keep = [&](auto... packs) {
-    for (const int i : found) {
+    for (const int i : found_) {
       const StraightPiece piece = partners_->piece(i);
       const auto is_near = [&]<class P>(const Vec3<P>& x) {
         const Vec3<P> d = x - all<P>(piece.start), edge = all<P>(piece.edge);
@@ -251,7 +201,7 @@ void PointGroups::keep_near(const Group& group, double distance,
         return any_less(square_of(d - s * edge), P(distance * distance));
       };
       // Without a branch, which nobody could foresee.
-      found[near] = i;
+      found_[near] = i;
       near += !is_own(i) && (static_cast<int>(is_near(packs)) | ...) != 0 ? 1 : 0;
     }
   };
@@ -260,7 +210,7 @@ void PointGroups::keep_near(const Group& group, double distance,
   } else {
     keep(load<Pack>(group.x, 0), load<Pack>(group.x, Pack::lanes));
   }
-  found.resize(near);
+  found_.resize(near);
 }
 
 void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double elapsed,
@@ -289,7 +239,7 @@ void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double e
 }
 
 std::size_t PointGroups::bytes() const {
-  std::size_t sum = groups_.capacity() * sizeof(Group);
+  std::size_t sum = groups_.capacity() * sizeof(Group) + found_.capacity() * sizeof(int);
   for (const Group& group : groups_) sum += group.list.capacity() * sizeof(SegmentRun);
   return sum;
 }

@@ -44,13 +44,14 @@ class PointGroups {
 
   bool holds(Group& group, const GroupVectors& x) const;
   void list(Group& group);
-  void search(const Group& group, double distance, std::vector<int>& found) const;
-  void keep_near(const Group& group, double distance, std::vector<int>& found) const;
+  void keep_near(const Group& group, double distance);
 
   const StrandPartners* partners_;
   int strand_;
   Instructions instructions_;
   std::vector<Group> groups_;
+  std::vector<int> found_;        // of a search
+  std::vector<SegmentRun> runs_;  // the same
   long made_ = 0;
 };
 

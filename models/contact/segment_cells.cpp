@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -13,35 +11,23 @@ namespace {
 
 // Longest part over segments of usual length; parts of the longest one that is cut.
 constexpr double part_over_usual = 1.1, longest_parts = 64;
-// Parts are shorter than that where the reach is: so many times the reach, but so many
-// of a usual segment at most, by the memory that they take.
-constexpr double part_over_reach = 2, parts_of_usual = 16;
-// Cells over the part, at least: smaller ones fit closer but are more runs of numbers.
-constexpr double cell_over_part = 0.5;
+// Cells over the reach: smaller ones fit closer but are more runs of numbers.
+constexpr double cell_over_reach = 1;
 constexpr double cells_over_parts = 2;  // at most
 // Shares of points below and above which the grid may end, and points that tell.
 constexpr double outside = 0.05;
 constexpr std::size_t sampled = 4096;
-constexpr std::size_t slabs = 8;   // ranges of cells, each a piece of work
-constexpr double rounding = 1e-9;  // of lengths that are compared to places
-// Across the grid: with either sign 16 bits.
-constexpr double most_steps = 2 * std::numeric_limits<std::int16_t>::max();
+constexpr std::size_t slabs = 8;  // ranges of cells, each a piece of work
+constexpr std::size_t width = 8;  // parts that a search tests together
+// Of floats that stand for places, over their size: more than 2^-24 of two of them.
+constexpr double float_error = 1e-6;
 
-constexpr std::size_t at_once = 4;  // parts that a search looks at
-using Shorts __attribute__((vector_size(32))) = std::int16_t;
-using Longs __attribute__((vector_size(32))) = std::int64_t;
-/// Of parts from there on: not 0 where no number of one, 16 bytes each, is above the
-/// limit.
-template <class Part>
-Longs within(const Part* parts, const Shorts& limit) {
-  static_assert(sizeof(Part) == 16);
-  Shorts two, more;
-  std::memcpy(&two, parts, sizeof two);
-  std::memcpy(&more, parts + 2, sizeof more);
-  const auto a = std::bit_cast<Longs>(two > limit),
-             b = std::bit_cast<Longs>(more > limit);
-  return (__builtin_shufflevector(a, b, 0, 2, 4, 6) |
-          __builtin_shufflevector(a, b, 1, 3, 5, 7)) == 0;
+using Floats __attribute__((vector_size(width * sizeof(float)))) = float;
+using Ints __attribute__((vector_size(width * sizeof(int)))) = int;
+Floats load(const float* p) {
+  Floats x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
 }
 
 /// A value with the share `below` of the others below it, of those that are finite.
@@ -100,10 +86,8 @@ void SegmentCells::choose_parts(In x, double reach) {
                                     piece_at(x, static_cast<int>(i)).edge);
     if (square > 0 && std::isfinite(square)) lengths.push_back(std::sqrt(square));
   }
-  const double usual = part_over_usual * quantile(lengths, 1 - outside);
-  longest_ =
-      std::max({reach, std::min(usual, part_over_reach * reach), usual / parts_of_usual});
-  cell_ = std::max(reach, cell_over_part * longest_);
+  longest_ = std::max(reach, part_over_usual * quantile(lengths, 1 - outside));
+  cell_ = cell_over_reach * reach;
 }
 
 /// -1: it is long. A segment that is not finite is near to nothing.
@@ -139,7 +123,6 @@ void SegmentCells::choose_cells(In x, std::size_t parts) {
   inverse_cell_ = 1 / cell_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     count_[axis] = static_cast<int>(std::min(number(axis), limit));
-    steps_[axis] = most_steps * inverse_cell_ / count_[axis];
   }
 }
 
@@ -154,36 +137,16 @@ SegmentCells::Range SegmentCells::cells(int axis, double from, double to) const 
   return {index(from), index(to)};
 }
 
-SegmentCells::Steps SegmentCells::steps(const Vec& place) const noexcept {
-  const auto of = [this](double along, int axis) {
-    const double at = steps_[axis] * along;
-    return static_cast<std::int16_t>(
-        static_cast<int>(at > 0 ? at < most_steps ? at : most_steps : 0) -
-        std::numeric_limits<std::int16_t>::max());
-  };
-  const Vec at = place - corner_;
-  return {of(at.x, 0), of(at.y, 1), of(at.z, 2)};
-}
-
-/// Of a segment, from one share of its edge to another.
-SegmentCells::Part SegmentCells::part(In x, std::size_t segment, double from,
-                                      double to) const noexcept {
-  const Vec start = load3(&x[3 * segment]), edge = load3(&x[3 * segment + 3]) - start;
-  const Steps one = steps(start + from * edge), other = steps(start + to * edge);
-  Part part{{}, {}, static_cast<int>(segment)};
-  for (std::size_t axis = 0; axis < one.size(); ++axis) {
-    part.least[axis] = std::min(one[axis], other[axis]);
-    part.minus_most[axis] = static_cast<std::int16_t>(-std::max(one[axis], other[axis]));
-  }
-  return part;
-}
-
 /// Counting sort. Ranges of cells are filled side by side, each from all parts, so that
 /// parts of a cell keep their order, that of segments.
 void SegmentCells::sort(In x, const Loop& loop) {
   const auto parts = static_cast<std::size_t>(part_.back());
   cell_of_.resize(parts);
-  parts_.resize(parts + at_once);
+  segment_.resize(parts + width);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    least_[axis].resize(parts + width);
+    most_[axis].resize(parts + width);
+  }
   in_parts(points(), loop, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       each_part(i, x, [&](std::size_t p, const Vec& middle) {
@@ -223,9 +186,18 @@ void SegmentCells::sort(In x, const Loop& loop) {
         const int c = cell_of_[static_cast<std::size_t>(p)];
         if (c < from || c >= to) continue;
         const auto at = static_cast<std::size_t>(--start_[static_cast<std::size_t>(c)]);
+        const StraightPiece whole = piece_at(x, static_cast<int>(segment));
         const double share = 1.0 / (part_[segment + 1] - part_[segment]);
-        parts_[at] = part(x, segment, (p - part_[segment]) * share,
-                          (p + 1 - part_[segment]) * share);
+        const Vec a = whole.at((p - part_[segment]) * share),
+                  b = whole.at((p + 1 - part_[segment]) * share);
+        segment_[at] = static_cast<int>(segment);
+        const auto box = [&](std::size_t axis, double one, double other) {
+          least_[axis][at] = static_cast<float>(std::min(one, other));
+          most_[axis][at] = static_cast<float>(std::max(one, other));
+        };
+        box(0, a.x, b.x);
+        box(1, a.y, b.y);
+        box(2, a.z, b.z);
       }
     }
   });
@@ -239,33 +211,36 @@ Box SegmentCells::extent() const {
 
 void SegmentCells::reaching_into(const Box& box, std::vector<int>& found) const {
   const Vec &a = box.least, &b = box.most;
+  const double size = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z),
+                                std::abs(b.x), std::abs(b.y), std::abs(b.z)});
+  const double wide = float_error * (size + longest_);
   // A part that reaches into it has its middle no farther from it than this.
-  const double far = (1 + rounding) * 0.5 * longest_;
+  const double far = wide + 0.5 * longest_;
   const Range xs = cells(0, a.x - far, b.x + far), ys = cells(1, a.y - far, b.y + far),
               zs = cells(2, a.z - far, b.z + far);
-  const Steps least = steps(a), most = steps(b);
-  constexpr std::int16_t any = std::numeric_limits<std::int16_t>::max();
-  const auto minus = [](int x) { return static_cast<std::int16_t>(-x); };
-  const Shorts limit{most[0],         most[1],         most[2], minus(least[0]),
-                     minus(least[1]), minus(least[2]), any,     any,
-                     most[0],         most[1],         most[2], minus(least[0]),
-                     minus(least[1]), minus(least[2]), any,     any};
-  std::size_t count = found.size();
+  const auto least = [wide](double at) { return Floats{} + float(at - wide); };
+  const auto most = [wide](double at) { return Floats{} + float(at + wide); };
+  const Floats x0 = least(a.x), x1 = most(b.x), y0 = least(a.y), y1 = most(b.y),
+               z0 = least(a.z), z1 = most(b.z);
+  constexpr Ints numbers{0, 1, 2, 3, 4, 5, 6, 7};
+  std::size_t count = 0;
   for (int z = zs.from; z <= zs.to; ++z) {
     for (int y = ys.from; y <= ys.to; ++y) {
       const std::size_t cells_of = row(y, z);
-      const int begin = start_[cells_of + static_cast<std::size_t>(xs.from)],
-                end = start_[cells_of + static_cast<std::size_t>(xs.to) + 1];
-      const std::size_t most_found = count + static_cast<std::size_t>(end - begin);
-      if (found.size() < most_found) found.resize(2 * most_found);
-      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end);
-           i += at_once) {
-        const Longs hit = within(&parts_[i], limit);
-        if ((hit[0] | hit[1] | hit[2] | hit[3]) == 0) continue;
-        const std::size_t left = static_cast<std::size_t>(end) - i;
-        for (std::size_t k = 0; k < std::min(at_once, left); ++k) {
-          found[count] = parts_[i + k].segment;
-          count += hit[static_cast<int>(k)] != 0 ? 1 : 0;
+      const auto begin = static_cast<std::size_t>(
+                     start_[cells_of + static_cast<std::size_t>(xs.from)]),
+                 end = static_cast<std::size_t>(
+                     start_[cells_of + static_cast<std::size_t>(xs.to) + 1]);
+      for (std::size_t i = begin; i < end; i += width) {
+        if (found.size() < count + width) found.resize(2 * found.size() + width);
+        const auto close = (load(&least_[0][i]) <= x1) & (load(&most_[0][i]) >= x0) &
+                           (load(&least_[1][i]) <= y1) & (load(&most_[1][i]) >= y0) &
+                           (load(&least_[2][i]) <= z1) & (load(&most_[2][i]) >= z0);
+        // Without branches, which nobody could foresee.
+        const Ints of_row = close & (numbers < static_cast<int>(end - i));
+        for (std::size_t k = 0; k < width; ++k) {
+          found[count] = segment_[i + k];
+          count -= static_cast<std::size_t>(of_row[k] >> 31);
         }
       }
     }
@@ -278,7 +253,6 @@ void SegmentCells::near(const StraightPiece& axis, double radius, int but,
   Box box{axis.start, axis.start};
   box.include(axis.at(1));
   box.grow(radius);
-  found.clear();
   reaching_into(box, found);
   found.insert(found.end(), long_.begin(), long_.end());
   std::erase_if(found, [&](int segment) { return polyline(segment) == but; });
@@ -290,8 +264,8 @@ std::size_t SegmentCells::bytes() const {
   const auto of = [](const auto& values) {
     return values.capacity() * sizeof(*values.data());
   };
-  return of(polyline_) + of(first_) + of(part_) + of(cell_of_) + of(start_) + of(parts_) +
-         of(long_);
+  return of(polyline_) + of(first_) + of(part_) + of(cell_of_) + of(start_) +
+         of(segment_) + 3 * (of(least_[0]) + of(most_[0])) + of(long_);
 }
 
 }  // namespace tress::models

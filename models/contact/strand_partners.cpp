@@ -147,10 +147,7 @@ double StrandPartners::best_margin() const {
   const double target = making_over_using * drift_.mean() / reach_;
   double share = std::sqrt(target);
   for (int k = 0; k < 4; ++k) share = std::sqrt(target / (1 + share));
-  share = std::min(share, most_margin);
-  // One that does not hold for a step helps nothing.
-  if (drift_.mean() > share * reach_) share = least_margin;
-  return std::max(share, least_margin) * reach_;
+  return (share < most_margin ? std::max(share, least_margin) : most_margin) * reach_;
 }
 
 std::size_t StrandPartners::bytes() const {

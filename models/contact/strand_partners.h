@@ -47,8 +47,8 @@ class StrandPartners {
     return step_.back(x);
   }
   /// Holds the last displacements x - before of all that may have come within a list's
-  /// distance of a place in the cell, but for long segments.
-  const LocalDrift::Spread& drift(int cell) const { return drift_.near(cell); }
+  /// distance of a place in the cell, but for long segments; least > most if nothing has.
+  const Box& drift(int cell) const { return drift_.near(cell); }
   /// Of each lane; `at_epoch`: of the place at the last update. Places that are not
   /// finite have some cell.
   template <class P>

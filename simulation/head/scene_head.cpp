@@ -129,9 +129,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     throw InputError(fmt::format("{} strands for {} ranks", series.size(), ranks.size()),
                      scene.name, "give fewer ranks");
   }
-  // Strands that may touch each other lie beside each other in memory, too.
-  const bool by_roots = divided || scene.interaction() != nullptr;
-  std::vector<Vec> roots(by_roots ? series.size() : 0);
+  std::vector<Vec> roots(divided ? series.size() : 0);
   const Extent all = extent_of(series, options, crew, ranks, std::span(roots));
   options.longest = all.length;
   if (options.points == 0) options.points = points_of(scene, all.winding);
@@ -140,10 +138,10 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
       strand_0.material.density * strand_0.segments.front().section.area();
   const std::vector<double> equal(cost.empty() ? roots.size() : 0, 1);
   SceneHead made_head;
-  made_head.division = by_roots ? std::make_shared<HeadDivision>(
-                                      roots, cost.empty() ? std::span(equal) : cost,
-                                      ranks.size(), ranks.rank())
-                                : std::make_shared<HeadDivision>(series.size());
+  made_head.division = divided ? std::make_shared<HeadDivision>(
+                                     roots, cost.empty() ? std::span(equal) : cost,
+                                     ranks.size(), ranks.rank())
+                               : std::make_shared<HeadDivision>(series.size());
   const HeadDivision& division = *made_head.division;
   const std::size_t own = division.own().size();
   if (const Parameters* between = scene.interaction()) {
@@ -222,10 +220,9 @@ std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
   const std::size_t blocks = (strands + lanes - 1) / lanes;
   std::size_t bytes = block->bytes() * blocks;
   if (outline.scene.interaction() != nullptr) {
-    // Places and velocities of the points, and what StrandPartners and PointGroups keep
-    // of them where the reach is short, segments have the most parts, and hair is as
-    // dense as that of a head.
-    constexpr std::size_t kept_of_point = 850;
+    // Places and velocities of the points, and what StrandPartners keeps of them with as
+    // many candidates as hairs of a dense head have.
+    constexpr std::size_t kept_of_point = 500;
     bytes += strands * (16 * block->numbers() + kept_of_point * block->numbers() / 3);
   }
   return bytes;
