@@ -71,6 +71,14 @@ void sort(std::vector<int>& numbers) {
   }
 }
 
+/// What a search needs for a moment. Of threads: each strand would keep the room of the
+/// largest search that it has ever made.
+struct Search {
+  std::vector<int> found;
+  std::vector<SegmentRun> runs;
+};
+thread_local Search search_of_thread;
+
 }  // namespace
 
 PointGroups::PointGroups(const StrandPartners& partners, int strand,
@@ -161,16 +169,17 @@ void PointGroups::list(Group& group) {
   if (box.empty()) return;
   box.grow(wide + partners_->moved());
   const SegmentCells& segments = partners_->segments();
-  segments.reaching_into(box, found_);
-  keep_near(group, wide);
+  auto& [found, runs] = search_of_thread;
+  segments.reaching_into(box, found);
+  keep_near(group, wide, found);
   for (const int i : segments.long_segments()) {
-    if (segments.polyline(i) != strand_) found_.push_back(i);
+    if (segments.polyline(i) != strand_) found.push_back(i);
   }
-  sort(found_);
-  runs_.clear();
-  for (const int i : found_) {
-    if (!runs_.empty()) {
-      SegmentRun& run = runs_.back();
+  sort(found);
+  runs.clear();
+  for (const int i : found) {
+    if (!runs.empty()) {
+      SegmentRun& run = runs.back();
       const int next = run.first + static_cast<int>(run.count);
       if (i < next) continue;  // one of those before
       if (i == next) {
@@ -179,21 +188,22 @@ void PointGroups::list(Group& group) {
       }
       run.last = segments.polyline(run.first) != segments.polyline(i) ? 1 : 0;
     }
-    runs_.push_back({i, 1, 1});
+    runs.push_back({i, 1, 1});
   }
-  group.list = runs_;
+  group.list = runs;
 }
 
 /// Drops what is farther from all points than that, and the own strand.
-void PointGroups::keep_near(const Group& group, double distance) {
+void PointGroups::keep_near(const Group& group, double distance,
+                            std::vector<int>& found) const {
   const SegmentCells& segments = partners_->segments();
   const int own = segments.first(static_cast<std::size_t>(strand_)),
             other = segments.first(static_cast<std::size_t>(strand_) + 1);
   const auto is_own = [=](int i) { return i >= own && i < other; };
   std::size_t near = 0;
-  for (const int i : found_) partners_->fetch_place(i);
+  for (const int i : found) partners_->fetch_place(i);
   const auto keep = [&](auto... packs) {
-    for (const int i : found_) {
+    for (const int i : found) {
       const StraightPiece piece = partners_->piece(i);
       const auto is_near = [&]<class P>(const Vec3<P>& x) {
         const Vec3<P> d = x - all<P>(piece.start), edge = all<P>(piece.edge);
@@ -201,7 +211,7 @@ void PointGroups::keep_near(const Group& group, double distance) {
         return any_less(square_of(d - s * edge), P(distance * distance));
       };
       // Without a branch, which nobody could foresee.
-      found_[near] = i;
+      found[near] = i;
       near += !is_own(i) && (static_cast<int>(is_near(packs)) | ...) != 0 ? 1 : 0;
     }
   };
@@ -210,7 +220,7 @@ void PointGroups::keep_near(const Group& group, double distance) {
   } else {
     keep(load<Pack>(group.x, 0), load<Pack>(group.x, Pack::lanes));
   }
-  found_.resize(near);
+  found.resize(near);
 }
 
 void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double elapsed,
@@ -239,7 +249,7 @@ void PointGroups::loads(std::size_t group, const ContactLaw& law, In v, double e
 }
 
 std::size_t PointGroups::bytes() const {
-  std::size_t sum = groups_.capacity() * sizeof(Group) + found_.capacity() * sizeof(int);
+  std::size_t sum = groups_.capacity() * sizeof(Group);
   for (const Group& group : groups_) sum += group.list.capacity() * sizeof(SegmentRun);
   return sum;
 }

@@ -44,14 +44,12 @@ class PointGroups {
 
   bool holds(Group& group, const GroupVectors& x) const;
   void list(Group& group);
-  void keep_near(const Group& group, double distance);
+  void keep_near(const Group& group, double distance, std::vector<int>& found) const;
 
   const StrandPartners* partners_;
   int strand_;
   Instructions instructions_;
   std::vector<Group> groups_;
-  std::vector<int> found_;        // of a search
-  std::vector<SegmentRun> runs_;  // the same
   long made_ = 0;
 };
 

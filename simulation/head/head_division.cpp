@@ -10,9 +10,9 @@
 namespace tress::simulation {
 namespace {
 
-// Of a rank's strands: enough that most lie apart from other ranks' groups, few enough
-// that strands of consecutive numbers fill the lanes of a group's blocks.
-constexpr std::size_t most_groups = 32, least_of_group = 16;
+// Of a rank's strands: those that fill the lanes of a block, so that what is near to one
+// strand is near in memory when the next one asks for it.
+constexpr std::size_t most_of_group = 16;
 
 using Strands = std::span<std::size_t>;
 
@@ -75,7 +75,7 @@ HeadDivision::HeadDivision(std::span<const Vec> roots, std::span<const double> c
   const std::vector<double> equal(roots.size(), 1);
   Bisection(roots, equal, [](Strands some, std::size_t) {
     std::ranges::sort(some);
-  }).divide(own_, std::clamp(own_.size() / least_of_group, std::size_t{1}, most_groups));
+  }).divide(own_, std::max(own_.size() / most_of_group, std::size_t{1}));
   order_own();
 }
 

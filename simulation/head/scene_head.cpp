@@ -129,7 +129,9 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     throw InputError(fmt::format("{} strands for {} ranks", series.size(), ranks.size()),
                      scene.name, "give fewer ranks");
   }
-  std::vector<Vec> roots(divided ? series.size() : 0);
+  // Strands that may touch each other lie beside each other in memory, too.
+  const bool by_roots = divided || scene.interaction() != nullptr;
+  std::vector<Vec> roots(by_roots ? series.size() : 0);
   const Extent all = extent_of(series, options, crew, ranks, std::span(roots));
   options.longest = all.length;
   if (options.points == 0) options.points = points_of(scene, all.winding);
@@ -138,10 +140,10 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
       strand_0.material.density * strand_0.segments.front().section.area();
   const std::vector<double> equal(cost.empty() ? roots.size() : 0, 1);
   SceneHead made_head;
-  made_head.division = divided ? std::make_shared<HeadDivision>(
-                                     roots, cost.empty() ? std::span(equal) : cost,
-                                     ranks.size(), ranks.rank())
-                               : std::make_shared<HeadDivision>(series.size());
+  made_head.division = by_roots ? std::make_shared<HeadDivision>(
+                                      roots, cost.empty() ? std::span(equal) : cost,
+                                      ranks.size(), ranks.rank())
+                                : std::make_shared<HeadDivision>(series.size());
   const HeadDivision& division = *made_head.division;
   const std::size_t own = division.own().size();
   if (const Parameters* between = scene.interaction()) {
