@@ -228,6 +228,11 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
     throw InputError("a device steps heads of hair only, and this runs strand by strand",
                      file, "give --as head, or --device cpu");
   }
+  if (!job.head && a.bits != 64) {
+    throw InputError("32 bits are for heads of hair, and this runs strand by strand" +
+                         (no ? ": " + no->reason : std::string()),
+                     file, no ? no->remedy : "give --as head, or --bits 64");
+  }
   if (!job.head && ranks.size() > 1) {
     throw InputError("strands that run one by one are not shared by ranks", file,
                      "leave out mpirun, or give --as head");

@@ -950,6 +950,22 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"ManyElements", {.count = 1000000, .elements = 50}, "", "strands"}),
     [](const auto& of) { return of.param.name; });
 
+// Nothing runs in more bits than were asked for without a word.
+TEST(HeadOfHair, StrandsOneByOneAreRefusedIn32Bits) {
+  Toy toy;
+  toy.write("head.toml", text({.count = 3}));
+  const Toy::Result few = toy.run("head.toml --bits 32 --out out");
+  EXPECT_EQ(few.code, 2);
+  EXPECT_THAT(few.err, HasSubstr("give --as head"));
+  toy.write("head.toml", text({.count = 1000,
+                               .model = "id = \"super_helix\"\n",
+                               .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n"}));
+  const Toy::Result unresolved = toy.run("head.toml --bits 32 --out out");
+  EXPECT_EQ(unresolved.code, 2);
+  EXPECT_THAT(unresolved.err, HasSubstr("tolerance = 0.001 in 32 bits"));
+  EXPECT_EQ(toy.files(), std::vector<std::string>{"head.toml"});
+}
+
 TEST(HeadOfHair, MoreThanTheMemoryIsRefusedBeforeItIsBuilt) {
   Toy toy;
   toy.write("head.toml", text({.count = 1000000, .elements = 20}));
