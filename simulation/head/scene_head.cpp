@@ -103,7 +103,7 @@ Extent extent_of(const Strands& series, const HeadOptions& options, Crew& crew,
   std::vector<Extent> extents(parts);
   in_parts(crew, first(rank), first(rank + 1), parts,
            [&](std::size_t k, std::size_t part) {
-             const Strand strand = series.strand(k);
+             const Strand& strand = series.strand(k);
              extents[part].include(strand, options);
              if (!roots.empty()) roots[k] = strand.root.position;
            });

@@ -1017,7 +1017,7 @@ TEST(Hdf5, KeepsNumbersAndGrows) {
   EXPECT_EQ(x, second);
   EXPECT_FALSE(file.has("b"));
   try {
-    Hdf5File(path(toy, "none.h5"), Hdf5File::Mode::read);
+    const Hdf5File none(path(toy, "none.h5"), Hdf5File::Mode::read);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("none.h5"));

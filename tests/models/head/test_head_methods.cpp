@@ -26,7 +26,6 @@ using testing_support::HairModel;
 using testing_support::head;
 using testing_support::HeadMaker;
 using testing_support::left_by_newton;
-using testing_support::options;
 using testing_support::packs_of;
 using testing_support::refusal;
 using testing_support::rod;
@@ -34,7 +33,6 @@ using testing_support::rod_options;
 using testing_support::RodCase;
 using testing_support::rods;
 using testing_support::spring_masses;
-using testing_support::strand;
 
 /// Points of all strands.
 std::vector<double> points(const Head& all, double t) {

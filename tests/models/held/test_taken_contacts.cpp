@@ -58,8 +58,8 @@ class TakenContactsOn : public testing::TestWithParam<std::string> {
 
   std::vector<double> random(const std::vector<double>& size) {
     std::uniform_real_distribution<double> any(-1, 1);
-    std::vector<double> x;
-    for (const double s : size) x.push_back(s * any(engine_));
+    std::vector<double> x = size;
+    for (double& entry : x) entry *= any(engine_);
     return x;
   }
   std::vector<double> random(double size) {

@@ -5,6 +5,7 @@
 
 #include "integrators/catalogue.h"
 #include "models/reduced/free_root.h"
+#include "simulation/run/simulation.h"
 #include "tests/support/tangent.h"
 
 namespace tress::test_free_root {
