@@ -225,8 +225,9 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
       contracted_ = previous;
     }
     if (correction <= tolerance_) return Status::ok;
-    const bool same = !foreseen || contacts_->cases(t, q_, v_) == cases;
-    if (error_left <= remaining_ && same) return Status::ok;
+    if (error_left <= remaining_ && (!foreseen || contacts_->cases(t, q_, v_) == cases)) {
+      return Status::ok;
+    }
     if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
     const bool slow = i > 0 && (rate >= 1 || std::log(remaining_ / correction) <

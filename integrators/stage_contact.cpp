@@ -135,7 +135,7 @@ Status Stage::iterate_with_forces(double t, In q_bar, In v_bar, Weights w, InOut
     if (s != Status::ok) return s;
     if (i == 0) first = size;
     if (size > most_growing * first) return Status::retry;
-    for (std::size_t k = 0; k < count; ++k) force_step_[k] = force_kept_[k] - force_[k];
+    shifted(force_step_, force_kept_, -1, force_);
     std::ranges::copy(a, a_kept_.begin());
     std::ranges::copy(lambda, lambda_kept_.begin());
     const bool rounding = size <= rounding_ && size >= before / 2;
@@ -166,7 +166,7 @@ Status Stage::find_compliance(double t, Weights w, In a, In lambda,
     force_[k] = 0;
     s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
     if (s != Status::ok) break;
-    for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = r_free_[i] - r_[i];
+    shifted(r_, r_free_, -1, r_);
     std::ranges::fill(c_, 0.0);
     s = dynamics_.solve(r_, c_);
     for (double& entry : r_) entry *= w.vel;

@@ -5,15 +5,13 @@
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"
 #include "tests/models/head/der_strands.h"
+#include "tests/models/head/kernel_strand.h"
 #include "tests/support/apart.h"
 
 namespace tress::test_der_strand {
 
 using namespace models;
 using namespace testing_support;
-
-// Of no head: functions of theirs must not come from here, where optimisation is another.
-using One = PackOf<double, 2>;
 
 /// A strand in SI units, and a state of it that has nothing special: bent, twisted,
 /// stretched and moving.
@@ -53,21 +51,9 @@ struct Rod {
   Vec root;
 };
 
-struct State {
-  std::vector<double> q, v, a;  // of the System
-};
-State state(System& system, double seed, const Rod* unstretched) {
-  const auto size = static_cast<std::size_t>(system.layout().coordinates);
-  State s{std::vector<double>(size), std::vector<double>(size),
-          std::vector<double>(size)};
-  system.initial_state(s.q, s.v);
-  const std::size_t nodes = size / 4 * 3;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double x = std::sin(seed + 1.7 * static_cast<double>(i * i % 23));
-    s.q[i] += (i < nodes ? 2e-3 : 0.4) * x;
-    s.v[i] += (i < nodes ? 0.3 : 8.0) * std::cos(3 * x + 1);
-    s.a[i] += (i < nodes ? 5.0 : 90.0) * std::sin(5 * x + 2);
-  }
+BentState state(System& system, double seed, const Rod* unstretched) {
+  const std::size_t nodes = static_cast<std::size_t>(system.layout().coordinates) / 4 * 3;
+  BentState s = bent_state(system, seed, nodes);
   if (unstretched == nullptr) return s;
   const std::vector<double> edges = as_edges(s.q, unstretched->root);
   Vec x = unstretched->root;
@@ -79,16 +65,9 @@ State state(System& system, double seed, const Rod* unstretched) {
   return s;
 }
 
-std::vector<One> packed(const std::vector<double>& x) { return {x.begin(), x.end()}; }
-std::vector<double> plain(const std::vector<One>& x) {
-  std::vector<double> all;
-  for (const One& y : x) all.push_back(y[0]);
-  return all;
-}
-
 /// S^-1 r of the System at r(`at`), S(`linear`), in the head's coordinates.
-std::vector<double> wanted(System& system, Weights w, const State& linear,
-                           const State& at) {
+std::vector<double> wanted(System& system, Weights w, const BentState& linear,
+                           const BentState& at) {
   std::vector<double> r(at.q.size()), x(r.size());
   EXPECT_EQ(system.linearize(Rod::t, linear.q, linear.v, linear.a, w), Status::ok);
   EXPECT_EQ(system.residual(Rod::t, at.q, at.v, at.a, r), Status::ok);
@@ -101,14 +80,14 @@ template <bool exact>
 void compare(const RodCase& c, double h, bool unstretched, double off) {
   const Rod rod(c);
   const auto system = rod_alone(c, 3, exact ? "exact" : "stiff");
-  const State first = state(*system, 0, unstretched ? &rod : nullptr),
-              second = state(*system, 1, unstretched ? &rod : nullptr);
+  const BentState first = state(*system, 0, unstretched ? &rod : nullptr),
+                  second = state(*system, 1, unstretched ? &rod : nullptr);
   const Weights w{1, h, h * h};
   const DerStrand<One, exact> kernel(c.elements, Vec3<One>(rod_options(c).gravity));
   std::vector<typename DerStrand<One, exact>::Placed> placed(rod.n()), now(rod.n());
   std::vector<typename DerStrand<One, exact>::Factor> factors(rod.n());
   std::vector<One> correction(4 * rod.n());
-  const auto of = [&](const State& s) {
+  const auto of = [&](const BentState& s) {
     return std::array{packed(as_edges(s.q, rod.root)), packed(as_edges(s.v, {})),
                       packed(as_edges(s.a, {}))};
   };

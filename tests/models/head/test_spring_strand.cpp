@@ -4,6 +4,7 @@
 
 #include "models/head/maximal/spring_strand.h"
 #include "models/maximal/nodal_strand.h"
+#include "tests/models/head/kernel_strand.h"
 #include "tests/models/head/spring_strands.h"
 
 namespace tress::test_spring_strand {
@@ -11,8 +12,6 @@ namespace tress::test_spring_strand {
 using namespace models;
 using namespace testing_support;
 
-// Of no head: functions of theirs must not come from here, where optimisation is another.
-using One = PackOf<double, 2>;
 using Kernel = SpringStrand<One, true>;
 
 constexpr double t = 0.07;
@@ -54,25 +53,9 @@ struct Springs {
   Vec root;
 };
 
-/// A state that has nothing special: bent, stretched and moving.
-struct State {
-  std::vector<double> q, v, a;  // of the System
-};
-State state(System& system, double seed) {
-  const auto size = static_cast<std::size_t>(system.layout().coordinates);
-  State s{std::vector<double>(size), std::vector<double>(size),
-          std::vector<double>(size)};
-  system.initial_state(s.q, s.v);
-  for (std::size_t i = 0; i < size; ++i) {
-    const double x = std::sin(seed + 1.7 * static_cast<double>(i * i % 23));
-    s.q[i] += 2e-3 * x;
-    s.v[i] += 0.3 * std::cos(3 * x + 1);
-    s.a[i] += 5 * std::sin(5 * x + 2);
-  }
-  return s;
+BentState state(System& system, double seed) {
+  return bent_state(system, seed, static_cast<std::size_t>(system.layout().coordinates));
 }
-
-std::vector<One> packed(const std::vector<double>& x) { return {x.begin(), x.end()}; }
 
 /// Corrections of the kernel, one after the other.
 class Corrections {
@@ -88,28 +71,24 @@ class Corrections {
         correction_(3 * placed_.size()) {}
 
   /// Stresses from there.
-  void hold(const State& s) {
+  void hold(const BentState& s) {
     kernel_.take_tensions(springs_.m, edges(s.q).data(), One(1), tensions_.data());
   }
-  double newton(const State& s) {
+  double newton(const BentState& s) {
     const auto q = edges(s.q), v = packed(spring_edges(s.v, {})),
                a = packed(spring_edges(s.a, {}));
     return kernel_.newton(springs_.m, springs_.edges.data(), springs_.clamp, w_, q.data(),
                           v.data(), a.data(), nullptr, correction_.data(), placed_.data(),
                           factors_.data(), tensions_.data())[0];
   }
-  double again(const State& s) {
+  double again(const BentState& s) {
     const auto q = edges(s.q), v = packed(spring_edges(s.v, {})),
                a = packed(spring_edges(s.a, {}));
     return kernel_.again(springs_.m, springs_.edges.data(), springs_.clamp, w_, q.data(),
                          v.data(), a.data(), nullptr, correction_.data(), placed_.data(),
                          factors_.data(), now_.data())[0];
   }
-  std::vector<double> correction() const {
-    std::vector<double> all;
-    for (const One& x : correction_) all.push_back(x[0]);
-    return all;
-  }
+  std::vector<double> correction() const { return plain(correction_); }
 
  private:
   std::vector<One> edges(const std::vector<double>& q) const {
@@ -125,8 +104,8 @@ class Corrections {
 };
 
 /// S^-1 r of the System at r(`at`), S(`linear`): of its nodes.
-std::vector<double> wanted(System& system, Weights w, const State& linear,
-                           const State& at) {
+std::vector<double> wanted(System& system, Weights w, const BentState& linear,
+                           const BentState& at) {
   std::vector<double> r(at.q.size()), x(r.size());
   EXPECT_EQ(system.linearize(t, linear.q, linear.v, linear.a, w), Status::ok);
   EXPECT_EQ(system.residual(t, at.q, at.v, at.a, r), Status::ok);
@@ -145,7 +124,7 @@ TEST_P(SpringStrands, TakeTheStepOfTheSystem) {
   const Springs springs(c);
   const auto system = spring_alone(rod(c, which), rod_options(c), newton);
   StressForm& stresses = *system->stress_form();
-  const State first = state(*system, 0), second = state(*system, 1);
+  const BentState first = state(*system, 0), second = state(*system, 1);
   for (const double h : {1e-4, 1e-3, 1e-2}) {
     SCOPED_TRACE(h);
     const Weights w{1, h, h * h};
@@ -171,7 +150,7 @@ TEST_P(SpringStrands, TakeTheStepOfTheSystem) {
     stresses.take_stresses(t, second.q, StressForm::Stresses::held);
     std::vector<double> change = wanted(*system, w, first, first);
     check(change, held);
-    State third = first;
+    BentState third = first;
     for (std::size_t i = 0; i < change.size(); ++i) {
       third.q[i] -= w.pos * change[i];
       third.v[i] -= w.vel * change[i];
