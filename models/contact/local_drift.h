@@ -15,10 +15,17 @@ namespace tress::models {
 
 /// How differently what is near a place has moved in one step: hair far away that moves
 /// fast is of no account to lists of what is nearby. A uniform grid; each cell knows a
-/// box that holds the displacements of all segments in it and in the cells beside it.
-/// Memory is O(cells), of which there are less than segments; a step is O(segments).
+/// ball that holds the displacements of all segments in it and in the cells beside it.
+/// Memory is O(segments): of cells where nothing is, a number each. A step is
+/// O(segments).
 class LocalDrift {
  public:
+  /// Displacements, m; radius < 0: of nothing.
+  struct Spread {
+    Vec middle;
+    double radius;
+  };
+
   /// Segments as they lie at x. A place is told of all parts of segments whose middles
   /// are no farther from it than `sight` (m) along each axis; not of long segments.
   void fill(const SegmentCells& segments, In x, double sight, const Loop& loop);
@@ -26,23 +33,39 @@ class LocalDrift {
   /// does not depend on who runs the loop's parts.
   void move(const SegmentCells& segments, std::span<const Vec> by, const Loop& loop);
 
-  /// Of the step; least > most where nothing is near.
-  const Box& near(int cell) const { return near_[static_cast<std::size_t>(cell)]; }
+  /// Of the step.
+  const Spread& near(int cell) const {
+    const int one = number_[static_cast<std::size_t>(cell)];
+    return one < 0 ? nothing : near_[static_cast<std::size_t>(one)];
+  }
   /// The cell of each lane's place at the time of fill(); of places that are not finite
   /// some cell.
   template <class P>
   std::array<int, lanes<P>> cells(const Vec3<P>& at) const noexcept;
-  /// Half the diagonal of that box, mean over all segments, m.
+  /// The radius, mean over all segments, m.
   double mean() const { return mean_; }
 
+  std::size_t bytes() const;
+
  private:
+  static constexpr Spread nothing{{}, -1};
+
+  void number_cells();
+  /// From a cell to the next along an axis; 3: of all cells.
+  std::size_t stride(int axis) const;
+  template <class Use>
+  void each_beside(std::size_t cell, int axis, const Use& use) const;
+
   double inverse_side_ = 1;
   Vec corner_;
   int count_[3] = {1, 1, 1};
-  std::vector<int> cell_of_;    // of parts of segments
-  std::vector<int> parts_;      // in each cell
-  std::vector<Box> own_;        // of cells, by pieces of work
-  std::vector<Box> near_, at_;  // of cells, and when extended along some axes
+  // Of cells: which it is of those with something in it or beside it, or -1.
+  std::vector<int> number_;
+  // Of these.
+  std::vector<int> cell_, parts_;
+  std::vector<Box> own_;  // by pieces of work
+  std::vector<Spread> near_;
+  std::vector<int> of_part_;  // the same, of parts of segments
   double mean_ = 0;
 };
 

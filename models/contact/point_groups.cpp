@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -71,11 +72,30 @@ void sort(std::vector<int>& numbers) {
   }
 }
 
-/// What a search needs for a moment. Of threads: each strand would keep the room of the
-/// largest search that it has ever made.
+/// What a search needs for a moment: of a thread, as it is more than strands keep.
 struct Search {
   std::vector<int> found;
   std::vector<SegmentRun> runs;
+  std::vector<std::uint64_t> seen;  // a bit for each segment, 0 between searches
+
+  /// Drops what was found before, of segments below `end`.
+  void leave_once(std::size_t end) {
+    constexpr std::size_t bits = 64;
+    seen.resize(std::max(seen.size(), end / bits + 1));
+    const auto word = [&](int i) -> std::uint64_t& {
+      return seen[static_cast<std::size_t>(i) / bits];
+    };
+    std::size_t count = 0;
+    for (const int i : found) {
+      const std::uint64_t bit = std::uint64_t{1} << (static_cast<std::size_t>(i) % bits);
+      std::uint64_t& marks = word(i);
+      found[count] = i;
+      count += (marks & bit) == 0 ? 1 : 0;
+      marks |= bit;
+    }
+    found.resize(count);
+    for (const int i : found) word(i) = 0;
+  }
 };
 thread_local Search search_of_thread;
 
@@ -116,42 +136,33 @@ void PointGroups::ready(In x, In length) {
 bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const long updates = partners_->updates() - group.update;
   if (group.lists != partners_->lists() || updates > 1) return false;
-  GroupVectors moved;
-  alignas(GroupNumbers) std::array<int, eight> cells;
+  double most = 0;
   by_packs(instructions_, [&]<class P>(std::size_t from, const P&) {
     const Vec3<P> now = load<P>(x, from),
                   before = updates == 1 ? partners_->before(now) : now;
-    store(before - load<P>(group.x, from), from, moved);
-    const auto of_lanes = partners_->cells(partners_->at_epoch(now));
-    std::ranges::copy(of_lanes, cells.begin() + from);
-  });
-  std::array<bool, eight> there;
-  for (std::size_t lane = 0; lane < eight; ++lane) {
-    there[lane] = is_finite(lane_of(x, lane));
-  }
-  Box drift{{0, 0, 0}, {0, 0, 0}};
-  if (updates == 1) {
-    drift = Box::none();
-    int last = -1;
-    for (std::size_t lane = 0; lane < eight; ++lane) {
-      if (!there[lane] || cells[lane] == last) continue;
-      last = cells[lane];
-      drift.include(partners_->drift(last));
+    Vec3<P> off = before - load<P>(group.x, from);
+    P spread(0);
+    if (updates == 1) {
+      const auto cells = partners_->cells(partners_->at_epoch(now));
+      Vec3<P> middle;
+      for (int lane = 0; lane < lanes<P>; ++lane) {
+        const LocalDrift::Spread& near =
+            partners_->drift(cells[static_cast<std::size_t>(lane)]);
+        set_lane(middle, lane, near.middle);
+        spread.set(lane, near.radius);
+      }
+      off = off - middle;
     }
-    if (drift.empty()) return true;  // nothing is near
-  }
-  const Vec middle = 0.5 * (drift.least + drift.most);
-  double most = 0;
-  for (std::size_t lane = 0; lane < eight; ++lane) {
-    const Vec off = lane_of(moved, lane) - middle;
-    const double square = dot(off, off);
-    if (there[lane] && !(square <= most)) most = square;
-  }
-  group.used += 0.5 * norm(drift.most - drift.least);
-  const double left = group.room - partners_->range() - group.used;
-  if (!(left >= 0) || !(most <= left * left)) return false;
-  group.used += std::sqrt(most);
-  return true;
+    const P nearer = where_less(spread, P(0), P(0), square_root(square_of(off)) + spread);
+    for (int lane = 0; lane < lanes<P>; ++lane) {
+      if (!is_finite(lane_of(now, lane))) continue;
+      // What had no place before may be anywhere.
+      const double by = nearer[lane];
+      most = std::max(most, is_finite(by) ? by : std::numeric_limits<double>::infinity());
+    }
+  });
+  group.used += most;
+  return group.used <= group.room - partners_->range();
 }
 
 void PointGroups::list(Group& group) {
@@ -161,21 +172,17 @@ void PointGroups::list(Group& group) {
   group.room = partners_->margin() + partners_->range();
   group.list.clear();
   const double wide = (partners_->reach() + group.room) * rounding;
-  Box box = Box::none();
-  for (std::size_t lane = 0; lane < eight; ++lane) {
-    const Vec at = partners_->at_epoch(lane_of(group.x, lane));
-    if (is_finite(at)) box.include(at);
-  }
-  if (box.empty()) return;
-  box.grow(wide + partners_->moved());
   const SegmentCells& segments = partners_->segments();
-  auto& [found, runs] = search_of_thread;
-  segments.reaching_into(box, found);
+  Search& of_thread = search_of_thread;
+  std::vector<int>& found = of_thread.found;
+  search(group, wide + partners_->moved(), found);
+  if (segments.divided()) of_thread.leave_once(segments.points());
   keep_near(group, wide, found);
   for (const int i : segments.long_segments()) {
     if (segments.polyline(i) != strand_) found.push_back(i);
   }
   sort(found);
+  std::vector<SegmentRun>& runs = of_thread.runs;
   runs.clear();
   for (const int i : found) {
     if (!runs.empty()) {
@@ -191,6 +198,31 @@ void PointGroups::list(Group& group) {
     runs.push_back({i, 1, 1});
   }
   group.list = runs;
+}
+
+/// Sets `found` to what may come within the distance of a point, and some more. Points
+/// lie apart where segments are much longer than the reach; else most of what is found
+/// for one would be found for the next.
+void PointGroups::search(const Group& group, double distance,
+                         std::vector<int>& found) const {
+  const SegmentCells& segments = partners_->segments();
+  found.clear();
+  const auto look = [&](Box box) {
+    if (box.empty()) return;
+    box.grow(distance);
+    segments.reaching_into(box, found);
+  };
+  Box all = Box::none();
+  for (std::size_t lane = 0; lane < eight; ++lane) {
+    const Vec at = partners_->at_epoch(lane_of(group.x, lane));
+    if (!is_finite(at)) continue;
+    if (segments.divided()) {
+      look({at, at});
+    } else {
+      all.include(at);
+    }
+  }
+  look(all);
 }
 
 /// Drops what is farther from all points than that, and the own strand.

@@ -44,6 +44,7 @@ class PointGroups {
 
   bool holds(Group& group, const GroupVectors& x) const;
   void list(Group& group);
+  void search(const Group& group, double distance, std::vector<int>& found) const;
   void keep_near(const Group& group, double distance, std::vector<int>& found) const;
 
   const StrandPartners* partners_;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,7 +33,8 @@ inline void in_parts(std::size_t count, const Loop& loop,
 /// search compares the boxes of few runs of consecutive ones. What lies outside the grid,
 /// which spans where most points are, lies in the cells of its border. Long segments,
 /// such as those of a run that fails, are candidates of every search. Memory and filling
-/// are O(segments), some 100 bytes a segment; a search is O(parts nearby).
+/// are O(segments), up to 500 bytes a segment where the reach is short; a search is
+/// O(parts nearby).
 class SegmentCells {
  public:
   /// points[k] >= 2: number of points of polyline k.
@@ -55,8 +58,8 @@ class SegmentCells {
   /// `radius` of the piece, and some others; ascending, each once.
   void near(const StraightPiece& piece, double radius, int but,
             std::vector<int>& found) const;
-  /// Sets `found` to every segment that reaches into the box, and some others, own ones
-  /// too, in some order, some more than once; but no long ones.
+  /// Appends to `found` every segment that reaches into the box, and some others, own
+  /// ones too, in some order, some more than once; but no long ones.
   void reaching_into(const Box& box, std::vector<int>& found) const;
   /// Ascending.
   std::span<const int> long_segments() const { return long_; }
@@ -69,6 +72,10 @@ class SegmentCells {
   }
   std::size_t parts() const { return static_cast<std::size_t>(part_.back()); }
   double longest_part() const { return longest_; }  // m
+  /// Whether usual segments lie in several.
+  bool divided() const { return divided_; }
+  /// Of segments usually as long as that, in searches of about `reach` (m).
+  static double longest_part(double usual, double reach);
   /// Calls act(part, middle) at x, the places of fill().
   template <class F>
   void each_part(std::size_t segment, In x, F act) const {
@@ -86,15 +93,22 @@ class SegmentCells {
   std::size_t bytes() const;
 
  private:
-  struct Range {
-    int from, to;
-  };
-  Range cells(int axis, double from, double to) const noexcept;
+  using Numbers = std::array<int, 4>;  // along each axis, and one for nothing
+  Numbers cell(const Vec& place) const noexcept;
   std::size_t row(int y, int z) const noexcept {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
             static_cast<std::size_t>(y)) *
            static_cast<std::size_t>(count_[0]);
   }
+  /// Of a place, some 2^16 across the grid along each axis: no fewer than those of places
+  /// before it.
+  Numbers steps(const Vec& place) const noexcept;
+  /// With the box about it in steps: least, and most negated.
+  struct alignas(16) Part {
+    std::array<std::int16_t, 6> box;
+    int segment;
+  };
+  Part part(In x, std::size_t segment, double from, double to) const noexcept;
   void choose_parts(In x, double reach);
   void choose_cells(In x, std::size_t parts);
   int number_of_parts(int segment, In x) const noexcept;
@@ -103,15 +117,15 @@ class SegmentCells {
   std::vector<int> polyline_;  // of each point
   std::vector<int> first_;     // point of each polyline, and the number of all
   double longest_ = 1;         // part, m
-  double cell_ = 1, inverse_cell_ = 1;
+  bool divided_ = false;
+  double cell_ = 1, inverse_cell_ = 1, steps_[3] = {1, 1, 1};  // a metre
   Vec corner_;
   int count_[3] = {1, 1, 1};
   // Parts of segment i are [part_[i], part_[i + 1]), none if it is long; their cells.
   std::vector<int> part_, cell_of_;
-  // Sorted by cells, those of cell c are [start_[c], start_[c + 1]): segments, and boxes
-  // about their parts.
-  std::vector<int> start_, segment_;
-  std::vector<float> least_[3], most_[3];
+  // Sorted by cells, those of cell c are [start_[c], start_[c + 1]).
+  std::vector<int> start_;
+  std::vector<Part> parts_;
   std::vector<int> long_;
 };
 

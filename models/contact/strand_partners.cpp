@@ -147,7 +147,10 @@ double StrandPartners::best_margin() const {
   const double target = making_over_using * drift_.mean() / reach_;
   double share = std::sqrt(target);
   for (int k = 0; k < 4; ++k) share = std::sqrt(target / (1 + share));
-  return (share < most_margin ? std::max(share, least_margin) : most_margin) * reach_;
+  share = std::min(share, most_margin);
+  // One that does not hold for a step helps nothing.
+  if (drift_.mean() > share * reach_) share = least_margin;
+  return std::max(share, least_margin) * reach_;
 }
 
 std::size_t StrandPartners::bytes() const {
@@ -155,6 +158,14 @@ std::size_t StrandPartners::bytes() const {
          (v_.capacity() + before_.capacity() + moves_.capacity() + roots_.capacity() +
           roots_before_.capacity()) *
              sizeof(Vec);
+}
+
+std::size_t StrandPartners::bytes_of_point(double segment, double reach) {
+  // Of a part: itself, its cells, and two numbers of them.
+  constexpr double point_and_lists = 500, part = 32;
+  const double longest = SegmentCells::longest_part(segment, (1 + first_margin) * reach);
+  return static_cast<std::size_t>(point_and_lists +
+                                  part * std::max(1.0, segment / longest));
 }
 
 }  // namespace tress::models

@@ -47,8 +47,8 @@ class StrandPartners {
     return step_.back(x);
   }
   /// Holds the last displacements x - before of all that may have come within a list's
-  /// distance of a place in the cell, but for long segments; least > most if nothing has.
-  const Box& drift(int cell) const { return drift_.near(cell); }
+  /// distance of a place in the cell, but for long segments.
+  const LocalDrift::Spread& drift(int cell) const { return drift_.near(cell); }
   /// Of each lane; `at_epoch`: of the place at the last update. Places that are not
   /// finite have some cell.
   template <class P>
@@ -100,6 +100,9 @@ class StrandPartners {
   }
 
   std::size_t bytes() const;
+  /// With what PointGroups keep, for each point of hair as dense as that of a head, of
+  /// segments of that length (m): an estimate.
+  static std::size_t bytes_of_point(double segment, double reach);
 
  private:
   void move(double range, In x, In v, const Loop& loop);

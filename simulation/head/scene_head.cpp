@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/contact/contact_law.h"
+#include "models/contact/strand_partners.h"
 #include "models/reduced/reduced_strand.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/threads/crew.h"
@@ -221,11 +223,13 @@ std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
   for (std::size_t k = 0; k < lanes; ++k) block->add(outline.scene.strands.front());
   const std::size_t blocks = (strands + lanes - 1) / lanes;
   std::size_t bytes = block->bytes() * blocks;
-  if (outline.scene.interaction() != nullptr) {
-    // Places and velocities of the points, and what StrandPartners keeps of them with as
-    // many candidates as hairs of a dense head have.
-    constexpr std::size_t kept_of_point = 500;
-    bytes += strands * (16 * block->numbers() + kept_of_point * block->numbers() / 3);
+  if (const Parameters* between = outline.scene.interaction()) {
+    const models::ContactLaw law(*between, outline.scene.name);
+    const auto& segments = outline.scene.strands.front().segments;
+    const std::size_t of_point =
+        models::StrandPartners::bytes_of_point(segments.front().length, law.reach());
+    // Places and velocities of the points, and what others keep of them.
+    bytes += strands * (16 * block->numbers() + of_point * block->numbers() / 3);
   }
   return bytes;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "models/contact/local_drift.h"
@@ -53,8 +54,11 @@ TEST(SegmentCells, MissNoSegmentDenseSparseStrayAndLong) {
     for (std::size_t i = 0; i < 27; ++i) strands.x[i] += 1e3;
     strands.x[3 * 17] += 30;
     SegmentCells cells(strands.points);
-    for (const double radius : {2e-3, 9e-3, 0.05}) {
-      cells.fill(strands.x, 9e-3, in_turn);
+    // Segments of 10 mm lie in cells as a whole, and in many parts.
+    for (const auto& [reach, radius] : std::vector<std::pair<double, double>>{
+             {9e-3, 2e-3}, {9e-3, 9e-3}, {9e-3, 0.05}, {4e-4, 4e-4}, {4e-4, 9e-3}}) {
+      cells.fill(strands.x, reach, in_turn);
+      EXPECT_EQ(cells.parts() > 5 * cells.points(), reach < 1e-3);
       for (int i = 0; i < static_cast<int>(cells.points()); ++i) {
         if (cells.last(i)) continue;
         close +=
@@ -81,7 +85,8 @@ TEST(SegmentCells, FindFewHoweverManyThereAre) {
     // Boxes of side 18 mm and half a segment in place of cylinders: less than four times.
     EXPECT_GT(close, 5 * strands);
     EXPECT_LT(found, 4 * close);
-    // A segment has 28 bytes, its cells at most 2 x 4, itself as a point 16.
+    // A part has 20 bytes, its cells at most 2 x 4, a segment one or two parts, itself as
+    // a point 8.
     EXPECT_LT(cells.bytes(), 160 * cells.points() + 4096);
   }
 }
@@ -132,14 +137,14 @@ TEST(LocalDrift, HoldsWhatMovesNearAPlaceAndLessThanAll) {
   }
   by[5].x = std::nan("");
   drift.move(cells, by, in_turn);
-  const auto inside = [](const Box& box, const Vec& x) {
-    return !(x.x < box.least.x || x.y < box.least.y || x.z < box.least.z ||
-             x.x > box.most.x || x.y > box.most.y || x.z > box.most.z);
+  // Rounding of displacements of a millimetre.
+  const auto inside = [](const LocalDrift::Spread& all, const Vec& x) {
+    return norm(x - all.middle) <= all.radius + 1e-18;
   };
   long near = 0, out = 0;
   for (std::size_t at = 0; at < by.size(); at += 40) {
     const Vec place = load3(&strands.x[3 * at]);
-    const Box& box = drift.near(drift.cells(Vec3<Pack>(place))[0]);
+    const LocalDrift::Spread& all = drift.near(drift.cells(Vec3<Pack>(place))[0]);
     for (std::size_t i = 0; i < by.size(); ++i) {
       if (cells.last(static_cast<int>(i)) || !is_finite(by[i]) || !is_finite(by[i + 1])) {
         continue;
@@ -149,8 +154,8 @@ TEST(LocalDrift, HoldsWhatMovesNearAPlaceAndLessThanAll) {
         const bool within =
             std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) < sight;
         near += within ? 1 : 0;
-        EXPECT_TRUE(!within || (inside(box, by[i]) && inside(box, by[i + 1])));
-        out += inside(box, by[i]) ? 0 : 1;
+        EXPECT_TRUE(!within || (inside(all, by[i]) && inside(all, by[i + 1])));
+        out += inside(all, by[i]) ? 0 : 1;
       });
     }
   }
