@@ -15,6 +15,7 @@
 #include "experiments/simulate/head_recording.h"
 #include "experiments/simulate/head_series.h"
 #include "experiments/simulate/lost_strands.h"
+#include "experiments/simulate/save_clock.h"
 #include "experiments/simulate/stop_request.h"
 #include "experiments/simulate/time_bar.h"
 #include "simulation/head/head_balance.h"
@@ -179,7 +180,8 @@ class HeadSceneRun {
     } at_the_end{stop};
     const auto between_saves =
         static_cast<std::size_t>(std::round(scene_.checkpoint * scene_.frame_rate));
-    TimeBar bar(options_.progress, scene_);
+    TimeBar bar(options_.progress, scene_, frames_ > 0 ? scene_.time_of(frames_ - 1) : 0);
+    SaveClock clock(options_.save_every);
     if (frames_ == 0) add_frame(0, outcome);
     std::size_t step = step_;
     const std::size_t last = scene_.last_frame();
@@ -189,8 +191,13 @@ class HeadSceneRun {
       step = 0;
       add_frame(scene_.time_of(frame), outcome);
       bar.show(scene_.time_of(frame));
-      if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
+      if (frame == last) continue;
+      // Of the ranks' clocks none is the others'.
+      const bool by_clock = between_saves == 0 && ranks_.largest(clock.due() ? 1 : 0) > 0;
+      if (!by_clock && (between_saves == 0 || frame % between_saves != 0)) continue;
       outcome.write_s += seconds_of([&] { save_state(0); });
+      clock.saved();
+      if (by_clock) continue;
       outcome.build_s += seconds_of([&] {
         auto anew = balanced(*run_, outline_, options_.pack, options_.threads, build_s_,
                              reading_->at_once());

@@ -38,6 +38,7 @@ struct Arguments {
   std::string out = "results/scenes";
   int threads = 1;
   std::size_t hairs = 0;
+  double save_every = 60;
   bool resume = false, vtk = false, usd = false, hair = false, print_defaults = false,
        print_schema = false, no_guard = false, verify = false, quick = false,
        full = false, error_bars = false;
@@ -94,6 +95,11 @@ void declare(CLI::App& app, Arguments& a) {
                  "bits of a coordinate in a head's .h5: 32, 64, or none (default 32)")
       ->check(CLI::IsMember({"32", "64", "none"}));
   app.add_flag("--resume", a.resume, "continue an interrupted run");
+  app.add_option(
+         "--save-every", a.save_every,
+         "seconds of the clock after which a scene without checkpoint_s saves its "
+         "state (default 60)")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--no-guard", a.no_guard,
                "go on where a run does what physics rules out (as guard = false)");
   app.add_flag("--error-bars", a.error_bars,
@@ -266,6 +272,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   options.stem = a.out + "/" + scene.name;
   options.threads = a.threads;
   options.resume = a.resume;
+  options.save_every = a.save_every;
   options.hairs = a.hairs;
   const auto exports = [&a](bool flag, std::string_view name) {
     return flag || std::ranges::count(a.exports, name) > 0;

@@ -7,6 +7,7 @@
 #include "contract/input_error.h"
 #include "experiments/simulate/held_report.h"
 #include "experiments/simulate/pictures.h"
+#include "experiments/simulate/save_clock.h"
 #include "experiments/simulate/time_bar.h"
 #include "simulation/export/recording.h"
 
@@ -53,11 +54,16 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   const Interruption::Save save(interruption, [&] {
     if (latest) recording.save(*latest);
   });
+  SaveClock clock(options.save_every);
   const auto add_frame = [&] {
     Frame3d frame = readout.read(*world);
     const auto whole = interruption.hold();
     recording.add(std::move(frame));
-    if (between_saves == 0) latest = world->snapshot();
+    if (between_saves > 0) return;
+    latest = world->snapshot();
+    if (!clock.due()) return;
+    recording.save(*latest);
+    clock.saved();
   };
   if (recording.saved()) {
     restore(*world, *recording.saved());
@@ -68,7 +74,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
 
   SceneRun run{SceneRun::End::complete, {}, 0, 0, 0, 0};
   const std::size_t last = scene.last_frame();
-  TimeBar bar(options.progress, scene);
+  TimeBar bar(options.progress, scene, world->time());
   while (recording.frames().size() <= last) {
     const std::size_t frame = recording.frames().size();
     if (world->advance(scene.time_of(frame)) != Status::ok) {

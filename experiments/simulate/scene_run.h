@@ -27,11 +27,12 @@ struct SceneRunOptions {
   std::string stem;  // of all files: <stem>.csv, <stem>.json ...
   int threads = 1;
   bool resume = false;
-  std::size_t hairs = 0;  // drawn between the strands, in .json and .usda
-  bool vtk = false;       // <stem>_vtk/: .vtp for every frame and .pvd
-  bool usd = false;       // <stem>.usda
-  bool hair = false;      // <stem>_hair/: .hair for every frame
-  bool gltf = false;      // <stem>.glb
+  double save_every = 60;  // s of the clock, without checkpoint_s
+  std::size_t hairs = 0;   // drawn between the strands, in .json and .usda
+  bool vtk = false;        // <stem>_vtk/: .vtp for every frame and .pvd
+  bool usd = false;        // <stem>.usda
+  bool hair = false;       // <stem>_hair/: .hair for every frame
+  bool gltf = false;       // <stem>.glb
   ProgressMode progress = ProgressMode::automatic;
   /// Asked once the run has come to its end, before pictures are written.
   std::function<std::vector<FurtherChannel>()> further;
@@ -81,9 +82,9 @@ struct SceneRun {
 /// frames are written at the end.
 ///
 /// A scene with checkpoint_s is rebuilt from every state that it saves, in uninterrupted
-/// and resumed runs alike: both give bitwise equal numbers. Without checkpoint_s
-/// `interruption` saves the state of the last frame; multistep integrators restart there,
-/// so that both agree within their accuracy.
+/// and resumed runs alike: both give bitwise equal numbers. Without checkpoint_s the
+/// state of the last frame is saved by the clock, and by `interruption`; multistep
+/// integrators restart there, so that both agree within their accuracy.
 SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
                    Interruption& interruption);
 

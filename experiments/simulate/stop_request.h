@@ -29,7 +29,7 @@ class StopRequest {
       throw std::runtime_error(
           "its ranks do not answer (mpirun says if one was killed): the same command "
           "with "
-          "--resume goes on from the last checkpoint_s");
+          "--resume goes on from the last saved state");
     }
     if (!problem_.empty()) throw std::runtime_error(problem_);
   }

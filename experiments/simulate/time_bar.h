@@ -16,8 +16,12 @@ namespace tress::experiments::scene_runs {
 /// Simulated time, wall time and the remaining time, on standard error.
 class TimeBar {
  public:
-  TimeBar(ProgressMode mode, const simulation::Scene& scene)
-      : mode_(mode), terminal_(::isatty(STDERR_FILENO) != 0), scene_(scene) {}
+  /// From the simulated time on at which the run goes on.
+  TimeBar(ProgressMode mode, const simulation::Scene& scene, double from)
+      : mode_(mode),
+        terminal_(::isatty(STDERR_FILENO) != 0),
+        scene_(scene),
+        from_(from) {}
   TimeBar(const TimeBar&) = delete;
   TimeBar& operator=(const TimeBar&) = delete;
   ~TimeBar() {
@@ -28,7 +32,7 @@ class TimeBar {
     const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
     if (mode_ == ProgressMode::none || wall - last_ < (terminal_ ? 0.1 : 5.0)) return;
     last_ = wall;
-    const double left = wall * (scene_.duration - t) / t;
+    const double left = wall * (scene_.duration - t) / (t - from_);
     if (mode_ == ProgressMode::json) {
       const nlohmann::json event{
           {"event", "frame"}, {"scene", scene_.name}, {"t_s", t}, {"wall_s", wall}};
@@ -48,6 +52,7 @@ class TimeBar {
   ProgressMode mode_;
   bool terminal_;
   const simulation::Scene& scene_;
+  double from_;  // s
   Clock::time_point start_ = Clock::now();
   double last_ = 0;
 };

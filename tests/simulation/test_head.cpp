@@ -660,21 +660,36 @@ TEST(HeadOfHair, KilledItGoesOnAtItsCheckpointWithTheSameBits) {
   EXPECT_FALSE(stopped.exists("out/head.frames"));
 }
 
+// A state is saved by a signal that is answered, and by the clock. Step sizes of strands
+// that choose their own are part of it.
 TEST(HeadOfHair, AnInterruptedRunWithoutCheckpointsGoesOnWhereItWas) {
-  Hair hair = long_run();
-  hair.top = "duration_s = 1\nframes_1_s = 100\n";
-  hair.integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.0005\n";
-  Toy through, stopped;
-  for (const Toy* toy : {&through, &stopped}) toy->write("head.toml", text(hair));
-  run(through, "");
-  const pid_t process = stopped.start(as_head);
-  await(stopped, "out/head.csv");
-  const std::string begun = stopped.read("out/head.csv");
-  await(stopped, "out/head.csv", begun);
-  kill(process, SIGTERM);
-  EXPECT_EQ(stopped.wait(process).code, 130);
-  run(stopped, "--resume");
-  expect_same_results(through, stopped);
+  Hair stepped = long_run();
+  stepped.top = "duration_s = 1\nframes_1_s = 100\n";
+  stepped.integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.0005\n";
+  Hair by_tolerance = controlled("super_helix", 1e-3),
+       springs = controlled("mass_spring", 1e-3);
+  for (Hair* const hair : {&by_tolerance, &springs}) {
+    hair->count = 100;
+    hair->top = "duration_s = 0.5\nframes_1_s = 100\n";
+  }
+  for (const Hair& hair : {stepped, by_tolerance, springs}) {
+    Toy through;
+    through.write("head.toml", text(hair));
+    run(through, "");
+    for (const int signal : {SIGTERM, SIGKILL}) {
+      SCOPED_TRACE(hair.model + hair.integrator + std::to_string(signal));
+      Toy stopped;
+      stopped.write("head.toml", text(hair));
+      const std::string begun = signal == SIGTERM ? "out/head.csv" : "out/head.state";
+      const pid_t process = stopped.start(std::string(as_head) + "--save-every 0");
+      await(stopped, begun);
+      await(stopped, begun, stopped.read(begun));
+      kill(process, signal);
+      EXPECT_EQ(stopped.wait(process).code, signal == SIGTERM ? 130 : 128 + SIGKILL);
+      run(stopped, "--resume --lanes 4");
+      expect_same_results(through, stopped);
+    }
+  }
 }
 
 /// Behind what was said of its size, and of a machine that is busy.
