@@ -16,6 +16,7 @@ struct Kind {
   std::unique_ptr<models::Head> (*make)(const models::HeadOptions&,
                                         const models::HeadPack&);
   models::HeadMethod method;
+  bool narrow;  // in 32 bits, too
 };
 
 /// What acts on the hairs beside gravity.

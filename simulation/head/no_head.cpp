@@ -174,13 +174,7 @@ bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
 
 std::optional<models::HeadMethod> head_method(const Scene& scene) {
-  using models::HeadMethod;
-  constexpr std::pair<std::string_view, HeadMethod> methods[] = {
-      {"semi_implicit_euler", HeadMethod::semi_implicit_euler},
-      {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint},
-      {"backward_euler", HeadMethod::backward_euler},
-      {"tr_bdf2", HeadMethod::tr_bdf2}};
-  for (const auto& [id, method] : methods) {
+  for (const auto& [id, method] : head_methods) {
     if (scene.integrator == id) return method;
   }
   return {};

@@ -2,6 +2,8 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "models/head/head.h"
 #include "simulation/scene/scene.h"
@@ -22,7 +24,13 @@ std::optional<NoHead> no_head(const SceneOutline& outline,
 /// Of a scene that can be a head: of springs, of rigid links, or else of super-helices.
 bool steps_springs(const Scene& scene);
 bool steps_chains(const Scene& scene);
-/// The head's method by the integrator's id; nothing: heads do not have it.
+/// Methods that heads have, by the ids of integrators.
+inline constexpr std::pair<std::string_view, models::HeadMethod> head_methods[] = {
+    {"semi_implicit_euler", models::HeadMethod::semi_implicit_euler},
+    {"linearly_implicit_midpoint", models::HeadMethod::linearly_implicit_midpoint},
+    {"backward_euler", models::HeadMethod::backward_euler},
+    {"tr_bdf2", models::HeadMethod::tr_bdf2}};
+/// The one of a scene's integrator, if there is one.
 std::optional<models::HeadMethod> head_method(const Scene& scene);
 
 }  // namespace tress::simulation

@@ -105,7 +105,17 @@ export const two_threads = (tables) =>
     })
     .join(' and ');
 
-/// Discrete rods, and Newton's method; one thread.
+/// In 32 bits by tr_bdf2: the largest difference.
+export const narrow_tr_bdf2 = (tables) =>
+  number(
+    Math.max(
+      ...all(tables)
+        .filter((row) => row.integrator === 'tr_bdf2' && Number(row.bits) === 32)
+        .map((row) => Number(row.difference_rel)),
+    ),
+  );
+
+/// Other models and methods; one thread.
 export const other_heads_table = (tables) =>
   table(
     [
@@ -122,17 +132,19 @@ export const other_heads_table = (tables) =>
       'lanes over hairs iterated',
       'damped steps, %',
       'lanes they take, %',
+      'lost',
       'off 64 bits',
       'checksum of the states',
     ],
     all(tables)
       .filter(
         (row) =>
-          (row.model === 'der' || row.integrator === 'backward_euler') &&
-          Number(row.threads) === 1,
+          (row.model !== 'super_helix' || row.integrator !== 'semi_implicit_euler') &&
+          Number(row.threads) === 1 &&
+          Number(row.lanes) > 1,
       )
       .map((row) => {
-        const newton = row.integrator === 'backward_euler';
+        const newton = row.integrator !== 'semi_implicit_euler';
         return [
           row.model,
           row.integrator,
@@ -147,6 +159,7 @@ export const other_heads_table = (tables) =>
           newton ? number(row.lanes_per_iteration) : '1',
           newton ? number(100 * row.retried_share) : '0',
           newton ? number(100 * row.lanes_of_retries) : '0',
+          row.lost,
           Number(row.difference_rel) === 0 ? '0' : number(row.difference_rel),
           row.state.slice(0, 8),
         ];
