@@ -1,6 +1,8 @@
 #include "experiments/simulate/head_pictures.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "experiments/simulate/head_series.h"
 #include "experiments/simulate/pictures.h"
@@ -33,10 +35,24 @@ void add_curvatures(std::size_t points, Frame3d& frame) {
 
 }  // namespace
 
+// Every k-th would lie in strips: the angles of such roots go on by k times the golden
+// section, which for many a k is near a fraction of small numbers.
 std::vector<std::size_t> shown_strands(std::size_t strands) {
+  constexpr double golden = std::numbers::phi - 1;
+  const auto angle = [](std::size_t i) {
+    const double turns = static_cast<double>(i) * golden;
+    return turns - std::floor(turns);
+  };
   std::vector<std::size_t> shown(std::min(strands, most_strands));
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    shown[i] = spread(i, shown.size(), strands);
+    const std::size_t end = (i + 1) * strands / shown.size();
+    double least = 1;
+    for (std::size_t k = i * strands / shown.size(); k < end; ++k) {
+      const double apart = std::abs(angle(k) - angle(i)),
+                   off = std::min(apart, 1 - apart);
+      if (off < least) shown[i] = k;
+      least = std::min(least, off);
+    }
   }
   return shown;
 }

@@ -584,8 +584,10 @@ TEST(HeadOfHair, ThePageShowsSomeOfTheStrands) {
   EXPECT_EQ(page.at("times_s").size(), 5U);
   const std::vector<int> ids = page.at("strand_ids");
   ASSERT_EQ(ids.size(), 1000U);
-  EXPECT_EQ(ids.front(), 0);
-  EXPECT_EQ(ids.back(), 1499);
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_GE(ids[static_cast<std::size_t>(i)], 3 * i / 2);
+    EXPECT_LT(ids[static_cast<std::size_t>(i)], 3 * (i + 1) / 2);
+  }
   EXPECT_EQ(page.at("strand_points").size(), 1000U);
   EXPECT_TRUE(toy.exists("out/head_vtk/head.pvd"));
   EXPECT_TRUE(toy.exists("out/head.usda"));

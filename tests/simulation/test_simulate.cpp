@@ -6,8 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <thread>
 
+#include "experiments/simulate/head_pictures.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/scene/scene.h"
@@ -221,6 +223,21 @@ INSTANTIATE_TEST_SUITE_P(Models, Continued,
                          testing::Values("super_helix", "der", "corde", "groom",
                                          "controlled_groom", "meshed_groom"),
                          [](const auto& tested) { return tested.param; });
+
+// Roots lie on all sides of the head, not in strips: 40 of 1000 shown ones in each of 25
+// sectors. Of 100 strands in turn, the largest gap between the angles is phi^-9, so that
+// an angle is at most half of that off: at each end of a sector 7 strands lie on the
+// other side of it, and multiples of the golden section are even to one or two of them.
+TEST(Pictures, ShowStrandsOfAHeadFromAllSides) {
+  for (const std::size_t strands : {100000U, 150000U, 200000U}) {
+    std::vector<int> sectors(25);
+    for (const std::size_t k : experiments::scene_runs::shown_strands(strands)) {
+      const double turns = static_cast<double>(k) * (std::numbers::phi - 1);
+      ++sectors[static_cast<std::size_t>(25 * (turns - std::floor(turns)))];
+    }
+    for (const int shown : sectors) EXPECT_NEAR(shown, 40, 16) << strands;
+  }
+}
 
 TEST(Simulate, RunsByToleranceAndVerifiesIt) {
   std::string scene = falling("super_helix");

@@ -85,9 +85,9 @@ export const build = (tables) =>
 export const narrow = (tables) =>
   number(
     Math.max(
-      ...heads(tables)
-        .filter((row) => Number(row.bits) === 32)
-        .map((row) => Number(row.difference_rel)),
+      ...all(tables)
+        .filter((row) => row.integrator.endsWith('_euler') && Number(row.bits) === 32)
+        .map((row) => Number(row.difference_rel || 0)),
     ),
   );
 /// Time of one thread over that of two, for the largest head.
