@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <thread>
 
 #include "experiments/simulate/head_pictures.h"
@@ -224,18 +225,34 @@ INSTANTIATE_TEST_SUITE_P(Models, Continued,
                                          "controlled_groom", "meshed_groom"),
                          [](const auto& tested) { return tested.param; });
 
-// Roots lie on all sides of the head, not in strips: 40 of 1000 shown ones in each of 25
-// sectors. Of 100 strands in turn, the largest gap between the angles is phi^-9, so that
-// an angle is at most half of that off: at each end of a sector 7 strands lie on the
-// other side of it, and multiples of the golden section are even to one or two of them.
-TEST(Pictures, ShowStrandsOfAHeadFromAllSides) {
-  for (const std::size_t strands : {100000U, 150000U, 200000U}) {
-    std::vector<int> sectors(25);
-    for (const std::size_t k : experiments::scene_runs::shown_strands(strands)) {
-      const double turns = static_cast<double>(k) * (std::numbers::phi - 1);
-      ++sectors[static_cast<std::size_t>(25 * (turns - std::floor(turns)))];
+/// Least distance of two of these strands' roots on Fibonacci's lattice of `all`, in the
+/// unit square of heights and angles, by the side of a square for each.
+double closest(const std::vector<std::size_t>& strands, std::size_t all) {
+  double least = 1;
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double turns =
+          static_cast<double>(strands[i] - strands[j]) * (std::numbers::phi - 1);
+      least = std::min(least, std::hypot(turns - std::round(turns),
+                                         static_cast<double>(strands[i] - strands[j]) /
+                                             static_cast<double>(all)));
     }
-    for (const int shown : sectors) EXPECT_NEAR(shown, 40, 16) << strands;
+  }
+  return least * std::sqrt(static_cast<double>(strands.size()));
+}
+
+// Roots lie evenly, not in strips: as far apart as those of a head of 1000, but for the
+// angles among k strands in turn. From the n-th of Fibonacci's numbers on, k of these
+// leave gaps of phi^(2 - n) turns at most; both of two strands are half of one off.
+TEST(Pictures, ShowStrandsOfAHeadEvenly) {
+  std::vector<std::size_t> all(1000);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const double lattice = closest(all, 1000);
+  for (const auto& [k, n] : {std::pair{100U, 11}, {150U, 12}, {200U, 12}, {1000U, 16}}) {
+    const double gap = std::pow(std::numbers::phi, 2 - n) * std::sqrt(1000);
+    EXPECT_GT(closest(experiments::scene_runs::shown_strands(1000 * k), 1000 * k),
+              lattice - gap)
+        << k;
   }
 }
 
