@@ -18,7 +18,8 @@ struct FrameOf {
                                                             const Vec3<T>& x) {
     return x.x * f.e0 + x.y * f.e1 + x.z * f.e2;
   }
-  friend constexpr FrameOf operator*(const FrameOf& f, const FrameOf& g) {
+  [[gnu::always_inline]] friend constexpr FrameOf operator*(const FrameOf& f,
+                                                            const FrameOf& g) {
     return {f * g.e0, f * g.e1, f * g.e2};
   }
   /// Applies the transpose: outer components to components in the frame.

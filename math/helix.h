@@ -60,8 +60,10 @@ T taylor_sum(const T& x) {
 /// Taylor series give b = B/s^3, its derivatives and A3/s^8; the others follow without
 /// cancellation from the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
 ///     S = s - w^2 B,  s A = 3 B + w^2 B1,  s A1 = 5 B1 + w^2 B2,  s A2 = 7 B2 + w^2 B3
+/// Never a function of its own: another source might be compiled with other products
+/// fused, and one of them would stand for all.
 template <int terms, class T, class X>
-HelixFunctions<T> series(const T& s, const X& x2) {
+[[gnu::always_inline]] inline HelixFunctions<T> series(const T& s, const X& x2) {
   const T ss = s * s;
   const T x = x2 * ss;
   const T b = taylor_sum<3, 0, terms>(x);

@@ -40,7 +40,7 @@ constexpr Column columns[] = {
      "waste"},
     {"retried_share", "of the steps of hairs: those that needed damped corrections"},
     {"lanes_of_retries", "share of all lanes that they took"},
-    {"alone_per_step", "iterations of hairs one at a time, where damped ones failed"},
+    {"in_parts_per_step", "iterations of shorter steps, where damped ones failed"},
     {"lost", "hairs without a solution; the first one's step and reason on stderr"},
     {"difference_rel",
      "largest distance of a point from that in 64 bits, over the length; every 97th "

@@ -144,7 +144,7 @@ void run_head(const Work& work, Row& row) {
     row.set("lanes_per_iteration", share(done.lanes, done.iterations));
     row.set("retried_share", share(done.retried, done.steps));
     row.set("lanes_of_retries", share(done.again_lanes, done.lanes + done.again_lanes));
-    row.set("alone_per_step", share(done.alone, done.steps));
+    row.set("in_parts_per_step", share(done.in_parts, done.steps));
   }
   int lost = 0;
   for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;

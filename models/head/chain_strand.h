@@ -157,7 +157,7 @@ struct ChainKind {
           length_(length) {}
 
     SeenPoint<T> at(const T& arc) const { return {arc * along_, arc * moving_}; }
-    SeenTip<T> tip() const {
+    [[gnu::always_inline]] SeenTip<T> tip() const {
       return {length_ * along_, length_ * moving_, joint_.rotation, joint_.velocity};
     }
 

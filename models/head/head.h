@@ -94,8 +94,8 @@ struct HeadWork {
   long iterations = 0, lanes = 0;              // whole corrections, strands side by side
   long retried = 0;                            // steps of strands on which they failed
   long again_iterations = 0, again_lanes = 0;  // of these, damped
-  long alone = 0;      // of the last, iterations of one strand at a time
-  long shortened = 0;  // steps of strands taken in shorter ones
+  long in_parts = 0;                           // of the last, iterations of shorter steps
+  long shortened = 0;                          // steps of strands taken in shorter ones
   // With a tolerance, steps of strands that were tried again with shorter ones.
   long rejected_by_error = 0, rejected_by_newton = 0;
 
@@ -106,7 +106,7 @@ struct HeadWork {
     retried += more.retried;
     again_iterations += more.again_iterations;
     again_lanes += more.again_lanes;
-    alone += more.alone;
+    in_parts += more.in_parts;
     shortened += more.shortened;
     rejected_by_error += more.rejected_by_error;
     rejected_by_newton += more.rejected_by_newton;

@@ -13,7 +13,8 @@ struct HeadMotion {
 
 /// That of roots that are fixed to it.
 template <class T>
-ReducedMotion<T> root_motion(const LaneRoot<T>& root, const HeadMotion& head) {
+[[gnu::always_inline]] inline ReducedMotion<T> root_motion(const LaneRoot<T>& root,
+                                                           const HeadMotion& head) {
   const Vec3<T> omega(head.omega), alpha(head.alpha);
   const Vec3<T> v = Vec3<T>(head.v) + cross(omega, root.from);
   const Vec3<T> a =

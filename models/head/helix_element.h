@@ -21,7 +21,7 @@ class LaneFunctions {
         winding_(x2_ * length * length),
         short_(all_up_to(winding_, most)) {}
 
-  HelixFunctions<T> at(const T& s) const {
+  [[gnu::always_inline]] HelixFunctions<T> at(const T& s) const {
     HelixFunctions<T> f = helix::series<few>(s, x2_);
     if (!short_) [[unlikely]] {
       const HelixFunctions<Numbers> all =

@@ -169,7 +169,7 @@ struct HelixKind {
       const HelixFunctions<T> f = functions_.at(arc);
       return {element_.position(arc, f), element_.slope(f) * rate_};
     }
-    SeenTip<T> tip() const {
+    [[gnu::always_inline]] SeenTip<T> tip() const {
       const HelixFunctions<T> f = functions_.at(length_);
       const auto turn = element_.turn(length_, f, functions_.x2());
       return {element_.position(length_, f), element_.slope(f) * rate_, turn.rotation,

@@ -56,7 +56,7 @@ class HelixHead final : public ReducedHead<HelixKind<T>>, public HelixSource {
 }  // namespace
 
 std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
-  return reduced_head<HelixKind, HelixHead>(options, pack);
+  return reduced_head<HelixHead>(options, pack, other_helix_head);
 }
 
 }  // namespace tress::models

@@ -9,7 +9,7 @@
 
 #include "models/head/head_motion.h"
 #include "models/head/lane_head.h"
-#include "models/head/reduced/reduced_model.h"
+#include "models/head/reduced/other_methods.h"
 #include "models/head/reduced_energies.h"
 #include "models/head/reduced_kernel.h"
 #include "models/head/reduced_loads.h"
@@ -387,17 +387,16 @@ inline void check_for_reduced_head(const HeadOptions& options) {
   check_start(options);
 }
 
-/// A head of strands of this Kind by the method of the options: `Stepped` where one
-/// linear solve is a step.
-template <template <class> class Kind, template <class> class Stepped>
-std::unique_ptr<Head> reduced_head(const HeadOptions& options, const HeadPack& pack) {
+/// A head by the method of the options: `Stepped` where one linear solve is a step, and
+/// else by `others`.
+template <template <class> class Stepped>
+std::unique_ptr<Head> reduced_head(const HeadOptions& options, const HeadPack& pack,
+                                   decltype(other_helix_head)& others) {
   check_for_reduced_head(options);
   check_resolved(options, pack);
+  if (options.method != HeadMethod::semi_implicit_euler) return others(options, pack);
   return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-    if (options.method == HeadMethod::semi_implicit_euler) {
-      return std::make_unique<Stepped<T>>(options, set);
-    }
-    return std::make_unique<SteppingHead<ReducedModel<Kind<T>>>>(options, set);
+    return std::make_unique<Stepped<T>>(options, set);
   });
 }
 

@@ -22,7 +22,7 @@ namespace tress::models {
 ///
 /// A step with too large an error, or one on which whole corrections of Newton's fail, is
 /// taken again as two or more shorter ones. The shortest (StepLimits) without a solution
-/// is that of LoneStrand, without an estimate, or the strand is lost.
+/// is taken in parts (LaneSolver), without an estimate, or the strand is lost.
 template <class Model>
 class ControlledSteps {
  public:
@@ -174,12 +174,11 @@ class ControlledSteps {
          solver_.attempt(now, {0, now_.size(), &now_}, judge)) {
       lost_.push_back({strand, begin, reason});
     }
+    interval.done.steps += static_cast<long>(stuck_.size());
+    solver_.in_parts(now, stuck_, 1);
+    interval.done.steps -= static_cast<long>(stuck_.size());
     for (const std::size_t strand : stuck_) {
-      if (solver_.alone(now, strand)) {
-        ++interval.done.steps;
-      } else {
-        lost_.push_back({strand, begin, Solver::no_solution});
-      }
+      lost_.push_back({strand, begin, Solver::no_solution});
     }
     std::ranges::sort(later);
   }

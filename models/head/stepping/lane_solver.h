@@ -1,27 +1,30 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string_view>
 #include <vector>
 
 #include "models/head/head.h"
 #include "models/head/stepping/lane_strands.h"
-#include "models/head/stepping/lone_strand.h"
 #include "models/head/stepping/newton_course.h"
 
 namespace tress::models {
 
 /// Steps of strands by the stages of a LaneMethod, stage by stage: Newton's iteration,
-/// damped iterations of the strands on which it fails, and those on which they fail one
-/// by one, in shorter steps where need be. Lanes that are done take the next strand.
-/// Decisions are taken lane by lane, so results are the same bits for any number of lanes
-/// and whatever strands are stepped together. Memory of one thread.
+/// damped iterations of the strands on which it fails, as integrators/stage.h's, from the
+/// guess, from zero acceleration and from standstill, and 2, 4, ... shorter steps of
+/// those on which they fail. All go side by side, and lanes that are done take the next
+/// strand. Decisions are taken lane by lane, so results are the same bits for any number
+/// of lanes and whatever strands are stepped together. Memory of one thread.
 template <class Model>
 class LaneSolver {
  public:
   using T = typename Model::Real;
-  using PoseAt = typename LoneStrand<Model>::PoseAt;
-  using Meet = typename LoneStrand<Model>::Meet;
+  using PoseAt = std::function<RootPose(double part)>;  // of the step, 0 to 1
+  /// Finds loads of bodies there, of a stage of gamma h = `share` of the step, from
+  /// `work` as it is.
+  using Meet = std::function<void(double part, double share)>;
 
   /// `model` and `method` must outlive it. `left`: see PlainCourse.
   LaneSolver(const Model& model, const LaneMethod& method, double tolerance, double left,
@@ -31,7 +34,8 @@ class LaneSolver {
         method_(method),
         tolerance_(tolerance),
         left_(left),
-        iterations_(most_iterations) {}
+        iterations_(most_iterations),
+        some_(model, method, false) {}
 
   LaneWork<Model> work;
 
@@ -90,27 +94,36 @@ class LaneSolver {
     return lost_;
   }
 
-  /// A step of a strand by itself, in shorter ones where need be; false: it is lost.
-  bool alone(const Step& now, std::size_t strand) {
-    for (int lane = 0; lane < T::lanes; ++lane) now.strands.take(strand, work, lane);
-    LoneStrand<Model> lone(model_, tolerance_, iterations_, work);
-    const bool solved = lone.solve(now.pose, now.meet, now.h);
-    now.done.alone += lone.iterations;
-    now.done.again_iterations += lone.iterations;
-    now.done.again_lanes += T::lanes * lone.iterations;
-    now.done.shortened += lone.shortened ? 1 : 0;
-    if (solved) {
-      now.strands.put_home(work.elements, work.state, 0, strand);
-    } else {
-      now.strands.lose(strand);
+  /// The step of these strands, on which it has failed: `parts`, twice as many and so on
+  /// shorter ones, to 64. Leaves those that are lost.
+  void in_parts(const Step& now, std::vector<std::size_t>& strands, int parts) {
+    stuck_.clear();  // strands have other numbers among some_
+    const StepPoses whole = poses_;
+    for (; parts <= most_parts && !strands.empty(); parts *= 2) {
+      some_.clear();
+      for (const std::size_t strand : strands) some_.add(now.strands, strand);
+      for (int i = 0; i < parts; ++i) take_part(now, i, parts);
+      std::size_t left = 0;
+      for (std::size_t k = 0; k < strands.size(); ++k) {
+        if (some_.lost(k)) {
+          strands[left++] = strands[k];
+        } else {
+          now.strands.take(strands[k], some_, k);
+          now.done.shortened += parts > 1 ? 1 : 0;
+        }
+      }
+      strands.resize(left);
     }
-    return solved;
+    poses_ = whole;
+    for (const std::size_t strand : strands) now.strands.lose(strand);
   }
 
   static constexpr std::string_view no_solution =
       "no solution for the step, nor for 64 parts of it";
 
  private:
+  static constexpr int most_parts = 64;
+
   /// Strands that are solved go home.
   struct Home {
     LaneStrands<Model>& strands;
@@ -159,33 +172,90 @@ class LaneSolver {
       PlainCourse<Model> plain(model_, tolerance_, left_, iterations_);
       failed_.clear();
       run(now, all, k, plain, failed_, done.iterations, done.lanes);
-      if (failed_.empty()) continue;
       done.retried += static_cast<long>(failed_.size());
-      DampedCourse<Model> damped(model_, tolerance_, iterations_);
-      again_.clear();
-      run(now, {0, failed_.size(), &failed_}, k, damped, again_, done.again_iterations,
-          done.again_lanes);
-      done.again_iterations += damped.iterations;
-      done.again_lanes += damped.lanes;
-      stuck_.insert(stuck_.end(), again_.begin(), again_.end());
+      damp(now, k);
+      stuck_.insert(stuck_.end(), failed_.begin(), failed_.end());
       std::ranges::sort(stuck_);
     }
-    for (const std::size_t strand : stuck_) {
-      if (!alone(now, strand)) lost_.push_back({strand, no_solution});
+    unsolved_.swap(stuck_);
+    in_parts(now, unsolved_, 2);
+    for (const std::size_t strand : unsolved_) lost_.push_back({strand, no_solution});
+  }
+
+  /// A stage of those in failed_, where those remain on which this fails, too: damped
+  /// corrections from everywhere.
+  void damp(const Step& now, std::size_t stage) {
+    for (const NewtonStart from :
+         {NewtonStart::guess, NewtonStart::zero, NewtonStart::standstill}) {
+      if (failed_.empty()) return;
+      waiting_.swap(failed_);
+      failed_.clear();
+      std::ranges::sort(waiting_);
+      DampedCourse<Model> damped(model_, tolerance_, iterations_);
+      run(now, {0, waiting_.size(), &waiting_}, stage, damped, failed_,
+          now.done.again_iterations, now.done.again_lanes, from);
+      now.done.again_iterations += damped.iterations;
+      now.done.again_lanes += damped.lanes;
     }
+  }
+
+  /// Of some_: those on which it fails are lost there.
+  void take_part(const Step& whole, int i, int parts) {
+    const PoseAt pose = [&](double part) { return whole.pose((i + part) / parts); };
+    const Meet meet = [&](double part, double share) {
+      whole.meet((i + part) / parts, share / parts);
+    };
+    HeadWork done;
+    const Step now{some_, pose, meet, whole.h / parts, done};
+    poses_.from = pose(0);
+    poses_.to = pose(1);
+    if (i > 0) renew(now);
+    for (std::size_t k = method_.first(); k < method_.stages.size(); ++k) {
+      PlainCourse<Model> plain(model_, tolerance_, left_, iterations_);
+      failed_.clear();
+      run(now, {0, some_.size()}, k, plain, failed_, done.again_iterations,
+          done.again_lanes);
+      damp(now, k);
+      for (const std::size_t strand : failed_) some_.lose(strand);
+    }
+    done.in_parts = done.again_iterations;
+    whole.done += done;
+  }
+  /// Strands with new reference frames have no steps behind them, and the first stage to
+  /// solve if there is one.
+  void renew(const Step& now) {
+    waiting_.clear();
+    for (std::size_t block = 0; block < some_.blocks(); ++block) {
+      const T renewed = model_.renew(some_.elements(block),
+                                     model_.clamp(some_.strand(block), poses_.from),
+                                     some_.q(block), some_.v(block));
+      some_.forget_steps(block, renewed);
+      for (std::size_t k = 0; k < some_.of(block); ++k) {
+        if (lane_of(renewed, static_cast<int>(k)) > 0) {
+          waiting_.push_back(T::lanes * block + k);
+        }
+      }
+    }
+    if (waiting_.empty() || method_.first() == 0) return;
+    SingleCourse<Model> single;
+    failed_.clear();
+    run(now, {0, waiting_.size(), &waiting_}, 0, single, failed_,
+        now.done.again_iterations, now.done.again_lanes);
+    for (const std::size_t strand : failed_) some_.lose(strand);
   }
 
   template <class Course>
   void run(const Step& now, const LaneQueue& queue, std::size_t stage, Course& course,
-           std::vector<std::size_t>& failed, long& iterations, long& lanes) {
+           std::vector<std::size_t>& failed, long& iterations, long& lanes,
+           NewtonStart from = NewtonStart::guess) {
     Home home{now.strands, work};
-    run(now, queue, stage, course, failed, iterations, lanes, home);
+    run(now, queue, stage, course, failed, iterations, lanes, home, from);
   }
   /// A stage. Strands on which the course fails go to `failed`.
   template <class Course, class Judge>
   void run(const Step& now, LaneQueue queue, std::size_t stage, Course& course,
-           std::vector<std::size_t>& failed, long& iterations, long& lanes,
-           Judge& judge) {
+           std::vector<std::size_t>& failed, long& iterations, long& lanes, Judge& judge,
+           NewtonStart from = NewtonStart::guess) {
     const LaneStage& of = method_.stages[stage];
     poses_.at = now.pose(of.time);
     constexpr std::size_t none = LaneStrands<Model>::none;
@@ -202,6 +272,7 @@ class LaneSolver {
         }
         work.begin(model_, stage, poses_, now.h, starts);
         now.meet(of.time, of.gamma);
+        if (from != NewtonStart::guess) work.start_from(from, starts);
         for (std::size_t k = 0; k < home.size(); ++k) {
           if (before[k] == none) course.start(static_cast<int>(k), work);
         }
@@ -240,9 +311,10 @@ class LaneSolver {
   double tolerance_, left_;
   int iterations_;
   StepPoses poses_;
-  std::vector<std::size_t> fresh_, others_;  // in first steps, and beyond them
-  std::vector<std::size_t> failed_, again_;  // at a stage; damped, too
-  std::vector<std::size_t> stuck_;           // at some stage, sorted
+  std::vector<std::size_t> fresh_, others_;    // in first steps, and beyond them
+  std::vector<std::size_t> failed_, waiting_;  // at a stage; to be tried again
+  std::vector<std::size_t> stuck_, unsolved_;  // at some stage, sorted; in the end
+  LaneStrands<Model> some_;                    // that take a step in parts
   std::vector<Loss> lost_;
 };
 

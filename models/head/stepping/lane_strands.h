@@ -72,6 +72,29 @@ class LaneStrands {
     if (controlled_) lengths_.emplace_back();
   }
 
+  /// Another strand, as `strand` of others is.
+  void add(LaneStrands& others, std::size_t strand) {
+    const std::size_t block = strand / width;
+    const auto from = static_cast<int>(strand % width);
+    add([&](int lane, Strand& to, Element* elements, T* q, T* /*v*/) {
+      copy_lane<T>(others.strands_[block], from, to, lane);
+      others.copy_changed(strand, elements, q, lane);
+    });
+  }
+  /// What steps have changed of others' strand.
+  void take(std::size_t strand, LaneStrands& others, std::size_t from) {
+    const std::size_t block = strand / width;
+    others.copy_changed(from, elements(block), q(block),
+                        static_cast<int>(strand % width));
+  }
+  void clear() {
+    strands_.clear();
+    elements_.clear();
+    state_.clear();
+    lost_.clear();
+    lengths_.clear();
+  }
+
   std::size_t size() const { return lost_.size(); }
   std::size_t blocks() const { return strands_.size(); }
   /// Strands of a block.
@@ -189,13 +212,9 @@ class LaneStrands {
     }
   }
   void take(std::size_t strand, LaneWork<Model>& work, int lane) {
-    const std::size_t block = strand / width;
-    const auto from = static_cast<int>(strand % width);
-    copy_lane<T>(strands_[block], from, work.strand, lane);
-    for (std::size_t i = 0; i < n_; ++i) {
-      copy_lane<T>(elements(block)[i], from, work.elements[i], lane);
-    }
-    copy_lane(q(block), from, work.state.data(), lane, of_state_);
+    copy_lane<T>(strands_[strand / width], static_cast<int>(strand % width), work.strand,
+                 lane);
+    copy_changed(strand, work.elements.data(), work.state.data(), lane);
   }
   /// Those of `work`, or what they have become.
   void put_home(std::vector<Element>& changed, const std::vector<T>& state, int lane,
@@ -209,6 +228,15 @@ class LaneStrands {
   }
 
  private:
+  void copy_changed(std::size_t strand, Element* to, T* state, int lane) {
+    const std::size_t block = strand / width;
+    const auto from = static_cast<int>(strand % width);
+    for (std::size_t i = 0; i < n_; ++i) {
+      copy_lane<T>(elements(block)[i], from, to[i], lane);
+    }
+    copy_lane(q(block), from, state, lane, of_state_);
+  }
+
   std::size_t n_, size_, of_state_;  // per strand: elements, unknowns, numbers of state
   std::size_t needed_;               // steps behind a strand that is not fresh
   bool controlled_;

@@ -16,6 +16,10 @@ struct StepPoses {
   RootPose from, at, to;
 };
 
+/// Whence Newton's iteration begins: from the guess, from zero acceleration, or from the
+/// acceleration that ends all motion.
+enum class NewtonStart { guess, zero, standstill };
+
 /// The equations of a stage (models/head/stepping/lane_method.h) of as many strands as a
 /// pack has lanes. Model: see models/head/stepping/stepped_model.h.
 template <class Model>
@@ -49,7 +53,6 @@ class LaneWork {
 
   std::size_t size() const { return size_; }
   T* a() { return a_.data(); }
-  const T* v_bar() const { return v_bar_.data(); }
   const LaneMethod& method() const { return method_; }
 
   /// States the equations of a stage, for roots that move so in h. `starts`: 1 in lanes
@@ -76,6 +79,14 @@ class LaneWork {
     weights = {1, s, s * s};
     if constexpr (Model::takes_stresses) {
       model.take_stresses(strand, q_n, starts, scratch);
+    }
+    place();
+  }
+  /// In lanes that start, from elsewhere than the guess.
+  void start_from(NewtonStart from, const T& starts) {
+    const T still = from == NewtonStart::zero ? T(0) : T(-1 / weights.vel);
+    for (std::size_t k = 0; k < size_; ++k) {
+      a_[k] = where_less(T(0), starts, still * v_bar_[k], a_[k]);
     }
     place();
   }

@@ -137,7 +137,7 @@ TEST_P(ControlledHead, TakesShorterStepsWhereNewtonsIterationFails) {
   const auto few = head(options, wide);
   const HeadWork work = advance(*few, 0, intervals);
   EXPECT_GT(work.rejected_by_newton, 0);
-  EXPECT_EQ(work.alone, 0);
+  EXPECT_EQ(work.in_parts, 0);
   EXPECT_TRUE(few->losses().empty());
   EXPECT_GT(work.steps, advance(*head(mixed_options(1e-2), wide), 0, intervals).steps);
 }
@@ -151,7 +151,7 @@ TEST_P(ControlledHead, TakesItsShortestStepsAloneAndLosesStrandsWithoutOne) {
   for (const int lanes : {1, 4}) {
     const auto whole = head(options, {HeadNumber::float64, lanes});
     const HeadWork work = advance(*whole, 0, intervals);
-    EXPECT_GT(work.alone, 0);
+    EXPECT_GT(work.in_parts, 0);
     for (const HeadLoss& loss : whole->losses()) {
       EXPECT_THAT(std::string(loss.reason), HasSubstr("nor for 64 parts of it"));
     }

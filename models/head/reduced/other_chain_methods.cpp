@@ -1,0 +1,15 @@
+#include "models/head/chain_strand.h"
+#include "models/head/lane_head.h"
+#include "models/head/reduced/other_methods.h"
+#include "models/head/reduced/reduced_model.h"
+#include "models/head/stepping/stepping_head.h"
+
+namespace tress::models {
+
+std::unique_ptr<Head> other_chain_head(const HeadOptions& options, const HeadPack& pack) {
+  return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
+    return std::make_unique<SteppingHead<ReducedModel<ChainKind<T>>>>(options, set);
+  });
+}
+
+}  // namespace tress::models
