@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "contract/input_error.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/interruption.h"
 #include "simulation/files/checksum.h"
