@@ -145,11 +145,18 @@ bool PointGroups::holds(Group& group, const GroupVectors& x) const {
     if (updates == 1) {
       const auto cells = partners_->cells(partners_->at_epoch(now));
       Vec3<P> middle;
+      P numbers;
+      for (int lane = 0; lane < lanes<P>; ++lane) numbers.set(lane, lane);
+      // Points that follow each other mostly share a cell.
+      int last = -1;
       for (int lane = 0; lane < lanes<P>; ++lane) {
-        const LocalDrift::Spread& near =
-            partners_->drift(cells[static_cast<std::size_t>(lane)]);
-        set_lane(middle, lane, near.middle);
-        spread.set(lane, near.radius);
+        const int cell = cells[static_cast<std::size_t>(lane)];
+        if (cell == last) continue;
+        last = cell;
+        const LocalDrift::Spread& near = partners_->drift(cell);
+        const P these(lane);
+        middle = choose(numbers, these, middle, all<P>(near.middle));
+        spread = where_less(numbers, these, spread, all<P>(near.radius));
       }
       off = off - middle;
     }
