@@ -99,7 +99,7 @@ void declare(CLI::App& app, Arguments& a) {
          "--save-every", a.save_every,
          "seconds of the clock after which a scene without checkpoint_s saves its "
          "state (default 60)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 86400.0));
   app.add_flag("--no-guard", a.no_guard,
                "go on where a run does what physics rules out (as guard = false)");
   app.add_flag("--error-bars", a.error_bars,
