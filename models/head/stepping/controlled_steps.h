@@ -100,7 +100,8 @@ class ControlledSteps {
         // The step began with the acceleration before its last.
         T& before = work.after[4 * work.size() + 1];
         if (lane_of(work.after[4 * work.size()], lane) > 0) set_lane(before, lane, now.h);
-        now.strands.put_home(of.elements_of(work), work.after, lane, strand);
+        now.strands.put_home(of.elements_of(work).data(), work.after.data(), lane,
+                             strand);
         ++now.done.steps;
         return;
       }

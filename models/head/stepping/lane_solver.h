@@ -131,7 +131,7 @@ class LaneSolver {
 
     void ended(const StepPoses& /*poses*/) {}
     void judged(int lane, std::size_t strand) {
-      strands.put_home(work.elements, work.after, lane, strand);
+      strands.put_home(work.elements.data(), work.after.data(), lane, strand);
     }
   };
 
@@ -226,10 +226,7 @@ class LaneSolver {
   void renew(const Step& now) {
     waiting_.clear();
     for (std::size_t block = 0; block < some_.blocks(); ++block) {
-      const T renewed = model_.renew(some_.elements(block),
-                                     model_.clamp(some_.strand(block), poses_.from),
-                                     some_.q(block), some_.v(block));
-      some_.forget_steps(block, renewed);
+      const T renewed = some_.renew(model_, block, poses_.from);
       for (std::size_t k = 0; k < some_.of(block); ++k) {
         if (lane_of(renewed, static_cast<int>(k)) > 0) {
           waiting_.push_back(T::lanes * block + k);

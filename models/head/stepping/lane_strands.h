@@ -63,10 +63,7 @@ class LaneStrands {
     // The first strand of a block fills the lanes of those that may not come.
     for (int other = 1; lane == 0 && other < T::lanes; ++other) {
       copy_lane<T>(strands_[block], 0, strands_[block], other);
-      for (std::size_t i = 0; i < n_; ++i) {
-        copy_lane<T>(elements(block)[i], 0, elements(block)[i], other);
-      }
-      copy_lane(q(block), 0, q(block), other, of_state_);
+      copy_changed(elements(block), q(block), 0, elements(block), q(block), other);
     }
     lost_.push_back(0);
     if (controlled_) lengths_.emplace_back();
@@ -78,14 +75,13 @@ class LaneStrands {
     const auto from = static_cast<int>(strand % width);
     add([&](int lane, Strand& to, Element* elements, T* q, T* /*v*/) {
       copy_lane<T>(others.strands_[block], from, to, lane);
-      others.copy_changed(strand, elements, q, lane);
+      copy_changed(others.elements(block), others.q(block), from, elements, q, lane);
     });
   }
   /// What steps have changed of others' strand.
   void take(std::size_t strand, LaneStrands& others, std::size_t from) {
-    const std::size_t block = strand / width;
-    others.copy_changed(from, elements(block), q(block),
-                        static_cast<int>(strand % width));
+    put_home(others.elements(from / width), others.q(from / width),
+             static_cast<int>(from % width), strand);
   }
   void clear() {
     strands_.clear();
@@ -133,12 +129,13 @@ class LaneStrands {
     const T& length = q(strand / width)[4 * size_ + needed_ - 1];
     return lane_of(length, static_cast<int>(strand % width)) == 0;
   }
-  /// Strands of lanes in which this is > 0 have no steps behind them.
-  void forget_steps(std::size_t block, const T& which) {
-    for (std::size_t k = 4 * size_; k < of_state_; ++k) {
-      T& length = q(block)[k];
-      length = where_less(T(0), which, T(0), length);
-    }
+  /// Reference frames of a block for a step from this pose: strands with new ones, in
+  /// lanes in which the result is > 0, have no steps behind them.
+  T renew(const Model& model, std::size_t block, const RootPose& from) {
+    const T renewed = model.renew(elements(block), model.clamp(strand(block), from),
+                                  q(block), v(block));
+    if (any_less(T(0), renewed)) forget_steps(block, renewed);
+    return renewed;
   }
 
   /// The step of h (without units) that it was to take ends here: the last known
@@ -212,29 +209,31 @@ class LaneStrands {
     }
   }
   void take(std::size_t strand, LaneWork<Model>& work, int lane) {
-    copy_lane<T>(strands_[strand / width], static_cast<int>(strand % width), work.strand,
+    const std::size_t block = strand / width;
+    const auto from = static_cast<int>(strand % width);
+    copy_lane<T>(strands_[block], from, work.strand, lane);
+    copy_changed(elements(block), q(block), from, work.elements.data(), work.state.data(),
                  lane);
-    copy_changed(strand, work.elements.data(), work.state.data(), lane);
   }
   /// Those of `work`, or what they have become.
-  void put_home(std::vector<Element>& changed, const std::vector<T>& state, int lane,
-                std::size_t strand) {
+  void put_home(Element* changed, const T* state, int lane, std::size_t strand) {
     const std::size_t block = strand / width;
-    const auto to = static_cast<int>(strand % width);
-    for (std::size_t i = 0; i < n_; ++i) {
-      copy_lane<T>(changed[i], lane, elements(block)[i], to);
-    }
-    copy_lane(state.data(), lane, q(block), to, of_state_);
+    copy_changed(changed, state, lane, elements(block), q(block),
+                 static_cast<int>(strand % width));
   }
 
  private:
-  void copy_changed(std::size_t strand, Element* to, T* state, int lane) {
-    const std::size_t block = strand / width;
-    const auto from = static_cast<int>(strand % width);
-    for (std::size_t i = 0; i < n_; ++i) {
-      copy_lane<T>(elements(block)[i], from, to[i], lane);
+  /// What steps change of a strand, from a lane to another.
+  void copy_changed(Element* from, const T* state, int lane, Element* to, T* to_state,
+                    int to_lane) const {
+    for (std::size_t i = 0; i < n_; ++i) copy_lane<T>(from[i], lane, to[i], to_lane);
+    copy_lane(state, lane, to_state, to_lane, of_state_);
+  }
+  void forget_steps(std::size_t block, const T& which) {
+    for (std::size_t k = 4 * size_; k < of_state_; ++k) {
+      T& length = q(block)[k];
+      length = where_less(T(0), which, T(0), length);
     }
-    copy_lane(q(block), from, state, lane, of_state_);
   }
 
   std::size_t n_, size_, of_state_;  // per strand: elements, unknowns, numbers of state

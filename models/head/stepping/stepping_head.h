@@ -85,7 +85,7 @@ class SteppingHead final : public Head {
     own.from = pose(t);
     for (std::size_t block = first; block < last; ++block) {
       own.Scratch::work.steps += static_cast<long>(strands_of(block));
-      renew(block, own.from);
+      all_.renew(model_, block, own.from);
     }
     if (options_.method == HeadMethod::semi_implicit_euler) {
       own.to = pose(t + h);
@@ -248,14 +248,6 @@ class SteppingHead final : public Head {
     return at;
   }
 
-  /// Strands with new reference frames have no steps behind them.
-  void renew(std::size_t block, const RootPose& from) {
-    const T renewed =
-        model_.renew(all_.elements(block), model_.clamp(all_.strand(block), from),
-                     all_.q(block), all_.v(block));
-    if (any_less(T(0), renewed)) all_.forget_steps(block, renewed);
-  }
-
   /// By the stages of the method.
   void solve(const LaneQueue& queue, double t, double h, Own& own) {
     const auto& lost = own.solver.step(
@@ -272,7 +264,9 @@ class SteppingHead final : public Head {
       const double stop = std::min(options_.motion.next_breakpoint(begin), end),
                    length = stop - begin;
       const RootPose from = pose(begin);
-      for (std::size_t block = first; block < last; ++block) renew(block, from);
+      for (std::size_t block = first; block < last; ++block) {
+        all_.renew(model_, block, from);
+      }
       const auto& lost = own.controlled->step(
           width * first, std::min(width * last, all_.size()), all_,
           [&](double part) { return pose(begin + part * length); },
