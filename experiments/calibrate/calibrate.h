@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/calibrate/friction_fit.h"
+#include "experiments/calibrate/oscillation_fit.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/verdicts.h"
 #include "simulation/files/row.h"
@@ -24,7 +24,7 @@ struct SceneRecord {
 struct FitRow {
   std::string data;
   std::shared_ptr<const Records> records;
-  std::optional<Friction> truth;  // empty: the records were measured
+  std::optional<Properties> truth;  // empty: the records were measured
   const ModelEntry* model;
   std::vector<Specimen> strands;
   FitOptions how;
@@ -37,7 +37,9 @@ struct FitRow {
   void measure(Row& row) const;
 };
 
+/// A word of the setting `fit`, and its meaning.
 std::string_view name(Fitted fitted);
+Fitted fitted_of(std::string_view word);
 
 /// --set keys that select records and how they are fitted.
 std::span<const Parameter> calibrate_settings();

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -26,8 +28,11 @@ constexpr Parameter settings_of_rows[] = {
      .choices = "displacement|envelope"},
     {.name = "axis", .help = "of the displacement; z is up", .choices = "z|x|y"},
     {.name = "fit",
-     .help = "internal friction gamma, air drag nu; what is not fitted is a parameter",
-     .choices = "both|gamma|nu"},
+     .help =
+         "fitted values: internal friction gamma, air drag nu, Young's modulus "
+         "(stiffness), both = gamma and nu, all = these and stiffness; the others are "
+         "parameters",
+     .choices = "both|gamma|nu|stiffness|stiffness_gamma|stiffness_nu|all"},
     {.name = "confidence",
      .help = "of the intervals",
      .number = 0.95,
@@ -52,7 +57,8 @@ constexpr Parameter settings_of_rows[] = {
      .whole = true},
 };
 
-/// Options of one file of experiments/calibrate/data.
+/// Options of one file of experiments/calibrate/data. A fit of stiffness starts from half
+/// the true modulus.
 struct Shown {
   std::string_view data, fit, integrator;
   bool slow = false;  // not with --quick
@@ -61,14 +67,11 @@ constexpr double usual_step = 2e-3;  // s
 constexpr double most_work = 2e7;    // per run of a scene
 constexpr Shown shown[] = {
     {"two_lengths", "both", fitting},          {"two_lengths", "both", damping},
+    {"two_lengths", "all", fitting},           {"two_lengths", "stiffness", fitting},
     {"two_lengths_envelope", "both", fitting}, {"one_length", "both", fitting},
     {"one_length", "gamma", fitting},          {"one_length", "nu", fitting},
     {"curly_span", "gamma", fitting, true},
 };
-
-Fitted fitted_of(std::string_view word) {
-  return word == "both" ? Fitted::both : word == "gamma" ? Fitted::gamma : Fitted::nu;
-}
 
 class Cases {
  public:
@@ -78,6 +81,11 @@ class Cases {
         own_(settings_.experiment()) {}
 
   std::vector<Case> all() {
+    if (observed() == Observed::envelope &&
+        fits(fitted_of(own_.word("fit")), Fitted::stiffness)) {
+      throw InputError("an envelope has no frequency, from which stiffness follows",
+                       line_.place("set:fit"), "give records of signal=displacement");
+    }
     if (!own_.word("scenes").empty()) {
       add_scenes();
     } else if (own_.word("data").empty()) {
@@ -142,9 +150,9 @@ class Cases {
 
   void add(const FitRow& work) {
     for (const Specimen& strand : work.strands) {  // refuses what cannot be built
-      Friction friction = strand.friction;
-      if (work.how.fitted != Fitted::nu) friction.gamma = 1e-12;
-      static_cast<void>(strand.build(friction, 1));
+      Properties properties = strand.properties;
+      if (fits(work.how.fitted, Fitted::gamma)) properties.gamma = 1e-12;
+      static_cast<void>(strand.build(properties, 1));
     }
     all_.push_back(
         {work.identity(), [work](Row& row, const Deadline&) { work.measure(row); }});
@@ -196,16 +204,19 @@ class Cases {
     }
     work.records = std::make_shared<const Records>();
     work.strands = {specimen(scene)};
-    work.truth = work.strands.front().friction;
+    work.truth = work.strands.front().properties;
     work.simulate = {
         std::min(own_.number("horizon_s"), scene.duration),
         {own_.number("noise_m"), static_cast<std::uint64_t>(own_.number("noise_seed"))}};
     const bool gamma = work.truth->gamma > 0, nu = work.truth->nu > 0;
     bool any = false;
-    for (const std::string_view fit : {"both", "gamma", "nu"}) {
-      if (settings_.chosen("fit") && own_.word("fit") != fit) continue;
-      if ((fit != "nu" && !gamma) || (fit != "gamma" && !nu)) continue;
-      work.how.fitted = fitted_of(fit);
+    for (const Fitted fit :
+         {Fitted::both, Fitted::gamma, Fitted::nu, Fitted::stiffness,
+          Fitted::stiffness_gamma, Fitted::stiffness_nu, Fitted::all}) {
+      if (settings_.chosen("fit") && own_.word("fit") != name(fit)) continue;
+      if (!gamma && fits(fit, Fitted::gamma)) continue;
+      if (!nu && fits(fit, Fitted::nu)) continue;
+      work.how.fitted = fit;
       add(work);
       any = true;
     }
@@ -249,15 +260,16 @@ class Cases {
           read_records(file_of(shipped), shipped.observed));
       for (const ModelEntry* model : model_catalogue()) {
         for (const std::string_view method : methods(row.integrator)) {
-          FitRow work{std::string(row.data),
-                      records,
-                      Friction{shipped.gamma, shipped.nu},
-                      model,
-                      {},
-                      options(method, row.fit),
-                      0};
+          FitRow work{std::string(row.data),    records, shipped.truth, model, {},
+                      options(method, row.fit), 0};
           work.how.observed = shipped.observed;
-          add(work, parameters(shipped, *model));
+          Parameters p = parameters(shipped, *model);
+          if (fits(work.how.fitted, Fitted::stiffness)) {
+            p.set(stiffness_key, fmt::format("{}", shipped.truth.youngs_modulus / 2));
+            // A frequency is measured more accurately than a decay.
+            p.set("elements", fmt::format("{}", 2 * shipped.elements));
+          }
+          add(work, p);
         }
       }
     }

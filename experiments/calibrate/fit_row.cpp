@@ -1,8 +1,15 @@
+#include <algorithm>
+#include <iterator>
+
 #include "experiments/calibrate/calibrate.h"
 #include "integrators/catalogue.h"
 
 namespace tress::experiments::calibrate {
 namespace {
+
+/// In the order of Fitted.
+constexpr std::string_view fit_words[] = {
+    "gamma", "nu", "both", "stiffness", "stiffness_gamma", "stiffness_nu", "all"};
 
 void set(Row& row, const Estimate& estimate, const std::string& name,
          const std::string& unit) {
@@ -28,7 +35,12 @@ Records record_of(const FitRow& work) {
 }  // namespace
 
 std::string_view name(Fitted fitted) {
-  return fitted == Fitted::both ? "both" : fitted == Fitted::gamma ? "gamma" : "nu";
+  return fit_words[static_cast<std::size_t>(fitted) - 1];
+}
+
+Fitted fitted_of(std::string_view word) {
+  const auto found = std::ranges::find(fit_words, word);
+  return static_cast<Fitted>(found - std::begin(fit_words) + 1);
 }
 
 Row FitRow::identity() const {
@@ -44,7 +56,7 @@ Row FitRow::identity() const {
 
 void FitRow::measure(Row& row) const {
   const Specimen& first = strands.front();
-  const BuiltStrand built = first.build(first.friction, 1);
+  const BuiltStrand built = first.build(first.properties, 1);
   const std::string objection =
       refusal(find_integrator(how.integrator), *built.system, how.options.formulation);
   if (!objection.empty()) {
@@ -54,16 +66,18 @@ void FitRow::measure(Row& row) const {
   if (truth) {
     row.set("internal_friction_true_kg_m3_s", truth->gamma);
     row.set("drag_true_kg_m_s", truth->nu);
+    row.set("youngs_modulus_true_pa", truth->youngs_modulus);
   }
   const Records fitted = simulate ? record_of(*this) : *records;
   if (fitted.all.empty()) {
     row.failed("solver_error", "the scene's own run fails, or its tip does not swing");
     return;
   }
-  const FrictionFit fit = fit_friction(fitted, strands, how);
+  const OscillationFit fit = fit_oscillation(fitted, strands, how);
   row.set("records", fitted.all.size()).set("points", fitted.points());
   set(row, fit.gamma, "internal_friction", "_kg_m3_s");
   set(row, fit.nu, "drag", "_kg_m_s");
+  set(row, fit.youngs_modulus, "youngs_modulus", "_pa");
   row.set("correlation", fit.correlation).set("condition", fit.condition);
   row.set("residual_rms_m", fit.rms).set("reduced_chi2", fit.reduced_chi2);
   row.set("autocorrelation", fit.autocorrelation).set("step_shift", fit.step_shift);

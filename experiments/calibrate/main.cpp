@@ -1,6 +1,6 @@
-// Which internal friction and which air drag follow from a measured oscillation of a
-// strand, and how accurately? Without measured data: does a fit recover the true values
-// of simulated records?
+// Which internal friction, air drag and Young's modulus follow from a measured
+// oscillation of a strand, and how accurately? Without measured data: does a fit recover
+// the true values of simulated records?
 #include "experiments/calibrate/calibrate.h"
 #include "experiments/run/experiment.h"
 
@@ -14,7 +14,7 @@ constexpr Column columns[] = {
     {"data_hash", "of its text"},
     {"signal", "displacement of the tip, or envelope of it"},
     {"axis", "along which"},
-    {"fit", "both, gamma or nu; the other one is known"},
+    {"fit", "fitted values; the others are known"},
     {"model", "catalogue id"},
     {"integrator", "method"},
     {"elements", "number of elements"},
@@ -30,8 +30,14 @@ constexpr Column columns[] = {
     {"drag_low_kg_m_s", "lower end of its interval; empty: known, not fitted"},
     {"drag_high_kg_m_s", "upper end"},
     {"drag_true_kg_m_s", "with which simulated records were made"},
-    {"correlation", "of ln gamma and ln nu"},
-    {"condition", "of the derivatives of the signal with respect to these"},
+    {"youngs_modulus_pa", "Young's modulus"},
+    {"youngs_modulus_low_pa", "lower end of its interval; empty: known, not fitted"},
+    {"youngs_modulus_high_pa", "upper end of its interval"},
+    {"youngs_modulus_true_pa", "Young's modulus with which simulated records were made"},
+    {"correlation", "correlation of the logarithms of two fitted values, the largest"},
+    {"condition",
+     "condition number of the derivatives of the signal with respect to the fitted "
+     "values"},
     {"residual_rms_m", "root mean square of measured less fitted"},
     {"reduced_chi2", "sum of squares over sigma_m, over the degrees of freedom"},
     {"autocorrelation", "of successive residuals: near 0 for errors of measurement"},
@@ -66,7 +72,8 @@ int main(int argc, char** argv) {
   const Experiment experiment{
       .name = "calibrate",
       .question =
-          "which internal friction and air drag does a measured oscillation tell?",
+          "which internal friction, air drag and stiffness follow from a measured "
+          "oscillation?",
       .example = "--set data=measured.csv --set length_m=0.15 --set fit=gamma",
       .timed = false,
       .columns = columns,

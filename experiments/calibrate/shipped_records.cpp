@@ -92,9 +92,11 @@ std::string file_of(const ShippedRecords& shipped) {
 }
 
 ModelSettings settings_of(const ShippedRecords& shipped, int count) {
-  ModelSettings settings{{"elements", fmt::format("{}", count)},
-                         {"internal_friction_kg_m3_s", fmt::format("{}", shipped.gamma)},
-                         {"drag_kg_m_s", fmt::format("{}", shipped.nu)}};
+  ModelSettings settings{
+      {"elements", fmt::format("{}", count)},
+      {gamma_key, fmt::format("{}", shipped.truth.gamma)},
+      {drag_key, fmt::format("{}", shipped.truth.nu)},
+      {stiffness_key, fmt::format("{}", shipped.truth.youngs_modulus)}};
   if (shipped.planar) settings.emplace_back("modes", "bend_planar");
   return settings;
 }
@@ -115,7 +117,7 @@ Records synthetic(const ShippedRecords& shipped, std::uint64_t seed) {
       strand.set(key, value, where);
     if (shipped.observed == Observed::envelope) take_swing_times(record, strand, watch);
     const Specimen made = specimen(entry, strand);
-    strands.push_back(made.build(made.friction, 1));
+    strands.push_back(made.build(made.properties, 1));
   }
   if (!fill_in(records, strands, watch, {shipped.sigma, seed})) {
     throw std::logic_error("a shipped record cannot be simulated");

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "experiments/calibrate/records.h"
+#include "experiments/calibrate/specimen.h"
 #include "simulation/run/simulation.h"
 
 namespace tress::experiments::calibrate {
 
 /// Records under experiments/calibrate/data, none of them measured: simulated with known
-/// friction and drag, with added errors. The strands are hairs of default material and
+/// properties, with added errors. The strands are hairs of default material and
 /// section in a default scene except for `strand` and their lengths.
 struct ShippedRecords {
   std::string_view name;  // experiments/calibrate/data/<name>.csv
@@ -25,9 +26,9 @@ struct ShippedRecords {
   int points = 150;     // per record; for an envelope its first swings
   double sigma = 5e-4;  // m, Gaussian errors of zero mean, independent
   std::uint64_t seed;
-  double gamma = 1e-10, nu = 2e-5;  // the truth, kg m^3/s and kg/(m s)
-  int made_with = 40;               // elements
-  int elements = 10;                // enough for a fit
+  Properties truth{1e-10, 2e-5, 3e9};
+  int made_with = 40;  // elements
+  int elements = 10;   // enough for a fit
 };
 
 std::span<const ShippedRecords> shipped_records();

@@ -19,8 +19,11 @@ auto drag_of(auto& scene) {
                            [](const EffectChoice& one) { return one.entry->id; });
 }
 
-Scene with_friction(Scene scene, const Friction& friction) {
-  scene.strands.front().material.internal_friction = friction.gamma;
+Scene with_properties(Scene scene, const Properties& properties) {
+  Material& material = scene.strands.front().material;
+  material.internal_friction = properties.gamma;
+  material.shear_modulus *= properties.youngs_modulus / material.youngs_modulus;
+  material.youngs_modulus = properties.youngs_modulus;
   scene.tables.reset();
   auto drag = drag_of(scene);
   if (drag == scene.effects.end()) {
@@ -28,7 +31,7 @@ Scene with_friction(Scene scene, const Friction& friction) {
     Parameters none(entry.parameters, "effects.linear_drag");
     drag = scene.effects.insert(drag, EffectChoice{&entry, std::move(none)});
   }
-  drag->parameters.set(drag_key, fmt::format("{}", friction.nu));
+  drag->parameters.set(drag_key, fmt::format("{}", properties.nu));
   return scene;
 }
 
@@ -36,14 +39,16 @@ Scene with_friction(Scene scene, const Friction& friction) {
 
 Specimen specimen(const ModelEntry& model, const Parameters& parameters) {
   const Strand made = strand(parameters);
-  const auto build = [&model, parameters](const Friction& friction, int finer) {
+  const auto build = [&model, parameters](const Properties& properties, int finer) {
     Parameters p = parameters;
-    p.set(gamma_key, fmt::format("{}", friction.gamma));
-    p.set(drag_key, fmt::format("{}", friction.nu));
+    p.set(gamma_key, fmt::format("{}", properties.gamma));
+    p.set(drag_key, fmt::format("{}", properties.nu));
+    p.set(stiffness_key, fmt::format("{}", properties.youngs_modulus));
     p.set("elements", fmt::format("{}", finer * p.whole("elements")));
     return BuiltStrand{model.make(p), guarded_strands(model, p)};
   };
-  return {{parameters.number(gamma_key), parameters.number(drag_key)},
+  return {{parameters.number(gamma_key), parameters.number(drag_key),
+           parameters.number(stiffness_key)},
           made.length(),
           made.mass(),
           build};
@@ -65,8 +70,8 @@ Specimen specimen(const Scene& scene) {
     throw InputError("the strand flies freely: its tip does not swing about a root",
                      where, "clamp it: leave out motion = \"free\"");
   }
-  const auto build = [scene](const Friction& friction, int finer) {
-    Scene changed = with_friction(scene, friction);
+  const auto build = [scene](const Properties& properties, int finer) {
+    Scene changed = with_properties(scene, properties);
     for (; finer > 1; finer /= 2) changed = refined(std::move(changed));
     const Strand& made = changed.strands.front();
     const Effects effects = make_effects(changed);
@@ -75,7 +80,11 @@ Specimen specimen(const Scene& scene) {
   };
   const auto drag = drag_of(scene);
   const double nu = drag == scene.effects.end() ? 0 : drag->parameters.number(drag_key);
-  return {{strand.material.internal_friction, nu}, strand.length(), strand.mass(), build};
+  const Material& material = strand.material;
+  return {{material.internal_friction, nu, material.youngs_modulus},
+          strand.length(),
+          strand.mass(),
+          build};
 }
 
 }  // namespace tress::experiments::calibrate

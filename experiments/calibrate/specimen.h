@@ -13,10 +13,13 @@ namespace tress::experiments::calibrate {
 // Parameter names in strand models.
 inline constexpr const char* gamma_key = "internal_friction_kg_m3_s";
 inline constexpr const char* drag_key = "drag_kg_m_s";
+inline constexpr const char* stiffness_key = "youngs_modulus_pa";
 
-struct Friction {
-  double gamma;  // internal friction, kg m^3/s
-  double nu;     // air drag, kg/(m s)
+/// The properties of a strand that a fit can determine.
+struct Properties {
+  double gamma;           // internal friction, kg m^3/s
+  double nu;              // air drag, kg/(m s)
+  double youngs_modulus;  // Pa; the shear modulus keeps its ratio to it
 };
 
 struct BuiltStrand {
@@ -24,12 +27,12 @@ struct BuiltStrand {
   std::vector<GuardedStrand> guarded;
 };
 
-/// A strand of which records are made; all but its friction is known.
+/// A strand of which records are made; all but its properties is known.
 struct Specimen {
-  Friction friction;    // its own
-  double length, mass;  // m, kg
-  /// With this friction and `finer` (a power of two) times as many elements.
-  std::function<BuiltStrand(const Friction&, int finer)> build;
+  Properties properties;  // its own
+  double length, mass;    // m, kg
+  /// With these properties and `finer` (a power of two) times as many elements.
+  std::function<BuiltStrand(const Properties&, int finer)> build;
 };
 
 /// From a model's parameters (models/strand/strand_parameters.h).

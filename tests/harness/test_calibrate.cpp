@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "experiments/calibrate/friction_fit.h"
+#include "experiments/calibrate/oscillation_fit.h"
 #include "experiments/calibrate/records.h"
 #include "experiments/numerics/least_squares.h"
 #include "experiments/numerics/tip_signal.h"

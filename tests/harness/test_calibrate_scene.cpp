@@ -91,12 +91,14 @@ TEST(CalibrateScene, TenTimesTheNoiseIsTenTimesTheInterval) {
 }
 
 TEST(CalibrateScene, WithoutAChoiceEveryFitOfWhatItHasIsTried) {
-  EXPECT_EQ(cases(file_of("all.toml", hair())).size(), 3u);
+  EXPECT_EQ(cases(file_of("all.toml", hair())).size(), 7u);
   std::string still = hair();
   still.erase(still.find("[effects.linear_drag]"));
   const auto gamma = cases(file_of("still.toml", still));
-  ASSERT_EQ(gamma.size(), 1u);
-  EXPECT_EQ(gamma.front().identity.text("fit"), "gamma");
+  ASSERT_EQ(gamma.size(), 3u);
+  EXPECT_EQ(gamma[0].identity.text("fit"), "gamma");
+  EXPECT_EQ(gamma[1].identity.text("fit"), "stiffness");
+  EXPECT_EQ(gamma[2].identity.text("fit"), "stiffness_gamma");
 }
 
 TEST(CalibrateScene, RecordsOfTheUserAreOfTheScenesStrand) {
@@ -146,6 +148,8 @@ TEST(CalibrateScene, RefusesWhatItCannotFitWithTheReason) {
   const std::string file = file_of("refused.toml", hair());
   EXPECT_THAT(refusal(file, {{"length_m", "0.1"}}), HasSubstr("says itself"));
   EXPECT_THAT(refusal(file, {{"signal", "envelope"}}), HasSubstr("displacement"));
+  EXPECT_THAT(refusal(file, {{"signal", "envelope"}, {"fit", "stiffness"}}),
+              HasSubstr("no frequency"));
   const std::string free = file_of("free.toml", hair("[root]\nmotion = \"free\"\n"));
   EXPECT_THAT(refusal(free), HasSubstr("flies freely"));
 }
@@ -157,9 +161,9 @@ TEST(CalibrateScene, KeepsWhatElseActsOnTheStrand) {
                                       "[[effects.body]]\ncentre_m = [0, 0, -0.05]\n",
                                   "curl.toml");
   const Specimen strand = specimen(scene);
-  EXPECT_EQ(strand.friction.gamma, 1e-10);
-  EXPECT_EQ(strand.friction.nu, 2e-5);
-  const BuiltStrand built = strand.build({2e-10, 3e-5}, 2);
+  EXPECT_EQ(strand.properties.gamma, 1e-10);
+  EXPECT_EQ(strand.properties.nu, 2e-5);
+  const BuiltStrand built = strand.build({2e-10, 3e-5, 4e9}, 2);
   ASSERT_EQ(built.guarded.size(), 1u);
   EXPECT_EQ(built.guarded.front().points(), 21);
   EXPECT_EQ(built.guarded.front().effects.size(), 4u);

@@ -1,4 +1,4 @@
-#include "experiments/calibrate/friction_fit.h"
+#include "experiments/calibrate/oscillation_fit.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 namespace tress::experiments::calibrate {
 namespace {
 
-// Central differences in ln gamma and ln nu: at 1e-3 the error is 2e-7 of the third
+// Central differences in the logarithms: at 1e-3 the error is 2e-7 of the third
 // derivative, and Newton's tolerance of 1e-10 contributes 1e-7.
 constexpr double difference = 1e-3;
-constexpr double tolerance = 1e-7;  // of ln gamma and ln nu
+constexpr double tolerance = 1e-7;  // of the logarithms
 
 constexpr double too_correlated = 0.99;
 constexpr double widest = 2.302585092994046;  // ln 10
@@ -24,44 +24,80 @@ constexpr int refinement = 2;     // of the step; tolerances by its 4th power
 // order 2: the whole error is then below half a half-interval.
 constexpr double largest_shift = 0.25;  // half-intervals
 
-/// The fitted values as least-squares unknowns.
+/// One fitted value: its name in messages and its place in the properties and the result.
+struct Unknown {
+  Fitted one;
+  std::string_view name;
+  double Properties::*property;
+  Estimate OscillationFit::*estimate;
+  double most;  // beyond it no strand is built
+};
+constexpr Unknown known_unknowns[] = {
+    {Fitted::stiffness, "stiffness", &Properties::youngs_modulus,
+     &OscillationFit::youngs_modulus, 1e14},
+    {Fitted::gamma, "gamma", &Properties::gamma, &OscillationFit::gamma, 1e6},
+    {Fitted::nu, "nu", &Properties::nu, &OscillationFit::nu, 1e6},
+};
+
+/// The logarithms of the fitted values as least-squares unknowns.
 class Unknowns {
  public:
-  Unknowns(const std::vector<Specimen>& strands, Fitted fitted)
-      : strands_(strands), gamma_(fitted != Fitted::nu), nu_(fitted != Fitted::gamma) {}
+  Unknowns(const std::vector<Specimen>& strands, Fitted fitted) : strands_(strands) {
+    for (const Unknown& one : known_unknowns) {
+      if (fits(fitted, one.one)) fitted_.push_back(one);
+    }
+  }
 
-  std::size_t count() const { return (gamma_ ? 1u : 0u) + (nu_ ? 1u : 0u); }
-  bool gamma() const { return gamma_; }
-  bool nu() const { return nu_; }
+  std::size_t count() const { return fitted_.size(); }
+  const Unknown& operator[](std::size_t j) const { return fitted_[j]; }
 
-  std::vector<double> of(const Friction& friction) const {
+  std::vector<double> of(const Properties& properties) const {
     std::vector<double> x;
-    if (gamma_) x.push_back(std::log(friction.gamma));
-    if (nu_) x.push_back(std::log(friction.nu));
+    for (const Unknown& one : fitted_) x.push_back(std::log(properties.*one.property));
     return x;
   }
   /// For the first strand; a known value may differ between strands.
-  Friction friction(In x) const { return friction(x, strands_.front()); }
+  Properties properties(In x) const { return properties(x, strands_.front()); }
   /// With `finer` times as many elements. Empty: out of range.
   std::vector<BuiltStrand> strands(In x, int finer) const {
-    constexpr double most = 1e6;
-    const auto [gamma, nu] = friction(x);
-    if ((gamma_ && !(gamma < most)) || (nu_ && !(nu < most))) return {};
+    for (std::size_t j = 0; j < count(); ++j) {
+      if (!(std::exp(x[j]) < fitted_[j].most)) return {};
+    }
     std::vector<BuiltStrand> all;
-    for (const Specimen& one : strands_)
-      all.push_back(one.build(friction(x, one), finer));
+    for (const Specimen& one : strands_) {
+      all.push_back(one.build(properties(x, one), finer));
+    }
     return all;
   }
 
  private:
-  Friction friction(In x, const Specimen& strand) const {
-    return {gamma_ ? std::exp(x[0]) : strand.friction.gamma,
-            nu_ ? std::exp(x[count() - 1]) : strand.friction.nu};
+  Properties properties(In x, const Specimen& strand) const {
+    Properties all = strand.properties;
+    for (std::size_t j = 0; j < count(); ++j) all.*fitted_[j].property = std::exp(x[j]);
+    return all;
   }
 
   const std::vector<Specimen>& strands_;
-  bool gamma_, nu_;
+  std::vector<Unknown> fitted_;
 };
+
+/// The pair of fitted values of the largest correlation.
+struct Pair {
+  std::size_t one = 0, other = 0;
+  double correlation = Estimate::none;
+};
+Pair most_correlated(const std::vector<double>& covariance, std::size_t p) {
+  Pair most;
+  for (std::size_t i = 0; i < p; ++i) {
+    for (std::size_t j = i + 1; j < p; ++j) {
+      const double c = covariance[i * p + j] /
+                       std::sqrt(covariance[i * p + i] * covariance[j * p + j]);
+      if (std::abs(c) <= std::abs(most.correlation)) continue;
+      most = {i, j, c};
+    }
+  }
+  return most;
+}
 
 /// The records as used by the fit, and their common scale (m, or 1 with standard errors).
 struct Measured {
@@ -92,14 +128,15 @@ class Fit {
         strands_(strands),
         measured_(measured(records, how.observed)) {}
 
-  FrictionFit result();
+  OscillationFit result();
 
  private:
   bool residuals(In x, const FitOptions& how, int finer, Out r) const;
   bool residuals(In x, Out r) const { return residuals(x, how_, 1, r); }
   std::vector<double> start();
-  void describe(const LeastSquares& least, FrictionFit& fit) const;
-  void judge(const std::vector<double>& half, FrictionFit& fit) const;
+  void describe(const LeastSquares& least, OscillationFit& fit) const;
+  void judge(const LeastSquares& least, const std::vector<double>& half,
+             OscillationFit& fit) const;
   double shift(const LeastSquares& least, const std::vector<double>& half,
                const FitOptions& how, int finer) const;
 
@@ -128,16 +165,27 @@ bool Fit::residuals(In x, const FitOptions& how, int finer, Out r) const {
 
 std::vector<double> Fit::start() {
   std::vector<double> r(records_.points());
-  const auto misfit = [&](const Friction& friction) {
+  const auto misfit = [&](const Properties& properties) {
     ++start_evaluations_;
-    if (!residuals(unknowns_.of(friction), r)) return Estimate::none;
+    if (!residuals(unknowns_.of(properties), r)) return Estimate::none;
     return std::inner_product(r.begin(), r.end(), r.begin(), 0.0);
   };
+  double modulus = strands_.front().properties.youngs_modulus;
+  if (fits(how_.fitted, Fitted::stiffness)) {
+    const auto values = [&](const Properties& properties) {
+      ++start_evaluations_;
+      return simulated(records_, unknowns_.strands(unknowns_.of(properties), 1), how_);
+    };
+    // Damping hardly moves the frequency: that of the decay.
+    const Properties damped =
+        start_values(records_, strands_, how_.observed, Fitted::nu, modulus, misfit);
+    modulus = start_stiffness(records_, damped, values);
+  }
   return unknowns_.of(
-      friction_start(records_, strands_, how_.observed, how_.fitted, misfit));
+      start_values(records_, strands_, how_.observed, how_.fitted, modulus, misfit));
 }
 
-void Fit::describe(const LeastSquares& least, FrictionFit& fit) const {
+void Fit::describe(const LeastSquares& least, OscillationFit& fit) const {
   const std::size_t n = least.residual.size(), p = least.x.size();
   const double squares = std::inner_product(least.residual.begin(), least.residual.end(),
                                             least.residual.begin(), 0.0);
@@ -157,21 +205,17 @@ void Fit::describe(const LeastSquares& least, FrictionFit& fit) const {
   if (!records_.all.front().sigma.empty()) {
     fit.reduced_chi2 = squares * measured_.scale * measured_.scale / fit.degrees;
   }
-  const Friction friction = unknowns_.friction(least.x);
-  fit.gamma.value = friction.gamma;
-  fit.nu.value = friction.nu;
+  const Properties properties = unknowns_.properties(least.x);
+  for (const Unknown& one : known_unknowns) {
+    (fit.*one.estimate).value = properties.*one.property;
+  }
   if (least.covariance.empty()) return;
 
   const std::vector<double> half = least.half_intervals(fit.degrees, how_.confidence);
-  const auto spread = [](Estimate& estimate, double ratio) {
-    estimate.low = estimate.value / std::exp(ratio);
-    estimate.high = estimate.value * std::exp(ratio);
-  };
-  if (unknowns_.gamma()) spread(fit.gamma, half.front());
-  if (unknowns_.nu()) spread(fit.nu, half.back());
-  if (p == 2) {
-    const auto& c = least.covariance;
-    fit.correlation = c[1] / std::sqrt(c[0] * c[3]);
+  for (std::size_t j = 0; j < p; ++j) {
+    Estimate& estimate = fit.*unknowns_[j].estimate;
+    estimate.low = estimate.value / std::exp(half[j]);
+    estimate.high = estimate.value * std::exp(half[j]);
   }
   FitOptions finer = how_;
   const double tighter = std::pow(refinement, 4);
@@ -180,7 +224,7 @@ void Fit::describe(const LeastSquares& least, FrictionFit& fit) const {
   finer.options.atol /= tighter;
   fit.step_shift = shift(least, half, finer, 1);
   fit.elements_shift = shift(least, half, how_, refinement);
-  judge(half, fit);
+  judge(least, half, fit);
 }
 
 /// The largest change of a fitted value, over half its interval, for these runs.
@@ -197,23 +241,26 @@ double Fit::shift(const LeastSquares& least, const std::vector<double>& half,
   return most;
 }
 
-void Fit::judge(const std::vector<double>& half, FrictionFit& fit) const {
+void Fit::judge(const LeastSquares& least, const std::vector<double>& half,
+                OscillationFit& fit) const {
   const auto say = [&fit](std::string_view status, std::string reason) {
     fit.status = status;
     fit.reason = std::move(reason);
   };
-  const double wide = std::ranges::max(half);
+  const auto widest_one = std::ranges::max_element(half);
+  const Pair pair = most_correlated(least.covariance, half.size());
+  fit.correlation = pair.correlation;
   if (std::abs(fit.correlation) > too_correlated) {
+    const std::string_view a = unknowns_[pair.one].name, b = unknowns_[pair.other].name;
     say("not_identified",
-        fmt::format(
-            "gamma and nu damp this motion alike (correlation {:.4f}): fit one of "
-            "them (fit=gamma, fit=nu) or add a record of another length",
-            fit.correlation));
-  } else if (wide > widest) {
-    const bool of_gamma = unknowns_.gamma() && half.front() == wide;
+        fmt::format("{} and {} change this motion in the same way (correlation {:.4f}): "
+                    "fit one of them (fit={}, fit={}) or add a record of another length",
+                    a, b, fit.correlation, a, b));
+  } else if (*widest_one > widest) {
+    const auto j = static_cast<std::size_t>(widest_one - half.begin());
     say("not_identified",
         fmt::format("the interval of {} spans a factor of {:.3g} each way: it may be 0",
-                    of_gamma ? "gamma" : "nu", std::exp(wide)));
+                    unknowns_[j].name, std::exp(*widest_one)));
   } else if (std::isnan(fit.step_shift) || std::isnan(fit.elements_shift)) {
     say("solver_error", "a run with half the step or twice the elements fails");
   } else if (fit.step_shift > largest_shift) {
@@ -232,8 +279,8 @@ void Fit::judge(const std::vector<double>& half, FrictionFit& fit) const {
   }
 }
 
-FrictionFit Fit::result() {
-  FrictionFit fit;
+OscillationFit Fit::result() {
+  OscillationFit fit;
   const std::size_t n = records_.points(), p = unknowns_.count();
   const std::size_t constants =
       how_.observed == Observed::displacement ? records_.all.size() : 0;
@@ -260,10 +307,11 @@ std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model
   for (const Record& record : records.all) {
     Parameters strand = parameters;
     for (const auto& [key, value, where] : record.of_strand) {
-      if ((key == gamma_key && fitted != Fitted::nu) ||
-          (key == drag_key && fitted != Fitted::gamma)) {
+      if ((key == gamma_key && fits(fitted, Fitted::gamma)) ||
+          (key == drag_key && fits(fitted, Fitted::nu)) ||
+          (key == stiffness_key && fits(fitted, Fitted::stiffness))) {
         throw InputError("'" + key + "' is what is fitted", where,
-                         "leave out the column, or fit the other one alone");
+                         "leave out the column, or do not fit it (--set fit)");
       }
       strand.set(key, value, where);
     }
@@ -282,8 +330,9 @@ std::vector<Specimen> strands_of(const Records& records, const Scene& scene) {
   return {records.all.size(), specimen(scene)};
 }
 
-FrictionFit fit_friction(const Records& records, const std::vector<Specimen>& strands,
-                         const FitOptions& how) {
+OscillationFit fit_oscillation(const Records& records,
+                               const std::vector<Specimen>& strands,
+                               const FitOptions& how) {
   return Fit(records, strands, how).result();
 }
 
