@@ -325,7 +325,7 @@ test('WorkPrecision_TellsSolversAndKindsOfErrorApart', () => {
 });
 
 test('Choices_AreComparedByTheirMedian', () => {
-  assert.match(page_text(), /What a choice is worth .* median over scenes and errors/);
+  assert.match(page_text(), /Effect of a choice .* median over scenes and targets/);
 });
 
 // Ticks of a figure as text.

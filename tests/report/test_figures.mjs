@@ -16,6 +16,11 @@ import { validation_cells } from '../../experiments/report/figures/validation.mj
 import { validation_orders } from '../../experiments/report/figures/validation_orders.mjs';
 import { drift_findings } from '../../experiments/report/src/findings/drift.mjs';
 import { control_findings } from '../../experiments/report/src/findings/tolerance.mjs';
+import { hard_cases, hard_findings } from '../../experiments/report/figures/hard_cases.mjs';
+import { divided_heads } from '../../experiments/report/figures/divided_heads.mjs';
+import { damping } from '../../experiments/report/figures/damping.mjs';
+import { hard_rows, judged, not_compared } from '../../experiments/report/src/hard.mjs';
+import { work_findings } from '../../experiments/report/src/findings/work.mjs';
 import { outcome_text } from '../../experiments/report/src/outcome.mjs';
 import { stability_findings } from '../../experiments/report/src/findings/stability.mjs';
 
@@ -185,4 +190,82 @@ test('LowerBounds_AreNotJoinedToLimits', () => {
   );
   assert.deepEqual(filled.map(({ elements }) => elements), [5, 20]);
   assert.deepEqual(hollow.map(({ elements }) => elements), [10]);
+});
+
+const hard_run = (more) => ({
+  case: 'cone',
+  model: 'der',
+  variant: '',
+  integrator: 'backward_euler',
+  dt_s: 1e-3,
+  outcome: 'stable',
+  error_rel: null,
+  ...more,
+});
+
+test('StableWithoutAReference_HasAMarkOfItsOwn', () => {
+  const tables = {
+    hard_cases: [
+      hard_run({ model: 'der' }),
+      hard_run({ model: 'corde', error_rel: 0.2 }),
+      hard_run({ model: 'xpbd', error_rel: 0.01, outcome: 'stable and accurate' }),
+    ],
+  };
+  assert.deepEqual(
+    hard_rows(tables).map((row) => row.outcome),
+    [not_compared, 'stable', 'stable and accurate'],
+  );
+  assert.deepEqual(hard_cases.rows(tables).map((row) => row.letter), ['N', 'S', 'A']);
+});
+
+test('AShortenedCase_CountsOnlyWhereItWasRunWhole', () => {
+  const long = (more) => hard_run({ case: 'million_steps', steps: 5000, error_rel: 0.2, ...more });
+  const tables = {
+    hard_cases: [long(), long({ dt_s: 1 / 30 }), hard_run({ error_rel: 0.1 }), hard_run({ dt_s: 1 / 30, error_rel: 0.1 })],
+    hard_cases_million_steps: [long({ steps: 1e6, outcome: 'unstable' })],
+  };
+  assert.deepEqual(
+    judged(tables).map((row) => [row.case, row.dt_s, row.outcome]),
+    [['cone', 1e-3, 'stable'], ['cone', 1 / 30, 'stable'], ['million_steps', 1e-3, 'unstable']],
+  );
+  assert.match(hard_findings(tables)[0], /survives 1 of the 1 cases/);
+  assert.ok(hard_cases.rows(tables).some((row) => row.situation === 'million steps, cut to 5000'));
+  const whole = { hard_cases: [long({ steps: 1e6 })] };
+  assert.equal(judged(whole).length, 1, 'a table that was run whole is not cut');
+});
+
+test('HardCases_SayWhichLetterIsWhichStep', () => {
+  const rows = [1e-3, 1 / 30].map((dt_s) => hard_run({ dt_s }));
+  const [{ title }] = hard_cases.spec({ hard_cases: rows }, { width: 1000, theme: paper_theme }).concat;
+  assert.equal(title.subtitle, 'from left to right in each cell: 1 ms, 33.3 ms');
+});
+
+test('DividedHeads_DrawWhatWasMeasured', () => {
+  const row = { effects: 'drag', status: 'ok', beside: 1, strands: 1000, ranks: 2 };
+  const tables = {
+    divided_heads: [
+      { ...row, kind: 'measured', cost_per_step_s: 2e-3, model_cost_per_step_s: 1.9e-3 },
+      { ...row, kind: 'measured', beside: 2, cost_per_step_s: 3e-3 },
+      { ...row, kind: 'predicted', beside: null, ranks: 64, strands: 1e6, model_cost_per_step_s: 1e-3 },
+    ],
+  };
+  const { concat } = divided_heads.spec(tables, { width: 1000, theme: paper_theme });
+  const points = concat[0].layer.find(({ mark }) => mark.type === 'point');
+  assert.deepEqual(points.data.values.map((one) => one.cost_ms), [2]);
+});
+
+test('Damping_KeepsTheSign', () => {
+  const row = { model: 'der', integrator: 'bdf2', dt_s: 1e-3, status: 'ok' };
+  const tables = { damping: [{ ...row, energy_lost_rel: 0.1 }, { ...row, energy_lost_rel: -0.2 }] };
+  assert.deepEqual(damping.rows(tables).map(({ sign }) => sign), ['lost', 'gained']);
+  const { concat } = damping.spec(tables, { width: 1000, theme: paper_theme });
+  assert.deepEqual(concat.map(({ title }) => title), ['der: energy lost', 'der: energy gained']);
+});
+
+test('Cheapest_NamesItsField', () => {
+  const row = { scene: 'beam', error_kind: 'time', status: 'ok', wall_s_per_sim_s: 1, error_rel: 1e-3 };
+  const say = (...integrators) =>
+    work_findings({ work_precision: integrators.map((integrator) => ({ ...row, integrator })) })[0];
+  assert.match(say('rk4'), /\(the only integrator run\): error 0.01 with rk4/);
+  assert.match(say('rk4', 'bdf2'), /\(of 2 integrators\)/);
 });

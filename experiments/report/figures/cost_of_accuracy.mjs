@@ -1,4 +1,4 @@
-// The cheapest way to a wanted error, scene by scene, and what each choice is worth.
+// The cheapest run for a target error, scene by scene, and the effect of each choice.
 import { distinct, group_by, is_number, is_positive, succeeded } from '../src/tables.mjs';
 import {
   format_elements,
@@ -104,8 +104,8 @@ export function cost_findings(tables) {
   const said = winner_sentences(rows, wanted);
   if (medians.length > 0)
     said.push(
-      `What a choice is worth (time when it is replaced by the next best that keeps the error, median over ` +
-        `scenes and errors): ${medians
+      `Effect of a choice (time after it is replaced by the next best that keeps the error, over the winner's, median over ` +
+        `scenes and targets): ${medians
           .map(({ choice, factor }) => `${choice_name(choice)} ${format_ratio(factor)}`)
           .join(', ')}.`,
     );
@@ -122,7 +122,7 @@ export const cost_of_accuracy = {
   title: 'Error and time, scene by scene',
   table: 'cost_of_accuracy',
   caption: `One panel per scene: the runs that nothing beats in both error and time. Down and to the
-    left is better. Large marks are the winners at a wanted error, hollow ones the runners-up, which differ in model or
+    left is better. Large marks are the winners at a target error, hollow ones the runners-up, which differ in model or
     integrator. Errors are of the tip, against the continuous rod, over the length of the strand. A click on a name in the
     legend keeps one model. Made from cost_of_accuracy.csv.`,
 
@@ -146,7 +146,7 @@ export const cost_of_accuracy = {
     const margin = rows.some((row) => is_number(row.margin));
     const tooltip = tooltips([
       ['kind', 'kind'],
-      ['target_error_rel', 'wanted error', '.1%'],
+      ['target_error_rel', 'target error', '.1%'],
       ['name', 'model'],
       ['method', 'integrator'],
       ['how', 'options'],
@@ -205,11 +205,11 @@ const choice_rows = (tables) =>
 
 export const cost_choices = {
   id: 'cost_choices',
-  title: 'What each choice is worth',
+  title: 'Effect of each choice',
   table: 'cost_of_accuracy',
   caption: `How many times as long a run takes when one choice of the winner is replaced by the best alternative
-    that still meets the wanted error: the model, the integrator, the linear solver or tangent, the modes, twice
-    the elements, half the step. One mark per scene and wanted error. Made from cost_of_accuracy.csv.`,
+    that still meets the target error: the model, the integrator, the linear solver or tangent, the modes, twice
+    the elements, half the step. One mark per scene and target error. Made from cost_of_accuracy.csv.`,
 
   rows: choice_rows,
 
@@ -241,7 +241,7 @@ export const cost_choices = {
         opacity: dimmed_unless(['pick_scene'], 0.85),
         tooltip: tooltips([
           ['situation', 'scene'],
-          ['target_error_rel', 'wanted error', '.1%'],
+          ['target_error_rel', 'target error', '.1%'],
           ['replaced', 'replaced'],
           ['name', 'best alternative: model'],
           ['method', 'integrator'],

@@ -11,6 +11,7 @@ const rows_of = ({ damping = [] }) =>
       dt_ms: 1e3 * row.dt_s,
       lost_pct: 100 * row.energy_lost_rel,
       change_pct: 100 * Math.abs(row.energy_lost_rel),
+      sign: row.energy_lost_rel > 0 ? 'lost' : 'gained',
     }))
     .filter((row) => is_positive(row.change_pct));
 
@@ -18,18 +19,16 @@ export const damping = {
   id: 'damping',
   title: 'Energy that a method takes',
   table: 'damping',
-  caption: `What a hair that was let go has less of its energy after a second without friction, against the step: lost or gained, over
-    what a fall to rest would free. A panel per model. Made from damping.csv.`,
+  caption: `Energy that a hair without friction has lost or gained after a second, against the step, over
+    what a fall to rest would free. A panel for each model and sign: what the method takes, and what it
+    puts in. Made from damping.csv.`,
 
   rows: rows_of,
 
   spec(tables, { width }) {
     const rows = rows_of(tables);
     return line_panels(
-      [...group_by(rows, (row) => row.model)].map(([model, members]) => [
-        spaced(model),
-        members,
-      ]),
+      [...group_by(rows, (row) => `${spaced(row.model)}: energy ${row.sign}`)],
       {
         id: 'damping',
         width,
@@ -40,7 +39,7 @@ export const damping = {
           ['integrator', 'method'],
           ['elements', 'elements'],
           ['dt_ms', 'step (ms)', '.3g'],
-          ['lost_pct', 'lost (%)', '.3g'],
+          ['lost_pct', 'lost, below zero gained (%)', '.3g'],
         ],
       },
     );
@@ -48,8 +47,9 @@ export const damping = {
 
   describe(tables) {
     const rows = rows_of(tables);
-    return `Energy lost or gained in percent against the step, both log scale, for
-      ${distinct(rows.map((row) => row.integrator)).length} methods and
+    const gained = rows.filter((row) => row.sign === 'gained').length;
+    return `Energy lost (${rows.length - gained} runs) or gained (${gained} runs) in percent against the step,
+      both log scale, for ${distinct(rows.map((row) => row.integrator)).length} methods and
       ${distinct(rows.map((row) => row.model)).length} models.`;
   },
 };

@@ -4,59 +4,35 @@ import { format_time } from '../src/format.mjs';
 import { by_pace, by_tolerance, pace } from '../src/pace.mjs';
 import { spaced } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
-import { cell_fills } from './palette.mjs';
-
-// From best to worst: name, letter in the cell, look.
-export const outcomes = [
-  ['stable and accurate', 'A', cell_fills.dark],
-  ['stable', 'S', cell_fills.light],
-  ['not finished', 'T', cell_fills.middle],
-  ['unstable', 'U', cell_fills.strong],
-  ['refused', '\u2013', undefined],
-];
-const rank = (outcome) => outcomes.findIndex(([name]) => name === outcome);
-const letter = (outcome) => outcomes[rank(outcome)][1];
+import { best_variants, hard_rows, not_compared, outcomes, rank, survives } from '../src/hard.mjs';
 
 const rows_of = (tables) =>
-  (tables.hard_cases ?? [])
-    .filter((row) => rank(row.outcome) >= 0 && is_number(row.dt_s))
-    .map((row) => ({
-      ...row,
-      name: spaced(row.model),
-      situation: spaced(row.case),
-      letter: letter(row.outcome),
-      step: pace(row),
-      error_pct: is_number(row.error_rel) ? 100 * row.error_rel : null,
-    }));
+  best_variants(hard_rows(tables).filter((row) => is_number(row.dt_s))).map((row) => ({
+    ...row,
+    name: spaced(row.model),
+    situation: spaced(row.case) + (row.cut > 0 ? `, cut to ${row.cut}` : ''),
+    letter: outcomes[rank(row)][1],
+    step: pace(row),
+    error_pct: is_number(row.error_rel) ? 100 * row.error_rel : null,
+  }));
 
-// Variants of a model (tangents, ways to keep lengths) share its cell: the best of them.
-const best_variants = (rows) =>
-  [
-    ...group_by(rows, (row) =>
-      [row.case, row.model, row.integrator, row.step].join('|'),
-    ).values(),
-  ].map((members) =>
-    members.reduce((a, b) => (rank(b.outcome) < rank(a.outcome) ? b : a)),
-  );
-
-const survives = (row) => row.outcome.startsWith('stable');
-
-// What an asked error survives, over all models.
+// What a tolerance survives, over all models.
 const tolerance_findings = (rows, admitted) =>
   [...group_by(rows, (row) => `${spaced(row.integrator)}, ${row.step}`)].map(
     ([name, members]) => {
       const all = admitted(members);
       const of = (outcome) => all.filter((row) => row.outcome === outcome).length;
       return (
-        `${name}: of the ${all.length} pairs of case and model that it can be put to, ` +
-        `${of('stable and accurate')} stable and accurate, ${of('stable')} stable, ` +
-        `${of('unstable')} unstable, ${of('not finished')} not finished.`
+        `${name}: of the ${all.length} pairs of case and model that it can run, ` +
+        `${of('stable and accurate')} are stable and accurate, ${of('stable')} stable and inaccurate, ` +
+        `${of(not_compared)} stable without a reference, ${of('unstable')} unstable and ` +
+        `${of('not finished')} not finished.`
       );
     },
   );
 
 export function hard_findings(tables) {
-  const rows = best_variants(rows_of(tables));
+  const rows = rows_of(tables).filter((row) => row.cut === 0);
   if (rows.length === 0) return [];
   const fixed = rows.filter((row) => !by_tolerance(row));
   const longest = Math.max(...fixed.map((row) => row.dt_s));
@@ -68,13 +44,14 @@ export function hard_findings(tables) {
       all: admitted(members).length,
       stable: members.filter(survives).length,
       accurate: members.filter((row) => row.outcome === 'stable and accurate').length,
+      compared: members.filter((row) => survives(row) && row.outcome !== not_compared).length,
     }))
     .filter(({ all }) => all > 0)
     .sort((a, b) => b.stable - a.stable || b.accurate - a.accurate || a.all - b.all);
   const said = scores.slice(0, 6).map(
-    ({ name, all, stable, accurate }) =>
-      `${name}, steps of ${format_time(longest)}: survives ${stable} of the ${all} cases it can ` +
-      `be put to, ${accurate} of them accurately.`,
+    ({ name, all, stable, accurate, compared }) =>
+      `${name}, steps of ${format_time(longest)}: survives ${stable} of the ${all} cases that it can ` +
+      `run, and is accurate in ${accurate} of the ${compared} of these that have a reference.`,
   );
   const nobody = [...group_by(at, (row) => row.situation)]
     .filter(([, members]) => admitted(members).length > 0 && !members.some(survives))
@@ -89,22 +66,28 @@ export const hard_cases = {
   title: 'Case by case, at each step',
   table: 'hard_cases',
   caption: `One chart per integrator: hard cases downwards, models across. Each cell is split by time
-    step, the shortest at the left, or by tolerance (the error that was asked for, over the length), the tightest at the left. A, dark green: stable and within the accepted error; S, light green: every
-    bound of physics was kept, but the answer is further off; U, orange: a bound broke, or the step's equations
-    found no solution; T, yellow: did not finish in the time a run was given; a dash, grey: the model or the
-    integrator does not take this case, and says why. Variants of a model (its tangents, its ways to keep lengths) count as their best. Made from
-    hard_cases.csv.`,
+    step or tolerance, in the order that stands above the chart. A, dark green: stable and within the accepted error. S, light
+    green: every bound of physics was kept, but the error is larger. N, white: every bound was kept, but there is no
+    reference to compare with. U, orange: a bound broke, or the step's equations found no solution. T, yellow: did not finish
+    within its work. A dash, grey: the model or the integrator does not support the case, and the table gives the reason. The best
+    variant of a model counts (its tangents, its ways to keep lengths). Made from hard_cases.csv and, for the million steps,
+    hard_cases_million_steps.csv.`,
 
-  rows: (tables) => best_variants(rows_of(tables)),
+  rows: rows_of,
 
   spec(tables, { width, theme }) {
     const rows = this.rows(tables);
     const models = distinct(rows.map((row) => row.name));
-    const steps = distinct(rows.toSorted(by_pace).map((row) => row.step));
     const known = outcomes.filter(([name]) => rows.some((row) => row.outcome === name));
     const room = Math.max(28, Math.min(58, Math.floor((width - 250) / models.length)));
-    const chart = ([integrator, members]) => ({
-      title: spaced(integrator),
+    const chart = ([integrator, members]) => {
+      const steps = distinct(members.toSorted(by_pace).map((row) => row.step));
+      return {
+      title: {
+        text: spaced(integrator),
+        subtitle: `from left to right in each cell: ${steps.join(', ')}`,
+        subtitleColor: theme.muted,
+      },
       width: { step: room, for: 'position' },
       height: { step: 19 },
       data: { values: members },
@@ -133,7 +116,7 @@ export const hard_cases = {
       },
       layer: [
         {
-          mark: { type: 'rect', stroke: theme.background, strokeWidth: 1 },
+          mark: { type: 'rect', stroke: theme.axis, strokeWidth: 0.3 },
           encoding: {
             color: {
               field: 'outcome',
@@ -141,15 +124,16 @@ export const hard_cases = {
               title: null,
               scale: {
                 domain: known.map(([name]) => name),
-                range: known.map(([, , look]) => look?.fill ?? theme.grid),
+                range: known.map(([, , look]) => (look ? look.fill ?? theme.background : theme.grid)),
               },
               legend: {
                 orient: 'top',
                 direction: 'horizontal',
-                columns: width > 640 ? 5 : 2,
+                columns: width > 640 ? 6 : 2,
                 symbolType: 'square',
                 symbolSize: 220,
-                symbolStrokeWidth: 0,
+                symbolStrokeWidth: 0.5,
+                symbolStrokeColor: theme.axis,
                 labelExpr: `{${known
                   .map(([name, mark]) => `'${name}': '${mark}: ${name}'`)
                   .join(', ')}}[datum.value]`,
@@ -182,7 +166,8 @@ export const hard_cases = {
           encoding: { text: { field: 'letter' } },
         })),
       ],
-    });
+      };
+    };
     return {
       concat: [...group_by(rows, (row) => row.integrator)].map(chart),
       columns: 1,

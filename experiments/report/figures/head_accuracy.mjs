@@ -47,7 +47,7 @@ export const head_accuracy = {
     );
     const tooltip = tooltips([
       ['kind', 'kind'],
-      ['target_error_rel', 'wanted error', '.1%'],
+      ['target_error_rel', 'target error', '.1%'],
       ['guides', 'simulated'],
       ['strands', 'hairs'],
       ['elements', 'elements'],

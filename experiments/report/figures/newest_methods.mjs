@@ -131,7 +131,7 @@ function panel(rows, title, { style, legend, panel_width, y }) {
 
 export const newest_methods = {
   id: 'newest_methods',
-  title: 'The newest methods beside the others',
+  title: 'The newest methods and the others',
   table: 'block_descent',
   caption: `Error of the tip of the swinging strand against the time for a simulated second,
     one core; down and left is better. Left: against the continuous rod. Right: against fine

@@ -68,7 +68,7 @@ function ratio_panel(pairs, { panel_width, theme }) {
     encoding: { x, y, text: { field: 'text' } },
   });
   return {
-    title: 'What composite costs beside recursive',
+    title: 'Cost of composite over recursive',
     width: panel_width,
     height: panel_height,
     layer: [

@@ -260,7 +260,7 @@ function ranking(tables, { width, style, theme }) {
 
 export const swing = {
   id: 'swing',
-  title: 'A swinging strand at a stated error, beside other simulators',
+  title: 'A swinging strand at a stated error, with other simulators',
   table: 'work_precision',
   finding: swing_finding,
   caption: `Wall time of 2 simulated seconds on one core against the tip error (root mean

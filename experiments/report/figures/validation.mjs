@@ -38,6 +38,7 @@ function cell(members) {
         ? '<.01'
         : format_number(100 * worst.error_rel, 2).replace(/^0\./, '.'),
     lost: within && lost,
+    partly: members.some((row) => row.status === 'refused'),
     reason: lost ? reason : '',
   };
 }

@@ -161,6 +161,6 @@ export const validation_tests = {
   describe(tables) {
     const rows = curve_rows(tables);
     return `${distinct(rows.map((row) => row.test)).length} panels, one per test: measured values of
-      ${distinct(rows.map((row) => row.name)).length} models beside the line of the continuous rod.`;
+      ${distinct(rows.map((row) => row.name)).length} models and the line of the continuous rod.`;
   },
 };

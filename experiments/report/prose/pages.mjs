@@ -4,7 +4,9 @@ import { join } from 'node:path';
 import { all_objects } from '../src/objects.mjs';
 import { InputError } from '../src/input.mjs';
 import { load_results } from '../src/load.mjs';
+import { literals } from './literals.mjs';
 import { queries } from './queries/all.mjs';
+import { provenance } from './queries/machine.mjs';
 import { fill, untraced_numbers } from './template.mjs';
 
 // The page of a template: that of a study lies in the study's folder.
@@ -32,7 +34,26 @@ export function page_files(root) {
   }));
 }
 
-// Where a template names a number that no query computed.
+// Pages that somebody wrote by hand, and sources whose texts fill slots. What a page is made
+// of elsewhere has a check of its own: the program prints scenes/README.md and the list of
+// the catalogue, and a test compares them.
+export const written_by_hand = [
+  'CONTRIBUTING.md',
+  'experiments/benchmarks/README.md',
+  'experiments/calibrate/data/README.md',
+  'experiments/report/README.md',
+];
+// These print texts of other sources, and what columns mean.
+const quoting = ['columns.mjs', 'python.mjs', 'references.mjs'];
+export const text_sources = (root) =>
+  ['experiments/report/prose/queries', 'experiments/report/src/findings'].flatMap((folder) =>
+    readdirSync(join(root, folder))
+      .filter((name) => name.endsWith('.mjs') && !quoting.includes(name))
+      .sort()
+      .map((name) => `${folder}/${name}`),
+  );
+
+// Where a text names a number or a number word that no query computed.
 export function untraced(file, template) {
   return untraced_numbers(template).map(
     ({ line, text }) =>
@@ -40,6 +61,13 @@ export function untraced(file, template) {
       'the definition or input that it is to experiments/report/prose/allowed.mjs',
   );
 }
+
+export const untraced_literals = (file, source) =>
+  literals(source).flatMap(({ line, text }) =>
+    untraced_numbers(text).map(
+      (one) => `${file}:${line + one.line - 1}: '${one.text}' in a text that is printed; compute it`,
+    ),
+  );
 
 export function answers(tables, root) {
   return (name) => {
@@ -53,17 +81,32 @@ export function answers(tables, root) {
   };
 }
 
-// [{page, text}], every page as it must be.
+// The same tables; the name of each that is read goes into `read`.
+const watched = (tables, read) =>
+  new Proxy(tables, {
+    get(all, name) {
+      if (typeof name === 'string' && Object.hasOwn(all, name)) read.add(name);
+      return all[name];
+    },
+  });
+
+// [{page, text, tables}], every page as it must be, and the tables that it was made from.
 export function written_pages(root) {
   const warnings = [];
   const tables = all_objects(load_results(join(root, 'results'), (text) => warnings.push(text)));
   if (warnings.length > 0) throw new InputError(warnings.join('\n'));
-  const answer = answers(tables, root);
   const problems = [];
   const pages = page_files(root).map(({ name, template, page }) => {
     const text = readFileSync(join(root, template), 'utf8');
     problems.push(...untraced(template, text));
-    return { page, text: made_from(name) + fill(text, template, answer) };
+    const read = new Set();
+    const filled = fill(text, template, answers(watched(tables, read), root)).trimEnd();
+    const source = provenance([...read], root);
+    return {
+      page,
+      text: `${made_from(name)}${filled}\n${source === '' ? '' : `\n${source}\n`}`,
+      tables: [...read].sort(),
+    };
   });
   if (problems.length > 0) throw new InputError(problems.join('\n'));
   return pages;

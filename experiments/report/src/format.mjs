@@ -34,11 +34,12 @@ export function format_time(seconds) {
   return `${format_number(seconds * 1e6)} µs`;
 }
 
-// The steps of a run, given or chosen by a tolerance.
-export const format_steps = (row, time = format_time) =>
-  typeof row.tolerance === 'number'
-    ? `tolerance ${format_number(row.tolerance)}`
-    : time(row.dt_s);
+// The steps of a run, given or chosen with error control; a table may know their mean.
+export function format_steps(row, time = format_time) {
+  if (typeof row.tolerance !== 'number') return time(row.dt_s);
+  const mean = row.mean_step_s > 0 ? `, mean step ${format_time(row.mean_step_s)}` : '';
+  return `adaptive (tolerance ${format_number(row.tolerance)}${mean})`;
+}
 
 // Two numbers where the result of a run is extrapolated from them.
 export const format_elements = (row) =>

@@ -21,6 +21,7 @@ import * as heads from './heads.mjs';
 import * as machine from './machine.mjs';
 import * as matrices from './matrices.mjs';
 import * as newest from './newest.mjs';
+import * as peers from './peers.mjs';
 import * as player from './player.mjs';
 import * as python from './python.mjs';
 import * as references from './references.mjs';
@@ -52,6 +53,7 @@ export const queries = {
   machine,
   matrices,
   newest,
+  peers,
   player,
   python,
   references,

@@ -9,7 +9,7 @@ export const itself = (tables) => {
   const slowed = all.filter((row) => row.beside === 'slowed');
   const found = slowed.filter((row) => row.verdict === 'slower').length;
   return (
-    `${count(same, 'wrong')} false verdicts of ${count(same, 'rows')} in ${same.length} runs of it beside itself. ` +
+    `${count(same, 'wrong')} false verdicts of ${count(same, 'rows')} in ${same.length} runs against itself. ` +
     `The slowed kernel was found in ${found} of ${slowed.length} runs, ` +
     `${range(slowed.map((row) => row.ratio - 1), percent)} slower, with ${count(slowed, 'wrong')} wrong verdicts on all rows.`
   );

@@ -1,6 +1,6 @@
-// What a head costs when processes divide it.
+// What a groom costs when processes divide it.
 import { distinct, is_number, is_positive, succeeded } from '../../src/tables.mjs';
-import { number, percent, rows_of, table } from '../markdown.mjs';
+import { number, percent, range, rows_of, table } from '../markdown.mjs';
 
 const all = (tables) => rows_of(tables, 'divided_heads').filter(succeeded);
 const measured = (tables) => all(tables).filter((row) => row.kind === 'measured');
@@ -14,18 +14,18 @@ export const measured_table = (tables) =>
   table(
     [
       'hairs',
-      'beside gravity',
+      'effects with gravity',
       'processes',
-      'heads at once',
+      'grooms at once',
       'a step, ms',
-      'by the model',
-      'off',
-      'off where it does not know that number of hairs',
-      'ghosts of a hair',
-      'by the model',
-      'to find them, of an element, µs',
+      'model, ms',
+      'model off by',
+      'off by, fitted without that number of hairs',
+      'ghosts per hair',
+      'model',
+      'to find them, per element, µs',
       'to exchange them',
-      'to list what they touch',
+      'to list contacts',
       'memory of a process, MB',
       'checksum of the states',
     ],
@@ -48,14 +48,14 @@ export const measured_table = (tables) =>
     ]),
   );
 
-// As many hairs on each of more processes.
+// The same number of hairs on each of more processes.
 export function weak_table(tables) {
   const rows = measured(tables).filter(({ beside }) => beside === 1);
   const own = Math.min(...rows.map(({ strands }) => strands));
   const one = (effects) =>
     rows.find((row) => row.effects === effects && row.strands === own && row.ranks === 1);
   return table(
-    ['beside gravity', 'processes', 'hairs', 'a step, ms', 'over that of one', 'by the model'],
+    ['effects with gravity', 'processes', 'hairs', 'a step, ms', 'over that of one process', 'model'],
     rows
       .filter((row) => row.strands === own * row.ranks)
       .map((row) => [
@@ -74,7 +74,7 @@ export function predicted_table(tables) {
   const ranks = distinct(rows.map((row) => row.ranks)).sort((a, b) => a - b);
   const runs = distinct(rows.map((row) => `${row.effects} ${row.strands}`));
   return table(
-    ['beside gravity', 'hairs', ...ranks.map((count) => `R = ${count}`)],
+    ['effects with gravity', 'hairs', ...ranks.map((count) => `R = ${count}`)],
     runs.map((run) => {
       const own = rows.filter((row) => `${row.effects} ${row.strands}` === run);
       return [
@@ -108,3 +108,13 @@ export const exchange = (tables) =>
         .map((row) => row.exchange_per_element_s),
     ),
   );
+
+// "1, 2 and 4 processes of 1000 to 8000 hairs ...": what was measured, and on what.
+export const extent = (tables) => {
+  const rows = measured(tables);
+  const of = (column) => distinct(rows.map((row) => row[column])).sort((a, b) => a - b);
+  return (
+    `${rows.length} runs with ${of('ranks').join(', ')} processes and ${range(rows.map((row) => row.strands))} hairs ` +
+    `on ${of('cores').join(', ')} cores`
+  );
+};

@@ -1,4 +1,5 @@
-// What each effect of a scene is worth.
+// What each effect of a scene changes.
+import { group_by } from '../../src/tables.mjs';
 import { number, percent, rows_of, table } from '../markdown.mjs';
 
 const left_out = {
@@ -22,3 +23,14 @@ export const audit_table = (tables) =>
 
 export const scenes = (tables) =>
   String(new Set(rows_of(tables, 'effect_audit').map((row) => row.scene)).size);
+
+// "15 keep, 5 drop, ...": the kinds of verdict, without their reasons.
+export const verdicts = (tables) =>
+  [
+    ...group_by(
+      rows_of(tables, 'effect_audit').filter((row) => row.effect !== 'none' && row.verdict),
+      (row) => row.verdict.split(':')[0],
+    ),
+  ]
+    .map(([verdict, members]) => `${members.length} ${verdict}`)
+    .join(', ');

@@ -1,5 +1,4 @@
 // The sentences of the report page, as lists.
-import { cost_findings } from '../../figures/cost_of_accuracy.mjs';
 import { hard_findings } from '../../figures/hard_cases.mjs';
 import { model_step_findings } from '../../figures/model_steps.mjs';
 import { nodal_step_findings } from '../../figures/nodal_steps.mjs';
@@ -11,8 +10,8 @@ import { scaling_findings } from '../../src/findings/scaling.mjs';
 import { stability_findings } from '../../src/findings/stability.mjs';
 import { control_findings } from '../../src/findings/tolerance.mjs';
 import { swing_findings } from '../../src/findings/swing.mjs';
-import { bdf_findings, work_findings } from '../../src/findings/work.mjs';
-import { bullets } from '../markdown.mjs';
+import { bdf_findings, field_table, order_table, work_findings } from '../../src/findings/work.mjs';
+import { bullets, table } from '../markdown.mjs';
 
 const most = 12; // the page has the rest
 
@@ -26,14 +25,17 @@ const listed = (sentences) => (tables) => {
 export const control = (tables) => {
   const found = control_findings(tables);
   return found.length === 0
-    ? 'The table holds no run by tolerance yet.'
-    : `![Achieved over asked](../../results/tolerance.svg)\n\n${bullets(found)}`;
+    ? 'The table has no adaptive run yet.'
+    : `![Error over tolerance](../../results/tolerance.svg)\n\n${bullets(found)}`;
 };
 export const bdf = listed(bdf_findings);
 export const boundary = listed(boundary_sentences);
-export const cost = listed(cost_findings);
 export const descent = listed(descent_findings);
 export const drift = listed(drift_findings);
+export const fields = (tables) =>
+  table(['problem', 'error', 'integrators', 'runs'], field_table(tables));
+export const orders = (tables) =>
+  table(['integrator', 'problems', 'median order', 'lowest', 'highest'], order_table(tables));
 export const hard = listed(hard_findings);
 export const map = listed(map_findings);
 export const models = listed(model_step_findings);

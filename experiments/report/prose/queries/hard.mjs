@@ -1,52 +1,61 @@
 // Which model and integrator survives which hard case.
-import { outcomes } from '../../figures/hard_cases.mjs';
+import { hard_rows, judged, not_compared, rank, survives as survived } from '../../src/hard.mjs';
 import { by_pace, by_tolerance, pace } from '../../src/pace.mjs';
 import { distinct, group_by, minimum_by } from '../../src/tables.mjs';
-import { rows_of, table, time } from '../markdown.mjs';
-
-const rank = (row) => outcomes.findIndex(([name]) => name === row.outcome);
-
-// One row for each case, model, integrator and step or tolerance: the best variant counts.
-const best_variants = (rows) =>
-  [
-    ...group_by(rows, (row) =>
-      [row.case, row.model, row.integrator, pace(row)].join('|'),
-    ).values(),
-  ].map((members) => minimum_by(members, rank));
-
-const judged = (tables) =>
-  best_variants(rows_of(tables, 'hard_cases').filter((row) => rank(row) >= 0));
+import { percent, rows_of, table, time } from '../markdown.mjs';
 
 export const cases = (tables) =>
   String(distinct(rows_of(tables, 'hard_cases').map((row) => row.case)).length);
 
-export const pairs = (tables) =>
-  String(distinct(judged(tables).map((row) => `${row.case}|${row.model}`)).length);
+const all_pairs = (tables) => distinct(judged(tables).map((row) => `${row.case}|${row.model}`));
+export const pairs = (tables) => String(all_pairs(tables).length);
+
+const count = (members, ...wanted) =>
+  members.filter((row) => wanted.includes(row.outcome)).length;
 
 export function outcomes_table(tables) {
   const groups = group_by(judged(tables), (row) => `${pace(row)}|${row.integrator}`);
-  const count = (members, ...wanted) =>
-    members.filter((row) => wanted.includes(row.outcome)).length;
   const rows = [...groups.values()]
     .sort(([a], [b]) => by_pace(a, b))
     .map((members) => [
       by_tolerance(members[0]) ? pace(members[0]) : time(members[0].dt_s),
       members[0].integrator,
-      count(members, 'stable', 'stable and accurate'),
+      members.length - count(members, 'refused'),
       count(members, 'stable and accurate'),
+      count(members, 'stable'),
+      count(members, not_compared),
       count(members, 'unstable'),
       count(members, 'not finished'),
-      count(members, 'refused'),
     ]);
   return table(
-    ['step or tolerance', 'integrator', 'stable', 'of these accurate', 'unstable', 'not finished', 'refused'],
+    [
+      'step or tolerance',
+      'integrator',
+      'pairs that can run',
+      'stable and accurate',
+      'stable, inaccurate',
+      'stable, no reference',
+      'unstable',
+      'not finished',
+    ],
     rows,
   );
 }
 
-const survived = (row) => row.outcome.startsWith('stable');
+// Which steps of the million steps count: those that were run whole.
+export const million_steps = (tables) => {
+  const rows = hard_rows(tables).filter((row) => row.case === 'million_steps');
+  const cut = rows.filter((row) => row.cut > 0);
+  if (cut.length === 0) return '`million_steps` was run whole';
+  const whole = distinct(rows.filter((row) => row.cut === 0).map((row) => time(row.dt_s)));
+  return (
+    `\`million_steps\` counts ` +
+    `${whole.length > 0 ? `at ${whole.join(' and ')} only, where all of its steps were run` : 'nowhere'}: ` +
+    `the other runs stop after ${cut[0].cut} steps`
+  );
+};
 
-// What super_helix by backward_euler survives at each step, and what it does not.
+// What super_helix with backward_euler survives at each step, and what it does not.
 export function super_helix(tables) {
   const rows = judged(tables).filter(
     (row) =>
@@ -115,17 +124,19 @@ function fallen(tables) {
 }
 
 const rises = ({ exact }) => exact.some(survived);
+const tried = ({ exact }) => exact.filter((one) => one.outcome !== 'refused');
 
+// Of those that an exact law can run.
 export const rising_count = (tables) => {
-  const all = fallen(tables);
+  const all = fallen(tables).filter((one) => tried(one).length > 0);
   return `${all.filter(rises).length} of ${all.length}`;
 };
 
 // Why the best of the exact laws does not survive, in few words.
-function why_not({ row, exact }) {
-  const tried = exact.filter((one) => one.outcome !== 'refused');
-  if (tried.length === 0) return `${row.integrator} takes no exact contact`;
-  const said = minimum_by(tried, rank);
+function why_not(one) {
+  const able = tried(one);
+  if (able.length === 0) return `${one.row.integrator} does not support exact contact`;
+  const said = minimum_by(able, rank);
   const [, what] = /^(.*?)(?: at t = |: | = |$)/.exec(said.why);
   const words = {
     'its work was done': 'not finished within its work',
@@ -158,25 +169,26 @@ export function rising_table(tables) {
   return table(['fails by a regularised law', 'integrator', 'step or tolerance', 'by the exact law', 'models'], rows);
 }
 
-// Combinations of case, model and integrator that break at a shorter step although they
-// hold at a longer one, and how many there are.
+// Combinations of case, model and integrator that were run at two steps or more, and those
+// that break at a shorter one although they hold at a longer one.
 function broken_at_shorter_groups(tables) {
-  const stepped = judged(tables).filter((row) => !by_tolerance(row));
+  const stepped = judged(tables).filter((row) => !by_tolerance(row) && row.outcome !== 'refused');
   const groups = group_by(stepped, (row) =>
     [row.case, row.model, row.integrator].join('|'),
   );
-  const broken = [...groups.values()].filter((members) => {
+  const compared = [...groups.values()].filter((members) => members.length > 1);
+  const broken = compared.filter((members) => {
     const sorted = [...members].sort((a, b) => a.dt_s - b.dt_s);
     return sorted.some(
       (row, i) => row.outcome === 'unstable' && sorted.slice(i + 1).some(survived),
     );
   });
-  return { broken, all: groups.size };
+  return { broken, all: compared.length };
 }
 
 export function broken_at_shorter_count(tables) {
   const { broken, all } = broken_at_shorter_groups(tables);
-  return `${broken.length} of ${all}`;
+  return `${broken.length} of ${all} (${percent(broken.length / all)})`;
 }
 
 export const broken_at_shorter = (tables) =>

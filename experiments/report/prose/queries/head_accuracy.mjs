@@ -14,14 +14,14 @@ const words = (row) =>
   `${every(row) ? `each of ${row.strands} hairs` : `${row.guides} guides for ${row.strands} hairs`}, ` +
   `${row.elements} elements, steps of ${number(1e3 * row.dt_s)} ms, ${row.bits} bits`;
 
-/// Of the shipped head, for the smallest error that was asked for.
+/// Of the shipped head, for the smallest target error.
 export const answer = (tables) => {
   const row = met(tables)
     .filter(({ scene }) => scene === head)
     .sort((a, b) => a.target_error_rel - b.target_error_rel)[0];
   must(row !== undefined, 'the shipped head has an answer');
   return (
-    `> ${spaced(row.scene)}, ${percent(row.target_error_rel)}: take ${words(row)}: 95 of 100 hairs within ` +
+    `> ${spaced(row.scene)}, ${percent(row.target_error_rel)}: take ${words(row)}: of ${row.looked_at} sampled hairs, 95 % are within ` +
     `${percent(row.error_p95_rel)} of their length (mean ${percent(row.error_mean_rel)}, largest ` +
     `${percent(row.error_max_rel)}) in ${number(row.ms_per_frame)} ms a frame` +
     (every(row) && row.best_guides
@@ -32,19 +32,20 @@ export const answer = (tables) => {
 
 export const over = (tables) =>
   ({
-    p95: 'Wanted is the error that 95 of 100 hairs do not exceed.',
-    mean: 'Wanted is the mean over hairs.',
-    largest: 'Wanted is the largest of all hairs.',
+    p95: 'The target is the error that 95 % of the sampled hairs do not exceed.',
+    mean: 'The target is the mean over the sampled hairs.',
+    largest: 'The target is the largest error of the sampled hairs.',
   })[answers(tables)[0].over];
 
 export const answers_table = (tables) =>
   table(
     [
-      'hair',
-      'wanted',
+      'groom',
+      'target',
+      'sampled hairs',
       'simulated',
       'elements, step, bits',
-      'error: mean, 95 of 100, largest',
+      'error: mean, 95 %, largest',
       'of interpolation',
       'of elements and step',
       'ms a frame: simulated, following',
@@ -54,6 +55,7 @@ export const answers_table = (tables) =>
         ? [
             spaced(row.scene),
             percent(row.target_error_rel),
+            row.looked_at,
             every(row) ? `all ${row.strands}` : `${row.guides} of ${row.strands}`,
             `${row.elements}, ${number(1e3 * row.dt_s)} ms, ${row.bits}`,
             ['mean', 'p95', 'max'].map((of) => percent(row[`error_${of}_rel`])).join(', '),
@@ -63,7 +65,7 @@ export const answers_table = (tables) =>
             percent(row.simulated_p95_rel),
             `${number(row.step_ms_per_frame)}, ${number(row.follow_ms_per_frame)}`,
           ]
-        : [spaced(row.scene), percent(row.target_error_rel), row.reason, '', '', '', '', ''],
+        : [spaced(row.scene), percent(row.target_error_rel), row.looked_at, row.reason, '', '', '', '', ''],
     ),
   );
 
@@ -72,12 +74,12 @@ export const findings = (tables) => {
   const of = (kind) => met(tables).filter((row) => row.scene.includes(kind));
   const alike = of('alike').filter((row) => !every(row));
   const varied = of('varied');
-  must(alike.length > 0 && alike.length > of('alike').length / 2, 'alike hairs follow');
-  must(varied.length > 0 && varied.every(every), 'varied hairs do not follow');
+  must(alike.length > 0 && alike.length > of('alike').length / 2, 'most grooms of equal hairs need few guides');
+  must(varied.length > 0 && varied.every(every), 'varied hairs must all be simulated');
   return (
-    `Of hairs that are alike some stand for all: ${range(alike.map(share), percent)} of the hairs are enough in ` +
-    `${alike.length} of ${of('alike').length} answers. Of hairs that differ in length, curl and phase each must be simulated ` +
-    `(${varied.length} of ${varied.length} answers): those that follow the best guides are off by ` +
+    `In ${alike.length} of ${of('alike').length} answers for grooms of equal hairs, ${range(alike.map(share), percent)} of the hairs ` +
+    `are enough as guides. Hairs that differ in length, curl and phase must all be simulated ` +
+    `(${varied.length} of ${varied.length} answers): hairs that follow the best guides are off by ` +
     `${range(varied.map((row) => row.best_interpolation_rel), percent)}. Grooms: ` +
     `${distinct(answers(tables).map((row) => spaced(row.scene))).join(', ')}.`
   );

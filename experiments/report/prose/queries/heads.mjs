@@ -2,8 +2,9 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parse_csv } from '../../src/csv.mjs';
-import { succeeded } from '../../src/tables.mjs';
-import { number, rows_of, table } from '../markdown.mjs';
+import { group_by, succeeded } from '../../src/tables.mjs';
+import { number, percent, range, rows_of, table } from '../markdown.mjs';
+import { manifest_of } from './machine.mjs';
 
 const all = (tables) => rows_of(tables, 'heads').filter(succeeded);
 /// Heads of super-helices by one solve a step.
@@ -17,7 +18,7 @@ const largest = (tables) => {
   const most = Math.max(...rows.map((row) => Number(row.strands)));
   return rows.filter((row) => Number(row.strands) === most);
 };
-/// By Euler's methods, in steps that have one solution.
+/// With Euler's methods, in steps that have one solution.
 const damps = (row) => row.integrator.endsWith('_euler') && Number(row.dt_s) <= 1 / 120;
 const least = (rows, column) =>
   rows.reduce((best, row) => (Number(row[column]) < Number(best[column]) ? row : best));
@@ -26,14 +27,14 @@ export const cost_table = (tables) =>
   table(
     [
       'hairs',
-      'bits',
-      'side by side',
+      'precision, bits',
+      'SIMD lanes',
       'threads',
-      'memory of a hair, bytes',
+      'memory per hair, bytes',
       'a step, ms',
-      'of an element, ns',
-      'a frame of 1/60 s and its points, ms',
-      'off 64 bits',
+      'per element, ns',
+      'a frame of 1/60 s with its points, ms',
+      'difference from double precision',
       'checksum of the states',
     ],
     heads(tables).map((row) => [
@@ -50,7 +51,7 @@ export const cost_table = (tables) =>
     ]),
   );
 
-/// What acts, by number of hairs: one thread, eight numbers of 64 bits side by side.
+/// Cost by effect and number of hairs: one thread, eight lanes in double precision.
 export const effect_table = (tables) => {
   const rows = all_heads(tables).filter(
     (row) => Number(row.bits) === 64 && Number(row.lanes) === 8 && Number(row.threads) === 1,
@@ -60,7 +61,7 @@ export const effect_table = (tables) => {
   const cost = (row) => (row ? number(1e9 * row.cost_per_element_step_s) : '');
   const kinds = ['none', 'drag', 'body', 'interaction'];
   return table(
-    ['hairs', 'gravity, ns an element', 'and drag', 'and a head', 'drag and interaction'],
+    ['hairs', 'gravity: ns per element', 'and drag', 'drag and a head', 'drag and interaction'],
     [...new Set(rows.map((row) => row.strands))].map((strands) => [
       strands,
       ...kinds.map((kind) => cost(of(strands, kind))),
@@ -68,17 +69,33 @@ export const effect_table = (tables) => {
   );
 };
 
-/// The fastest run of the largest head, for each number of bits.
-export const fastest = (tables) =>
-  ['64', '32']
-    .map((bits) => {
-      const row = least(
-        largest(tables).filter((each) => String(each.bits) === bits),
-        'cost_per_step_s',
-      );
-      return `${number(1e3 * row.cost_per_step_s)} ms a step in ${bits} bits (${row.lanes} side by side, ${row.threads} threads)`;
-    })
-    .join(', ');
+const processors = (root) => manifest_of(root, 'heads').machine.cpus;
+
+/// The fastest run of the largest groom in each precision, by no more threads than processors.
+export const fastest = (tables, root) => {
+  const cpus = processors(root);
+  const words = ['64', '32'].map((bits) => {
+    const row = least(
+      largest(tables).filter((each) => String(each.bits) === bits && each.threads <= cpus),
+      'cost_per_step_s',
+    );
+    return (
+      `${number(1e3 * row.cost_per_step_s)} ms in ${bits === '64' ? 'double' : 'single'} precision ` +
+      `(${row.lanes} SIMD lanes, ${row.threads} threads)`
+    );
+  });
+  return `${words.join(', ')} on ${cpus} processors`;
+};
+
+/// Which of the tables' runs had more threads than processors.
+export const oversubscribed = (tables, root) => {
+  const cpus = processors(root);
+  const count = heads(tables).filter((row) => row.threads > cpus).length;
+  return count === 0
+    ? 'No row has more threads than processors'
+    : `${count} of ${heads(tables).length} rows have more threads than the machine's ${cpus} processors, to show that the states ` +
+        'stay the same; their times are no guide';
+};
 
 export const largest_head = (tables) => largest(tables)[0].strands;
 export const elements = (tables) => largest(tables)[0].elements;
@@ -92,22 +109,21 @@ export const narrow = (tables) =>
         .map((row) => Number(row.difference_rel || 0)),
     ),
   );
-/// Time of one thread over that of two, for the largest head.
-export const two_threads = (tables) =>
-  ['64', '32']
-    .map((bits) => {
+/// Time of one thread over that of two, for every number of hairs.
+export const two_threads = (tables) => {
+  const rows = heads(tables).filter((row) => row.lanes === 8);
+  const words = [...new Set(rows.map((row) => row.strands))].map((strands) => {
+    const ratios = [64, 32].map((bits) => {
       const of = (threads) =>
-        largest(tables).find(
-          (row) =>
-            String(row.bits) === bits &&
-            Number(row.lanes) === 8 &&
-            Number(row.threads) === threads,
-        );
+        rows.find((row) => row.strands === strands && row.bits === bits && row.threads === threads);
       return number(of(1).cost_per_step_s / of(2).cost_per_step_s);
-    })
-    .join(' and ');
+    });
+    return `${ratios.join(' and ')} for ${strands} hairs`;
+  });
+  return `${words.join(', ')} (double and single precision)`;
+};
 
-/// In 32 bits otherwise: the largest difference.
+/// In single precision otherwise: the largest difference.
 export const narrow_otherwise = (tables) =>
   number(
     Math.max(
@@ -117,6 +133,42 @@ export const narrow_otherwise = (tables) =>
     ),
   );
 
+/// Where something that is added makes a step cheaper, the times scatter by that much.
+export const effect_noise = (tables) => {
+  const rows = all_heads(tables).filter(
+    (row) => row.bits === 64 && row.lanes === 8 && row.threads === 1,
+  );
+  const gains = rows
+    .filter((row) => row.effects === 'none')
+    .map((bare) => {
+      const drag = rows.find((row) => row.strands === bare.strands && row.effects === 'drag');
+      return drag ? 1 - drag.cost_per_step_s / bare.cost_per_step_s : 0;
+    });
+  const most = Math.max(...gains);
+  return most > 0
+    ? `Drag cannot make a step cheaper, yet the table has it ${percent(most)} cheaper: differences of that size are noise of the timing`
+    : 'No added effect makes a step cheaper';
+};
+
+/// Time of a chain's step over that of a super-helix with as many elements, by method.
+export const chain_over_helix = (tables) => {
+  const rows = all(tables).filter(
+    (row) => row.bits === 64 && row.lanes === 8 && row.threads === 1 && (row.effects ?? 'drag') === 'drag',
+  );
+  const helices = rows.filter((row) => row.model === 'super_helix');
+  const pairs = rows
+    .filter((row) => row.model === 'articulated_chain')
+    .flatMap((chain) => {
+      const helix = helices.find((row) =>
+        ['integrator', 'dt_s', 'strands', 'elements'].every((key) => row[key] === chain[key]),
+      );
+      return helix ? [{ ...chain, ratio: chain.cost_per_step_s / helix.cost_per_step_s }] : [];
+    });
+  return [...group_by(pairs, (row) => row.integrator)]
+    .map(([integrator, members]) => `${range(members.map((row) => row.ratio))} with \`${integrator}\``)
+    .join(', ');
+};
+
 /// Other models and methods; one thread.
 export const other_heads_table = (tables) =>
   table(
@@ -125,17 +177,17 @@ export const other_heads_table = (tables) =>
       'method',
       'step, ms',
       'hairs',
-      'bits',
-      'side by side',
-      'memory of a hair, bytes',
+      'precision, bits',
+      'SIMD lanes',
+      'memory per hair, bytes',
       'a step, ms',
-      'of an element, ns',
+      'per element, ns',
       'iterations a step',
       'lanes over hairs iterated',
       'damped steps, %',
       'lanes they take, %',
-      'lost',
-      'off 64 bits',
+      'failed hairs',
+      'difference from double precision',
       'checksum of the states',
     ],
     all(tables)

@@ -1,5 +1,6 @@
 // The matrices of systems at an instant.
-import { number, rows_of, table } from '../markdown.mjs';
+import { is_positive } from '../../src/tables.mjs';
+import { number, range, rows_of, table } from '../markdown.mjs';
 
 const of_strands = (tables) =>
   rows_of(tables, 'matrices').filter((row) => row.elements > 0);
@@ -47,3 +48,12 @@ export const frequencies_table = (tables) =>
         number(row.frequency_largest_hz),
       ]),
   );
+
+// Over the models of the table above.
+export const lowest_frequencies = (tables) => {
+  const found = of_strands(tables)
+    .filter((row) => row.matrix === 'K' && is_positive(row.frequency_least_hz))
+    .map((row) => row.frequency_least_hz);
+  const factor = Math.max(...found) / Math.min(...found);
+  return `${range(found)} Hz over ${found.length} models, a factor of ${number(factor)}`;
+};

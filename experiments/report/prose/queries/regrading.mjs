@@ -1,4 +1,4 @@
-// What elements gain that are divided anew while a strand moves.
+// What remeshing gains while a strand moves.
 import { number, percent, range, rows_of, table } from '../markdown.mjs';
 
 const worthwhile = 1.5;
@@ -30,7 +30,7 @@ export const gains = (tables) => {
     ratio(row.gain_following),
   ]);
   return table(
-    ['scene', 'distance', 'fixed elements', 'their cut', 'anew', 'following'],
+    ['scene', 'distance', 'fixed elements', 'their mesh', 'remeshed', 'following'],
     [...measured, ...limits].sort((a, b) => (a[0] < b[0] ? -1 : a[0] > b[0] ? 1 : 0)),
   );
 };
@@ -38,7 +38,7 @@ export const gains = (tables) => {
 const reached = (all, column) => {
   const many = all.filter((row) => row[column] >= worthwhile).length;
   const most = Math.max(...all.map((row) => Number(row[column])));
-  return `${many} of ${all.length} reach ${worthwhile}; the largest is ${number(most, 3)}.`;
+  return `${many} of ${all.length} measured cases reach ${worthwhile}; the largest is ${number(most, 3)}.`;
 };
 
 export const worth_anew = (tables) => reached(shown(tables), 'gain');
@@ -57,13 +57,13 @@ export const verdict = (tables) => {
     (row) => row.gain_following_always >= worthwhile,
   ).length;
   return (
-    `Cuts that move gain ${worthwhile} times in ${anew} cases; numbers that follow gain it in ` +
-    `${following} of ${shown(tables).length} by the error that all tables here use, the rms over a run, ` +
+    `Remeshing gains a factor of ${worthwhile} in ${anew} of ${shown(tables).length + rows(tables, 'limit').length} cases, limits included. ` +
+    `Numbers of elements that follow the motion gain it in ${following} of ${shown(tables).length} measured cases by the rms error over a run, ` +
     `and in ${always} where the worst instant counts`
   );
 };
 
-// Hairs that are let go: "26 of 36 ... with half the tolerance 30".
+// Hairs that are let go, meshed for the tolerance and for a tighter one.
 export const in_motion = (tables) => {
   const all = rows(tables, 'in_motion');
   const asked = Math.max(...all.map((row) => Number(row.tolerance_rel)));
@@ -72,8 +72,8 @@ export const in_motion = (tables) => {
   const half = all.filter((row) => Number(row.tolerance_rel) < asked);
   const worst = Math.max(...half.map((row) => Number(row.tip_error_rel)));
   return (
-    `${within(full)} of ${full.length} hairs keep a tolerance of ${percent(asked)} of their length; ` +
-    `cut for half of it, ${within(half)} do, and the worst is off by ${percent(worst)}.`
+    `${within(full)} of ${full.length} hairs keep a tolerance of ${percent(asked)} of their length. Meshed for a tolerance of ` +
+    `${percent(Number(half[0].tolerance_rel))}, ${within(half)} of ${half.length} keep the former, and the worst is off by ${percent(worst)}.`
   );
 };
 
@@ -85,10 +85,10 @@ export const pilot = (tables) => {
   const numbers = (column) => all.map((row) => Number(row[column]));
   const once = all.filter((row) => Number(row.work_rel) === 3).length;
   return (
-    `${within('tip_error_rel')} of ${all.length} hairs keep ${percent(asked)} of their length by the same measure, and ` +
+    `Of ${all.length} hairs, ${within('tip_error_rel')} keep ${percent(asked)} of their length by the same measure, and ` +
     `${within('largest_error_rel')} at every joint and frame, with ${range(numbers('elements'), number)} elements. ` +
-    `For ${once} of them the elements of rest were enough; the runs of a pilot have ` +
-    `${range(numbers('work_rel'), (x) => number(x, 2))} times the elements of the run that it prepares.`
+    `For ${once} of them the elements of rest were enough. The runs of a pilot have ` +
+    `${range(numbers('work_rel'), (x) => number(x, 2))} times the elements of the run that they prepare.`
   );
 };
 
@@ -97,7 +97,7 @@ const with_points = (tables) =>
 
 export const points = (tables) =>
   table(
-    ['scene', 'elements', 'by more points', 'from a fine cut'],
+    ['scene', 'elements', 'with more points', 'from a fine mesh'],
     with_points(tables).map((row) => [
       row.scene.replaceAll('_', ' '),
       number(row.elements),
@@ -114,9 +114,9 @@ export const points_verdict = (tables) => {
     percent(Math.max(...rows.map((row) => row.points_error_rel / row.tip_error_rel)));
   const all = with_points(tables);
   return (
-    `Where nothing touches, more points are worth ${share(all.filter((row) => !touching.includes(row.scene)))} ` +
-    'of the error of the elements at most, so that points that follow the motion are not built. Contact acts at the ' +
-    `points: there more of them are worth up to ${share(all.filter((row) => touching.includes(row.scene)))}, ` +
-    'since they find a small body sooner, not since an element winds; the option `quadrature` gives them.'
+    `Where nothing touches, more points change at most ${share(all.filter((row) => !touching.includes(row.scene)))} ` +
+    'of the error of the elements, so points that follow the motion are not implemented. Contact acts at the ' +
+    `points: there more of them change up to ${share(all.filter((row) => touching.includes(row.scene)))}, ` +
+    'because they find a small body sooner, not because an element winds. The option `quadrature` sets them.'
   );
 };

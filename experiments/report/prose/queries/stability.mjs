@@ -54,7 +54,7 @@ export function shaken_stiff(tables) {
   }).sort((a, b) => a.elements - b.elements);
   const [few, many] = [rows[0], rows.at(-1)];
   must(many.dt_max_s >= few.dt_max_s, 'more elements do not shorten the step');
-  return `${time(few.dt_max_s)} with ${few.elements} and ${time(many.dt_max_s)} with ${many.elements} elements`;
+  return `${time(few.dt_max_s)} with ${few.elements} element${few.elements === 1 ? '' : 's'} and ${time(many.dt_max_s)} with ${many.elements}`;
 }
 
 // Every strand model at 20 elements: error, and largest steps.
@@ -94,15 +94,17 @@ export function models_table(tables) {
   );
 }
 
-// What error control holds: scenes and models down. A table made before has no such rows.
+const usual = '1e-3';
+
+// What error control holds: scenes and models down.
 export function tolerance_table(tables) {
   const rows = rows_of(tables, 'stability_limit').filter((row) => row.study === 'tolerance');
-  if (rows.length === 0) return 'The table beside this page has no such rows yet.';
+  if (rows.length === 0) return 'The table has no such rows yet.';
   const asked = (tolerance) => (is_positive(tolerance) ? tolerance.toExponential() : '');
   const loosest = ({ status, tolerance_loosest }) =>
     ({ gave_up: 'not found in time', unstable: 'none found' })[status] ?? asked(tolerance_loosest);
   return table(
-    ['scene', 'model', 'integrator', 'elements', 'loosest', 'tightest', 'steps at 1e-3', 'work at 1e-3'],
+    ['scene', 'model', 'integrator', 'elements', 'loosest', 'tightest', `steps at ${usual}`, `work at ${usual}`],
     rows.map((row) => [
       row.scene,
       `\`${row.model}\``,

@@ -16,6 +16,9 @@ const metres = (value) => (value === 0 ? 'exactly zero' : `${format_number(value
 const is_given = (value) => value !== null && value !== undefined && value !== '';
 const spaced = (name) => name.replaceAll('_', ' ');
 
+// How near the measured boundary must be to the predicted one.
+const boundary_within = 0.05;
+
 // Relative difference below which two drifts count as equal.
 const indifferent = 0.05;
 
@@ -53,8 +56,8 @@ export function feedback_gains(rows) {
   });
 }
 
-// "<system>, <integrator>: the best Baumgarte pair ..." with the direction read off the
-// ratio.
+// "<system>, <integrator>: of the gains tried, ... drift least" with the direction read off
+// the ratio, and how little such gains damp.
 function feedback_sentence({ system, integrator, without, best, gain, cost }) {
   const pair = `alpha = ${format_number(best.alpha)}, beta = ${format_number(best.beta)}`;
   const same = Math.abs(gain - 1) < indifferent;
@@ -64,7 +67,8 @@ function feedback_sentence({ system, integrator, without, best, gain, cost }) {
       ? `${format_ratio(gain)} smaller than`
       : `${format_ratio(1 / gain)} larger than`;
   return (
-    `${spaced(system)}, ${integrator}: the best Baumgarte pair (${pair}) leaves ` +
+    `${spaced(system)}, ${integrator}: of the Baumgarte gains tried, ${pair} (beta²/(4 alpha) = ` +
+    `${format_number(damping_ratio(best), 2)}) drift least: they leave ` +
     `${metres(best.g_max)}, ${change} acceleration level (${metres(without.g_max)}), for ` +
     `${format_ratio(cost)} the time${gain < 1 && !same ? ': feedback hurts here' : ''}.`
   );
@@ -119,7 +123,7 @@ export function boundary_sentences(tables) {
     return (
       `${integrator}: the measured stability boundary is within ` +
       `${format_number(100 * worst, 2)} % of the predicted one at ${members.length} damping ` +
-      `ratio${members.length === 1 ? '' : 's'}${worst > 0.05 ? ', outside the 5 % wanted' : ''}.`
+      `ratio${members.length === 1 ? '' : 's'}${worst > boundary_within ? `, outside the target of ${format_number(100 * boundary_within)} %` : ''}.`
     );
   });
 }
@@ -199,8 +203,8 @@ export function drift_answer({ constraint_drift: rows = [] }) {
     : '';
   return (
     `Left alone at acceleration level, constraints drift by up to ` +
-    `${metres(worst.without.g_max)} (${spaced(worst.system)}, ${worst.integrator}). The best ` +
-    `feedback brings that run to ${metres(worst.best.g_max)} for ${format_ratio(worst.cost)} ` +
+    `${metres(worst.without.g_max)} (${spaced(worst.system)}, ${worst.integrator}). Of the gains tried, the ` +
+    `one that drifts least brings that run to ${metres(worst.best.g_max)} for ${format_ratio(worst.cost)} ` +
     `the time.${projected} Feedback helps in ${helped} of the ${gains.length} combinations of ` +
     `${distinct(gains.map((g) => g.system)).length} systems and ` +
     `${distinct(gains.map((g) => g.integrator)).length} integrators.`

@@ -14,6 +14,7 @@ import { format_number, format_ratio, format_time } from '../format.mjs';
 import { failure_sentence } from './drift.mjs';
 
 const levels = [1e-2, 1e-4, 1e-6];
+const answered = 1e-4;
 const spaced = (name) => name.replaceAll('_', ' ');
 
 const usable = (rows) =>
@@ -37,30 +38,67 @@ function cheapest_sentences(rows) {
       const best = cheapest(members, level);
       return best
         ? [
-            `error ${format_number(level)} by ${best.integrator} ` +
+            `error ${format_number(level)} with ${best.integrator} ` +
               `(${format_time(best.wall_s_per_sim_s)})`,
           ]
         : [];
     });
+    const tried = distinct(members.map((row) => row.integrator)).length;
+    const field = tried === 1 ? 'the only integrator run' : `of ${tried} integrators`;
     return parts.length > 0
-      ? `${problem}, cheapest per simulated second: ${parts.join(', ')}.`
-      : `${problem}: no run reaches an error of ${levels[0]}.`;
+      ? `${problem}, cheapest per simulated second (${field}): ${parts.join(', ')}.`
+      : `${problem}: no run of ${tried} integrators reaches an error of ${levels[0]}.`;
   });
 }
 
-function order_sentences(rows) {
-  const fits = rows.filter((row) => succeeded(row) && is_positive(row.order_fit));
-  const parts = [...group_by(fits, (row) => row.integrator)].map(
-    ([integrator, members]) => {
-      const orders = members.map((row) => row.order_fit);
-      const [low, high] = [Math.min(...orders), Math.max(...orders)].map((v) =>
-        v.toFixed(2),
-      );
-      return `${integrator} ${low === high ? low : `${low} to ${high}`}`;
-    },
-  );
-  return parts.length > 0 ? [`Fitted orders: ${parts.join(', ')}.`] : [];
+// Who was put to each problem: rows of problem, kind of error, integrators, runs.
+export function field_table(tables) {
+  const rows = problem_rows(tables).filter((row) => row.error_kind);
+  return [...group_by(rows, (row) => `${row.scene}|${row.error_kind}`).values()].map((members) => {
+    const names = distinct(members.map((row) => row.integrator));
+    return [
+      spaced(members[0].scene),
+      members[0].error_kind,
+      names.length > 3 ? names.length : `${names.length}: ${names.join(', ')}`,
+      members.length,
+    ];
+  });
 }
+
+// By integrator: {integrator, orders}, those fitted on each problem, ascending.
+const fitted_orders = (rows) =>
+  [
+    ...group_by(
+      rows.filter((row) => succeeded(row) && is_positive(row.order_fit)),
+      (row) => row.integrator,
+    ),
+  ].map(([integrator, members]) => ({
+    integrator,
+    orders: [...group_by(members, problem_name)]
+      .map(([problem, [row]]) => ({ problem, order: row.order_fit }))
+      .sort((a, b) => a.order - b.order),
+  }));
+const middle = (orders) => orders[Math.floor((orders.length - 1) / 2)].order.toFixed(2);
+
+// Rows of integrator, problems, median, lowest and highest order with the problem of each.
+export const order_table = (tables) =>
+  fitted_orders(problem_rows(tables)).map(({ integrator, orders }) => [
+    integrator,
+    orders.length,
+    middle(orders),
+    ...[orders[0], orders.at(-1)].map(({ order, problem }) => `${order.toFixed(2)} (${problem})`),
+  ]);
+
+const order_sentences = (rows) => {
+  const all = fitted_orders(rows);
+  return all.length === 0
+    ? []
+    : [
+        `Fitted orders, median over problems: ${all
+          .map(({ integrator, orders }) => `${integrator} ${middle(orders)} (${orders.length})`)
+          .join(', ')}.`,
+      ];
+};
 
 function digits_sentences(rows) {
   const scored = rows.filter((row) => succeeded(row) && is_positive(row.scd));
@@ -76,8 +114,8 @@ function reference_sentence(rows) {
   return below.length === 0
     ? []
     : [
-        `${below.length} runs agree with the reference better than ` +
-          'the references agree with each other; they are drawn hollow and left out of the findings.',
+        `${below.length} of ${rows.filter(succeeded).length} runs agree with the reference better than ` +
+          'the references agree with each other; they are drawn hollow and left out of these findings.',
       ];
 }
 
@@ -95,7 +133,7 @@ export function work_findings(tables) {
 export function work_answer(tables) {
   const problems = [...group_by(usable(problem_rows(tables)), problem_name)];
   const winners = problems.flatMap(([problem, members]) => {
-    const best = cheapest(members, 1e-4);
+    const best = cheapest(members, answered);
     return best
       ? [`${best.integrator} on ${problem} ` + `(${format_time(best.wall_s_per_sim_s)})`]
       : [];
@@ -103,7 +141,7 @@ export function work_answer(tables) {
   if (winners.length === 0) return undefined;
   const same = distinct(winners.map((w) => w.split(' ')[0])).length === 1;
   return (
-    `For a relative error of 1e-4 the cheapest integrator per simulated second is ` +
+    `For a relative error of ${format_number(answered)} the cheapest integrator per simulated second is ` +
     `${winners.join(', ')}${problems.length > 1 && !same ? ': no single method wins everywhere' : ''}.`
   );
 }
