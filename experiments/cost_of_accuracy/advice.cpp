@@ -28,9 +28,13 @@ std::string what(const Row& row) {
   const std::string counts = row.text("extrapolated") == "true"
                                  ? fmt::format("{} and {}", elements, coarser(elements))
                                  : fmt::format("{}", elements);
-  const std::string steps = row.has("tolerance")
-                                ? fmt::format("tolerance {:.2g}", row.number("tolerance"))
-                                : fmt::format("dt {:.3g} ms", 1e3 * row.number("dt_s"));
+  std::string steps = row.has("tolerance")
+                          ? fmt::format("tolerance {:.2g}", row.number("tolerance"))
+                          : fmt::format("dt {:.5g} ms", 1e3 * row.number("dt_s"));
+  if (row.has("mean_step_s")) {
+    steps +=
+        fmt::format(" (adaptive, mean step {:.3g} ms)", 1e3 * row.number("mean_step_s"));
+  }
   return fmt::format("{}{}, {} elements, {}{}, {}", model.id,
                      options.empty() ? "" : fmt::format(" ({})", options), counts,
                      row.text("integrator"),
@@ -44,6 +48,34 @@ std::string price(const Row& row) {
       "{:.2g} % of the length in {:.3g} ms per simulated second ({:.2g} ms a frame)",
       1e2 * row.number("error_rel"), 1e3 * row.number("wall_s_per_sim_s"),
       row.number("ms_per_frame"));
+}
+
+/// Of a promise that does not reach the end of the scene, "valid for the first 0.41 s of
+/// 2 s, ...: "; else empty.
+std::string limits(const Row& row) {
+  if (row.text("horizon_cut") == "true") {
+    return fmt::format(
+        "valid for the first {:.3g} s of {:.3g} s (beyond, the references differ by "
+        "{:.2g} "
+        "% of the length): ",
+        row.number("horizon_s"), row.number("duration_s"),
+        1e2 * row.number("parted_rel"));
+  }
+  if (row.number("asked_s") * 1.01 < row.number("duration_s")) {
+    return fmt::format("valid for the first {:.3g} s of {:.3g} s, as asked: ",
+                       row.number("horizon_s"), row.number("duration_s"));
+  }
+  return "";
+}
+
+/// The worst neighbour of a run that was examined.
+std::string robustness(const Row& row) {
+  return fmt::format(
+      "robust: the worst of {} neighbours is {}, with an error of {:.2g} %; {:.3g} % is "
+      "allowed",
+      neighbour_count, row.text("worst_neighbour"),
+      1e2 * row.number("error_neighbours_rel"),
+      1e2 * neighbour_allowance * row.number("target_error_rel"));
 }
 
 const Row* find(const std::vector<Row>& rows, std::string_view kind) {
@@ -105,21 +137,33 @@ std::string what_not(const std::vector<Row>& rows, const Row& best) {
                      what(*worst), worst->number("cost_factor"));
 }
 
-/// A scene file holds one run.
-std::string how_to_extrapolate(const Configuration& taken) {
-  if (!taken.method.extrapolated) return "";
-  const int n = taken.elements, m = coarser(n);
+bool beats(const Row& row, const Row& other) {
+  return row.ok() && row.number("wall_s_per_sim_s") < other.number("wall_s_per_sim_s") &&
+         row.number("error_rel") <= other.number("error_rel");
+}
+
+/// The next best line.
+std::string next_best(const Row* next) {
+  if (next == nullptr) return "next best: no other model or integrator does";
   return fmt::format(
-      "# Run it with {} elements, as it is, and with {}: the result is x + {:.3g} "
-      "(x - y), x the points by {} and y those by {} elements.\n",
-      n, m, extrapolation(taken.method, n), n, m);
+      "{} {}", next->text("tied") == "true" ? "within 10 %, a tie with" : "next best",
+      configuration_and_price(*next));
 }
 
 }  // namespace
 
 const Row* advised(const std::vector<Row>& rows) {
-  const Row* budget = find(rows, "budget");
-  return budget != nullptr ? budget : find(rows, "winner");
+  if (const Row* budget = find(rows, "budget")) return budget;
+  const Row *winner = find(rows, "winner"), *next = find(rows, "runner_up");
+  const bool swap = winner != nullptr && next != nullptr && beats(*next, *winner);
+  return swap ? next : winner;
+}
+
+std::string validity(const Row& row) {
+  const double valid = row.number("horizon_s"), whole = row.number("duration_s");
+  return limits(row).empty()
+             ? fmt::format("over the whole {:.3g} s", whole)
+             : fmt::format("over the first {:.3g} s of {:.3g} s", valid, whole);
 }
 
 std::vector<std::string> advice(const std::vector<Row>& rows) {
@@ -131,15 +175,21 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
                               "references that are complete are kept, --timeout with "
                               "more time goes on from there",
                               first.text("reason"))
-                : fmt::format("nothing: {}", first.text("reason"))};
+                : fmt::format("no answer: {}", first.text("reason"))};
   }
   if (best->status() == "not_met") return best_so_far(rows, *best);
-  std::vector<std::string> lines{"take " + configuration_and_price(*best)};
+  if (best->status() == "file_differs") {
+    return {fmt::format("no answer: {}", best->text("reason"))};
+  }
+  std::vector<std::string> lines{fmt::format(
+      "{}take {}, {}", limits(*best), configuration_and_price(*best), validity(*best))};
+  if (best->has("worst_neighbour") && best->has("target_error_rel")) {
+    lines.push_back(robustness(*best));
+  }
   const Row* winner = find(rows, "winner");
   if (winner != nullptr && winner->status() == "not_met") winner = nullptr;
   const Row* next = best == winner ? find(rows, "runner_up") : winner;
-  lines.push_back(next == nullptr ? "next best: no other model or integrator does"
-                                  : "next best " + configuration_and_price(*next));
+  lines.push_back(next_best(next));
   lines.push_back(what_not(rows, winner == nullptr ? *best : *winner));
   if (cut(*best)) lines.push_back(more(*best));
   return lines;
@@ -150,11 +200,11 @@ std::string configuration_and_price(const Row& row) {
 }
 
 std::string advised_text(const Scene& given, const Row& row, double rate) {
-  const Configuration taken = configuration(row, rate);
+  const Configuration taken = configuration(row);
   return fmt::format(
-      "# {} as advised for {} frames per second: {}.\n# {}\n{}\n{}", given.name, rate,
-      price(row), what(row), how_to_extrapolate(taken),
-      scene_text(trial_scene(given, taken.method, taken.elements, taken.substeps, rate)));
+      "# {} as advised for {} frames per second: {}, {}.\n# {}{}\n\n{}", given.name, rate,
+      price(row), validity(row), limits(row), what(row),
+      scene_text(trial_scene(given, taken.method, taken.elements, taken.accuracy, rate)));
 }
 
 }  // namespace tress::experiments::cost_of_accuracy

@@ -17,12 +17,13 @@ std::span<const Column> study_columns();
 /// Writes a method into its columns.
 void set_method(const Method& method, Row& row);
 
-/// The configuration that a row describes, at `rate` frames per second.
+/// The configuration that a row describes.
 struct Configuration {
   Method method;
-  int elements = 0, substeps = 0;
+  int elements = 0;
+  Accuracy accuracy;
 };
-Configuration configuration(const Row& row, double rate);
+Configuration configuration(const Row& row);
 
 /// Parameters of the study, common to all scenes.
 struct StudyPlan {
@@ -34,7 +35,7 @@ struct StudyPlan {
   ReferenceCut reference;
   std::string references;   // folder of stored references
   double rate = 60;         // frames per second
-  double horizon = 0.5;     // s
+  double horizon = 0.5;     // s; 0: the scene's duration
   std::size_t strands = 1;  // of a groom
   /// Work limit of one scene's search: elements x steps of all runs. A clock would make
   /// the answer depend on the load of the machine; the deadline of a row is for
@@ -45,10 +46,20 @@ struct StudyPlan {
   int repeat = 3;           // repetitions of timed runs
   bool refine = true;       // winners are checked against a refined reference
   bool report = false;      // reports progress and the best so far
+  /// The answer is for this scene: the reference is refined until it can decide
+  /// (decided_reference), and the advised file is run as it is written.
+  bool advise = false;
+  double answer_s = 0;  // with advise: wall time for the answer; 0: that of the row
+  /// Every method with every number of elements and substeps of the ladders as well: what
+  /// did the search miss?
+  bool exhaustive = false;
 };
 
 /// Errors are trusted from this multiple of the reference's gap on.
 constexpr double believed = 10;
+
+/// With advise the gap is part of the promise (see below) and may be larger.
+constexpr double believed_in_advice = 4;
 
 /// The horizon ends where the two sides are this far apart, over the length: beyond it
 /// not even 1 % could be resolved.
@@ -97,17 +108,23 @@ void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 /// Practical advice from the rows of one scene for one target (or one budget): the
-/// configuration to take, the next best, and what to avoid, one line each, and one more
-/// if the search was stopped early. If nothing meets the target, or nothing did so far,
-/// the first line says so and the second has the best run known. If nothing is known the
-/// only line says why.
+/// configuration to take with the time for which that is valid, its worst neighbour, the
+/// next best, and what to avoid, one line each, and one more if the search was stopped
+/// early. If nothing meets the target, or nothing did so far, the first line says so and
+/// the second has the best run known. If nothing is known the only line says why.
 std::vector<std::string> advice(const std::vector<Row>& rows);
 
 /// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms: 0.82 % of the
 /// length in 3.2 ms per simulated second (0.053 ms a frame)"
 std::string configuration_and_price(const Row& row);
 
-/// The recommended row, or the best known; null if there is none.
+/// Time for which a row's error is known: "over the whole 2 s", "over the first 0.41 s of
+/// 2 s".
+std::string validity(const Row& row);
+
+/// The recommended row, or the best known; null if there is none. The winner, unless the
+/// runner-up is both cheaper and more accurate: the two are tied, and the winner is the
+/// simpler.
 const Row* advised(const std::vector<Row>& rows);
 
 /// The scene file as advised, for `simulate`.

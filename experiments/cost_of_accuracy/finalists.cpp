@@ -185,10 +185,21 @@ std::optional<Trial> Finalists::half_the_step(const Trial& winner, double target
   });
 }
 
-std::optional<BestRuns> Finalists::of(double target) {
+std::optional<BestRuns> Finalists::of(double target, bool choices) {
   const auto winner = settled(target, {});
   if (!winner) return {};
-  const Method won = methods_[winner->method];
+  BestRuns best{*winner, {}, {}};
+  if (choices) replace_choices(*winner, target, best);
+  const Method& won = methods_[winner->method];
+  best.runner_up = settled(target, [&](const Trial& run) {
+    const Method& method = methods_[run.method];
+    return method.model != won.model || method.integrator != won.integrator;
+  });
+  return best;
+}
+
+void Finalists::replace_choices(const Trial& winner, double target, BestRuns& best) {
+  const Method won = methods_[winner.method];
   const auto model = [&](const Method& method) { return method.model == won.model; };
   const auto integrator = [&](const Method& method) {
     return method.integrator == won.integrator;
@@ -200,9 +211,8 @@ std::optional<BestRuns> Finalists::of(double target) {
     return same(method, &Method::by_tolerance, &Method::extrapolated, &Method::refresh,
                 &Method::cut_at_rest);
   };
-  BestRuns best{*winner, {}, {}};
   const auto add = [&](std::string_view choice, const auto& other) {
-    best.without.emplace_back(choice, replaced(*winner, target, other));
+    best.without.emplace_back(choice, replaced(winner, target, other));
   };
   add("model", [&](const Method& method) { return !model(method); });
   add("integrator",
@@ -228,12 +238,8 @@ std::optional<BestRuns> Finalists::of(double target) {
   replace("extrapolated", &Method::extrapolated, &Method::by_tolerance);
   replace("refresh", &Method::refresh, &Method::by_tolerance);
   replace("cuts", &Method::cut_at_rest, &Method::by_tolerance, &Method::extrapolated);
-  best.without.emplace_back("elements", twice_the_elements(*winner, target));
-  best.without.emplace_back("dt_s", half_the_step(*winner, target));
-  best.runner_up = settled(target, [&](const Trial& run) {
-    return !model(methods_[run.method]) || !integrator(methods_[run.method]);
-  });
-  return best;
+  best.without.emplace_back("elements", twice_the_elements(winner, target));
+  best.without.emplace_back("dt_s", half_the_step(winner, target));
 }
 
 /// The run's method with the options of another one, from the run's place.

@@ -49,8 +49,9 @@ class Finalists {
 
   Finalists(Search& search, const Scene& given, std::vector<Method>& methods, Time time);
 
-  /// Empty where no run meets the target.
-  std::optional<BestRuns> of(double target);
+  /// Empty where no run meets the target. Without `choices` nothing else replaces a
+  /// choice of the winner: BestRuns::without stays empty.
+  std::optional<BestRuns> of(double target, bool choices = true);
   /// The two are timed in turns.
   ControlCompared control(const ModelEntry& model, double target);
   std::optional<Trial> within(double wall_s, double floor);
@@ -80,6 +81,7 @@ class Finalists {
   std::optional<Trial> settled(double target, const Accept& accept);
   std::optional<Trial> replaced(const Trial& winner, double target,
                                 const std::function<bool(const Method&)>& other);
+  void replace_choices(const Trial& winner, double target, BestRuns& best);
   void try_options(const Trial& run, const Trial& with, double target);
   bool varied(const Method& method, std::string_view choice);
   std::optional<Trial> twice_the_elements(const Trial& winner, double target);

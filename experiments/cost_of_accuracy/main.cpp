@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <set>
 #include <string>
@@ -12,6 +13,7 @@
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
+#include "experiments/run/machine.h"
 #include "experiments/run/settings.h"
 #include "simulation/files/parse.h"
 
@@ -34,10 +36,17 @@ constexpr Parameter own_settings[] = {
      .text = true,
      .fallback = "scenes/accuracy/release.toml,scenes/accuracy/flight.toml"},
     {.name = "advise",
-     .help = "one scene file: says what to take, and writes it as a scene",
+     .help =
+         "scene file: recommend the cheapest model, integrator and step for the whole "
+         "scene, and write the tuned scene",
      .text = true},
+    {.name = "answer_s",
+     .help = "with advise: wall time for the answer (s)",
+     .number = 100,
+     .min = 1,
+     .max = 1e6},
     {.name = "accuracy",
-     .help = "wanted error over the length, 0: the usual list; with advise 0.01",
+     .help = "target error over the length, 0: the usual list; with advise 0.01",
      .number = 0,
      .min = 0,
      .max = 1},
@@ -52,14 +61,16 @@ constexpr Parameter own_settings[] = {
      .min = 1,
      .max = 1e4},
     {.name = "horizon_s",
-     .help = "time that is compared, at most the scene's (s)",
-     .number = 0.5,
-     .min = 1e-3,
+     .help =
+         "time that is compared, at most the scene's (s); 0: all of it, of the scenes "
+         "of the published table 0.5",
+     .number = 0,
+     .min = 0,
      .max = 1e3},
     {.name = "strands",
-     .help = "of a groom so many typical strands are looked at",
-     .number = 1,
-     .min = 1,
+     .help = "typical strands of a groom that are compared, 0: 1, with advise 3",
+     .number = 0,
+     .min = 0,
      .max = 1e4,
      .whole = true},
     {.name = "control",
@@ -72,10 +83,14 @@ constexpr Parameter own_settings[] = {
      .choices = "given|both"},
     {.name = "search_work",
      .help = "of one scene's search, million elements x steps of all runs; 0: 1 with "
-             "--quick, else 60",
+             "--quick, 15 with advise, else 60",
      .number = 0,
      .min = 0,
      .max = 1e6},
+    {.name = "exhaustive",
+     .help = "after the search every method is tried with all elements of the ladder and "
+             "1 to 64 steps a frame, half an octave apart: did the search miss a run?",
+     .choices = "no|yes"},
     {.name = "reference_elements",
      .help = "of the finest run of a reference; refined once more: twice as many",
      .number = 160,
@@ -89,9 +104,9 @@ constexpr Parameter own_settings[] = {
      .max = 1e6,
      .whole = true},
     {.name = "references",
-     .help = "folder where references are kept",
-     .text = true,
-     .fallback = "results/reference"},
+     .help = "folder where references are kept; empty: results/reference, of own scenes "
+             "<table>.reference beside the table",
+     .text = true},
 };
 
 constexpr OwnOption command_options[] = {
@@ -107,9 +122,43 @@ constexpr OwnOption command_options[] = {
 constexpr double usual_targets[] = {0.03, 0.01, 0.001, 1e-4};
 constexpr double quick_targets[] = {0.03, 0.01, 0.001};
 constexpr double advised_target = 0.01;
+constexpr double published_horizon = 0.5;  // s
 
-StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
+/// What an answer tries: the models and methods that ever win a row of the published
+/// table, so that the time is enough for a whole search.
+void narrow(MethodChoice& methods) {
+  if (methods.models.empty()) {
+    methods.models = {"super_helix", "super_clothoid", "articulated_chain",
+                      "der",         "mass_spring",    "dynamic_spline"};
+  }
+  if (methods.integrators.empty()) {
+    methods.integrators = {"semi_implicit_euler",
+                           "implicit_midpoint",
+                           "linearly_implicit_midpoint",
+                           "bdf2",
+                           "tr_bdf2",
+                           "esdirk43"};
+  }
+  methods.refreshes = {Refresh::every_step};
+  methods.options = {"modes", "tangent=stiff", "torsion"};
+  // A file holds one run.
+  methods.extrapolated = false;
+}
+
+/// References of own scenes must not replace those of the published table.
+std::string reference_folder(const CommandLine& line, const Parameters& own,
+                             bool published) {
+  if (!own.word("references").empty()) return std::string(own.word("references"));
+  if (published) return "results/reference";
+  if (line.out == "-") return "";
+  return std::filesystem::path(line.out).replace_extension(".reference").string();
+}
+
+StudyPlan plan_of(const CommandLine& line, const Settings& settings) {
+  const Parameters& own = settings.experiment();
   StudyPlan plan;
+  plan.advise = !own.word("advise").empty();
+  const bool published = !plan.advise && !settings.chosen("scenes");
   const double accuracy = own.number("accuracy");
   if (accuracy > 0) {
     plan.targets = {accuracy};
@@ -143,20 +192,27 @@ StudyPlan plan_of(const CommandLine& line, const Parameters& own) {
     // Without torsion mass_spring does not preserve the direction of curls.
     plan.methods.options = {"modes=bend", "tangent=stiff", "torsion"};
   }
+  if (plan.advise) narrow(plan.methods);
   if (!line.elements.empty()) plan.elements = line.elements;
-  plan.references = own.word("references");
+  plan.references = reference_folder(line, own, published);
   plan.reference = {own.whole("reference_elements"), own.whole("reference_substeps")};
   plan.rate = own.number("fps");
   plan.horizon = own.number("horizon_s");
+  if (plan.horizon == 0 && published) plan.horizon = published_horizon;
+  plan.answer_s = own.number("answer_s");
   plan.strands = static_cast<std::size_t>(own.whole("strands"));
+  if (plan.strands == 0) plan.strands = plan.advise ? 3 : 1;
   plan.search_work = 1e6 * own.number("search_work");
-  if (plan.search_work == 0) plan.search_work = line.quick ? 1e6 : 6e7;
+  if (plan.search_work == 0) {
+    plan.search_work = line.quick ? 1e6 : plan.advise ? 1.5e7 : 6e7;
+  }
   plan.longest_run = line.quick ? 2048 : 8192;
+  plan.exhaustive = own.word("exhaustive") == "yes";
   plan.budget_s = 1e-3 * own.number("budget_ms");
   plan.repeat = line.repeat;
   // Advice does not wait for a check of the reference.
-  plan.refine = own.word("advise").empty();
-  plan.report = !plan.refine && line.progress != ProgressMode::none;
+  plan.refine = !plan.advise;
+  plan.report = line.progress == ProgressMode::automatic;
   return plan;
 }
 
@@ -175,7 +231,7 @@ std::vector<std::string> method_scenes_of(const Settings& settings) {
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
-  const StudyPlan plan = plan_of(line, settings.experiment());
+  const StudyPlan plan = plan_of(line, settings);
   std::vector<Case> all;
   std::set<std::string> names;
   for (const std::string& file : scenes_of(settings.experiment())) {
@@ -211,9 +267,12 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
   const Parameters& own = settings.experiment();
   const std::string file(own.word("advise"));
   if (file.empty()) return;
-  print_advice(advice(rows));
+  std::vector<std::string> lines = advice(rows);
+  if (const auto doubt = timing_doubt()) lines.push_back(*doubt);
+  lines.push_back("table: " + line.out);
+  print_advice(lines);
   const Row* best = advised(rows);
-  if (best == nullptr || line.out == "-") return;
+  if (best == nullptr || best->status() == "file_differs" || line.out == "-") return;
   const Scene given = read_open_scene(file);
   write_advised("cost_of_accuracy", line, given.name,
                 advised_text(given, *best, own.number("fps")));

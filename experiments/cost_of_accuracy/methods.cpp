@@ -5,6 +5,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/command_line.h"
+#include "models/reduced/pitfalls.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene_tables.h"
 
@@ -21,6 +22,7 @@ std::vector<ModelSettings> option_sets(const ModelEntry& model,
     const std::string key(p.name);
     for (std::size_t i = 1; i < words.size(); ++i) {
       const std::string word(words[i]);
+      if (models::loses_digits(key, word)) continue;
       if (varied.empty() || std::ranges::count(varied, key) > 0 ||
           std::ranges::count(varied, key + '=' + word) > 0) {
         all.push_back({{key, word}});
@@ -88,7 +90,7 @@ void add(Method method, System& system, const Scene& given, const MethodChoice& 
   method.refresh = {};
   method.by_tolerance = true;
   all.push_back(method);
-  if (!may_extrapolate(given)) return;
+  if (!choice.extrapolated || !may_extrapolate(given)) return;
   method.extrapolated = true;
   all.push_back(method);
 }
@@ -122,7 +124,7 @@ std::vector<Method> with_other_words(const Scene& given, const Method& method,
   for (const Parameter& p : method.model->parameters) {
     if (p.name != choice) continue;
     for (const std::string_view word : words_of(p.choices)) {
-      if (word == method.word(choice)) continue;
+      if (word == method.word(choice) || models::loses_digits(choice, word)) continue;
       ModelSettings options = method.options;
       std::erase_if(options, [choice](const auto& one) { return one.first == choice; });
       if (word != words_of(p.choices).front()) options.emplace_back(choice, word);

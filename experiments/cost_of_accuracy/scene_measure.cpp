@@ -6,6 +6,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/tip_track.h"
+#include "simulation/run/timing.h"
 #include "simulation/run/tip_paths.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -22,6 +23,29 @@ constexpr double long_enough = 0.01;  // s
 /// Mean iterations of a stage beyond which no run is the cheapest: an undisturbed one
 /// takes three or four, and halving the step reduces them.
 constexpr double most_iterations = 10;
+
+/// A run's scene with longer or shorter steps, or changed data.
+Scene neighbour(Scene scene, Neighbour which) {
+  const auto with = [&scene](double factor) {
+    scene.options.step *= factor;
+    scene.options.tolerance *= factor;
+    return std::move(scene);
+  };
+  switch (which) {
+    case Neighbour::shorter_steps:
+      return with(shorter);
+    case Neighbour::longer_steps:
+      return with(longer);
+    case Neighbour::data_up:
+      return changed(std::move(scene), Change::up);
+    case Neighbour::data_down:
+      return changed(std::move(scene), Change::down);
+    case Neighbour::one_more_element:
+    case Neighbour::two_more:
+      break;
+  }
+  throw std::logic_error("a run of its own");
+}
 
 }  // namespace
 
@@ -43,17 +67,39 @@ Scene SceneMeasure::scene(const Method& method, int elements, int substeps) cons
   return run;
 }
 
+const std::vector<double>& SceneMeasure::reference(std::optional<Neighbour> of) const {
+  if (of == Neighbour::data_up) return changed_.up;
+  return of == Neighbour::data_down ? changed_.down : reference_;
+}
+
+std::function<bool(const std::vector<double>&)> SceneMeasure::useless(
+    const std::vector<double>& reference) const {
+  if (useless_ == never) return {};
+  const double most = std::pow(useless_ * comparison_.length, 2) *
+                      static_cast<double>(reference.size()) / 3;
+  return [&reference, most, seen = std::size_t{0},
+          squares = 0.0](const std::vector<double>& x) mutable {
+    for (; seen < std::min(x.size(), reference.size()); ++seen) {
+      squares += (x[seen] - reference[seen]) * (x[seen] - reference[seen]);
+    }
+    return !(squares <= most);
+  };
+}
+
 SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
                                             int substeps, double most_s,
-                                            std::optional<Change> change) const {
+                                            std::optional<Neighbour> as) const {
   const int stages = std::max(1, find_integrator(method.integrator).stages);
   const auto of = [&](int count) {
     Scene run = scene(method, count, substeps);
-    if (change) run = changed(std::move(run), *change);
-    return tip_paths(run, 0, {most_iterations * stages, most_s});
+    if (as) run = neighbour(std::move(run), *as);
+    RunLimit limit{most_iterations * stages, most_s};
+    if (count == elements) limit.useless = useless(reference(as));
+    return tip_paths(run, 0, limit);
   };
   TipPaths fine = of(elements);
-  Outcome made{std::move(fine.x), fine.once_s, fine.indicator};
+  Outcome made{std::move(fine.x), fine.once_s, fine.indicator,
+               static_cast<double>(fine.stats.steps) / strands()};
   if (!method.extrapolated) return made;
   const int few = coarser(elements);
   if (few == elements) {
@@ -92,6 +138,7 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
     Trial made{0, elements, substeps, tip_error(run.tips, reference_, comparison_.length),
                wall_s};
     made.indicator = run.indicator;
+    made.steps = run.steps;
     return made;
   } catch (const InputError&) {  // refused at this number of elements
     return {};
@@ -100,24 +147,25 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
   }
 }
 
-double SceneMeasure::changed_error(const Method& method, int elements, int substeps,
-                                   Change change, double most_s) const {
-  const std::vector<double>& reference =
-      change == Change::up ? changed_.up : changed_.down;
+double SceneMeasure::neighbour_error(const Method& method, int elements, int substeps,
+                                     Neighbour which, double most_s) const {
   try {
-    return tip_error(outcome(method, elements, substeps, most_s, change).tips, reference,
-                     comparison_.length);
+    return tip_error(outcome(method, elements, substeps, most_s, which).tips,
+                     reference(which), comparison_.length);
   } catch (const std::runtime_error&) {  // including refusals: InputError is one
     return never;
   }
 }
 
-std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count) const {
+std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count,
+                                           double most_s) const {
   const Scene run = compared(given, comparison_);
   try {
-    const TipPaths paths = tip_paths(run, 0);
-    Trial made{0, 0, 0, tip_error(paths.x, reference_, comparison_.length),
-               wall_time(wall_times(run, count, long_enough)).least_s};
+    const TipPaths paths = tip_paths(run, 0, {.wall_s = most_s});
+    const bool once = paths.once_s > long_run_s;
+    Trial made{
+        0, 0, 0, tip_error(paths.x, reference_, comparison_.length),
+        once ? paths.once_s : wall_time(wall_times(run, count, long_enough)).least_s};
     made.indicator = paths.indicator;
     return made;
   } catch (const std::runtime_error&) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,32 +43,35 @@ struct WallTime {
 };
 WallTime wall_time(const std::vector<double>& seconds);
 
-/// Runs a scene by any method and compares its tips with the reference. Times are wall
-/// times of stepping on one thread, the least of several runs.
+/// Runs a scene by any method and compares its tips with the reference. Times are those
+/// of ThreadTimer, the least of several runs.
 ///
 /// A run is abandoned by its count of Newton iterations, so that the result does not
 /// depend on the machine, by tolerance also by its steps of a frame, `longest_run` over
-/// its elements, and only in an emergency after `most_s`.
+/// its elements; as soon as its error over the whole horizon must exceed `useless`; and
+/// only in an emergency after `most_s`.
 class SceneMeasure {
  public:
   SceneMeasure(const Scene& given, const Comparison& comparison,
-               std::vector<double> reference, ChangedTips changed, long longest_run)
+               std::vector<double> reference, ChangedTips changed, long longest_run,
+               double useless = never)
       : given_(given),
         comparison_(comparison),
         reference_(std::move(reference)),
         changed_(std::move(changed)),
-        longest_run_(longest_run) {}
+        longest_run_(longest_run),
+        useless_(useless) {}
 
   /// One run, repeated a few times if it is short. Empty where the method cannot
   /// represent the scene, fails, or is abandoned.
   std::optional<Trial> quick(const Method& method, int elements, int substeps,
                              double most_s) const;
-  /// The error with changed data, against their reference; infinite where `quick` is
-  /// empty.
-  double changed_error(const Method& method, int elements, int substeps, Change change,
-                       double most_s) const;
+  /// The error with longer or shorter steps, or with changed data against their
+  /// reference; infinite where `quick` is empty.
+  double neighbour_error(const Method& method, int elements, int substeps,
+                         Neighbour which, double most_s) const;
   /// As `quick` for any scene, `count` times.
-  std::optional<Trial> best_of(const Scene& scene, int count) const;
+  std::optional<Trial> best_of(const Scene& scene, int count, double most_s) const;
   /// The time alone.
   WallTime time(const Method& method, int elements, int substeps, int count) const;
   /// Against another reference.
@@ -78,11 +82,19 @@ class SceneMeasure {
   /// What one run shows, or two of which the tips are extrapolated.
   struct Outcome {
     std::vector<double> tips;
-    double once_s = 0, indicator = 0;
+    double once_s = 0, indicator = 0, steps = 0;
   };
   Scene scene(const Method& method, int elements, int substeps) const;
   Outcome outcome(const Method& method, int elements, int substeps, double most_s = never,
-                  std::optional<Change> change = {}) const;
+                  std::optional<Neighbour> as = {}) const;
+  double strands() const {  // that are compared
+    return static_cast<double>(reference_.size()) / 3 /
+           static_cast<double>(comparison_.frames + 1);
+  }
+  const std::vector<double>& reference(std::optional<Neighbour> of) const;
+  /// RunLimit::useless against this reference.
+  std::function<bool(const std::vector<double>&)> useless(
+      const std::vector<double>& reference) const;
   WallTime repeated(const Method& method, int elements, int substeps, int count,
                     double at_least_s) const;
 
@@ -91,6 +103,7 @@ class SceneMeasure {
   std::vector<double> reference_;
   ChangedTips changed_;
   long longest_run_;
+  double useless_;
 };
 
 }  // namespace tress::experiments::cost_of_accuracy

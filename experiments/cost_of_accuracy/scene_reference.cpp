@@ -74,7 +74,7 @@ std::string text_of(const SceneReference& reference, const Comparison& compariso
 Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands) {
   Comparison made{.rate = rate, .strands = strands};
-  const double span = std::min(horizon, given.duration);
+  const double span = horizon > 0 ? std::min(horizon, given.duration) : given.duration;
   made.frames = static_cast<std::size_t>(std::max(1.0, std::floor(span * rate + 1e-9)));
   const std::vector<Strand>& all = given.strands;
   const std::vector<std::size_t> typical = typical_strands(all, strands);

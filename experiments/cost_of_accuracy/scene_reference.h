@@ -23,6 +23,7 @@ struct Comparison {
 
   double horizon() const { return static_cast<double>(frames) / rate; }
 };
+/// A horizon of 0 is the scene's duration.
 Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands);
 

@@ -3,17 +3,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
+#include "experiments/cost_of_accuracy/decided_reference.h"
 #include "experiments/cost_of_accuracy/finalists.h"
 #include "experiments/cost_of_accuracy/search.h"
 #include "experiments/cost_of_accuracy/study_rows.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
-#include "experiments/run/message.h"
+#include "experiments/numerics/tip_track.h"
+#include "experiments/run/heartbeat.h"
 #include "simulation/scene/scene_tables.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -27,10 +31,68 @@ constexpr double coarse_share = 0.6;
 /// As much again may be spent on replacing each choice of the winners.
 constexpr double last_share = 2;
 
-Study ready(const std::string& file, const StudyPlan& plan, const Row& identity) {
+/// Shares of the time for an answer: at the first one references end, and as much is left
+/// for what refers to changed data.
+constexpr double reference_share = 0.4;
+
+/// Fewer frames than this, or than this part of them, are no answer about a scene.
+constexpr std::size_t fewest_frames = 12;
+constexpr double least_part = 0.1;
+
+/// How far the sides are apart after the first `frames`.
+double beyond(const SceneReference& whole, std::size_t frames, double length) {
+  const std::size_t per_frame = whole.tips.tip.size() / (whole.frames + 1);
+  const auto rest = [&](const std::vector<double>& x) {
+    return std::span(x).subspan(per_frame * (frames + 1));
+  };
+  return frames < whole.frames
+             ? tip_error(rest(whole.tips.other), rest(whole.tips.tip), length)
+             : 0;
+}
+
+/// The reference of an own scene, on which the promise of an answer rests.
+void decide(Study& study, const Deadline& deadline, Heartbeat& heartbeat) {
+  const StudyPlan& plan = study.plan;
+  const double target = plan.targets.back();
+  const WantedGap wanted{target / believed, target / believed_in_advice};
+  const Deadline enough(reference_share * deadline.remaining_s());
+  DecidedReference made = kept_decided(study.given, study.comparison, wanted, enough,
+                                       heartbeat, plan.references, study.given.name);
+  study.how = std::move(made.how);
+  study.reference = agreed(made.reference, study.comparison, wanted.allowed);
+  const std::size_t frames = study.reference.frames;
+  study.beyond = beyond(made.reference, frames, study.comparison.length);
+  if (study.reference.tips.gap > wanted.allowed || frames < study.asked) {
+    const auto part = static_cast<std::size_t>(
+        std::ceil(least_part * static_cast<double>(study.asked)));
+    if (frames < std::min(study.asked, std::max(fewest_frames, part))) {
+      throw std::runtime_error(fmt::format(
+          "the references agree for the first {:.2g} s of {:.3g} s only, beyond they "
+          "differ by {:.2g} % of the length ({}): the motion is too sensitive, or more "
+          "time is needed (--set answer_s)",
+          static_cast<double>(frames) / plan.rate,
+          static_cast<double>(study.asked) / plan.rate, 1e2 * study.beyond, study.how));
+    }
+  }
+  const std::size_t size = study.reference.tips.tip.size();
+  made.changed.up.resize(size);
+  made.changed.down.resize(size);
+  study.changed = std::move(made.changed);
+}
+
+Study ready(const std::string& file, const StudyPlan& plan, const Row& identity,
+            const Deadline& deadline, Heartbeat& heartbeat) {
   Study study{.plan = plan, .given = read_open_scene(file), .identity = identity};
   const std::string name = study.given.name;
   study.comparison = comparison(study.given, plan.rate, plan.horizon, plan.strands);
+  study.asked = study.comparison.frames;
+  study.methods = methods(study.given, plan.methods);
+  if (plan.advise) {
+    decide(study, deadline, heartbeat);
+    study.comparison.frames = study.reference.frames;
+    return study;
+  }
+  heartbeat.doing("computing the references");
   const auto kept = [&](const ReferenceCut& cut, const std::string& as) {
     return kept_reference(study.given, study.comparison, cut, plan.references, as);
   };
@@ -45,10 +107,9 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity)
   study.reference = agreed(whole, study.comparison, parted);
   study.changed = kept_changed_tips(study.given, study.comparison, study.reference,
                                     plan.reference.halved(), plan.references, name);
-  study.cut = study.reference.frames < study.comparison.frames;
+  study.beyond = beyond(whole, study.reference.frames, study.comparison.length);
   study.comparison.frames = study.reference.frames;
   if (fine) study.refined = first_frames(*fine, study.comparison);
-  study.methods = methods(study.given, plan.methods);
   return study;
 }
 
@@ -80,28 +141,31 @@ class Work {
   double time_s_;
 };
 
-/// Reports occasionally the progress of a search and the best run so far.
+/// Tells a heartbeat how far a search is, and the best run so far.
 class SearchProgress {
  public:
-  SearchProgress(const Study& study, double target) : study_(study), target_(target) {}
+  SearchProgress(const Study& study, double target, Heartbeat& heartbeat)
+      : study_(study), target_(target), heartbeat_(heartbeat) {}
 
   void say(const Search& search) {
     const Clock::time_point now = Clock::now();
-    if (!study_.plan.report || now - last_ < between) return;
+    if (now - last_ < between) return;
     last_ = now;
     const Trial* best = cheapest(search.runs(), target_);
     if (best == nullptr) best = most_accurate(search.runs(), never, 0);
     if (best == nullptr) return;
-    tell("{}: {} runs, best so far {}\n", study_.given.name, search.runs().size(),
-         configuration_and_price(row_of(study_, "winner", *best)));
+    heartbeat_.doing(
+        fmt::format("{} runs, best so far {}", search.runs().size(),
+                    configuration_and_price(row_of(study_, "winner", *best))));
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::seconds between{2};
+  static constexpr std::chrono::seconds between{1};
 
   const Study& study_;
   double target_;
+  Heartbeat& heartbeat_;
   Clock::time_point last_ = Clock::now();
 };
 
@@ -126,16 +190,56 @@ void settle(const Study& study, Finalists& finalists, const std::vector<double>&
   while (finalists.known() != before && !deadline.passed()) {
     before = finalists.known();
     for (const double target : targets) {
-      static_cast<void>(finalists.of(target));
+      static_cast<void>(finalists.of(target, !study.plan.advise));
       for (const std::string& id : study.plan.control) {
         static_cast<void>(finalists.control(find_model(id), target));
       }
     }
+    if (study.plan.advise) continue;
     static_cast<void>(finalists.front(study.floor(), study.plan.targets.front()));
   }
 }
 
-std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
+/// The row that is advised: its file is run as it is written, and an answer for a part of
+/// the scene is none for the whole.
+void conclude(const Study& study, std::vector<Row>& rows) {
+  const Row* best = advised(rows);
+  if (best == nullptr) return;
+  Row& row = rows[static_cast<std::size_t>(best - rows.data())];
+  if (!row.ok() || !confirm(study, row) || !study.cut()) return;
+  row.failed("valid_in_part",
+             fmt::format("the references agree for the first {:.3g} s of {:.3g} s only",
+                         row.number("horizon_s"), row.number("asked_s")));
+}
+
+/// Elements and substeps of the exhaustive search, half an octave apart.
+constexpr int every_substep[] = {1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64};
+
+/// Tries every method with all elements of the ladder and every_substep. By target, the
+/// time of the search's winner over that of the cheapest that then is known.
+std::map<double, double> exhaust(const Study& study, Search& search, Finalists& finalists,
+                                 const std::vector<double>& targets,
+                                 const Deadline& deadline) {
+  std::map<double, double> before, gains;
+  for (const double target : targets) {
+    if (const auto best = finalists.of(target, false))
+      before[target] = best->winner.wall_s;
+  }
+  for (std::size_t method = 0; method < study.methods.size(); ++method) {
+    for (const int elements : study.plan.elements) {
+      for (const int substeps : every_substep) {
+        search.run(method, elements, substeps * search.unit(method));
+      }
+    }
+  }
+  settle(study, finalists, targets, deadline);
+  for (const auto& [target, wall_s] : before) {
+    gains[target] = wall_s / finalists.of(target, false)->winner.wall_s;
+  }
+  return gains;
+}
+
+std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& heartbeat) {
   const StudyPlan& plan = study.plan;
   const SceneMeasure measure = measure_of(study);
   SearchPlan search_plan{
@@ -155,11 +259,12 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
     Row row = begin(study, "winner");
     rows.push_back(row.failed(
         "below_reference",
-        fmt::format("all targets are < {} x gap {:.3g}", believed, study.gap())));
+        fmt::format("all targets are < {} x gap {:.3g}", study.trusted(), study.gap())));
     return rows;
   }
   Work work(study, deadline);
-  SearchProgress progress(study, search_plan.targets.back());
+  SearchProgress progress(study, search_plan.targets.back(), heartbeat);
+  heartbeat.doing("searching");
   Search search(
       search_plan, study.methods.size(),
       [&](std::size_t method, int elements, int substeps) {
@@ -172,10 +277,8 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
       },
       [&](const Trial& run, Neighbour change) {
         work.add(study.methods[run.method], run.elements, run.substeps);
-        return measure.changed_error(
-            study.methods[run.method], run.elements, run.substeps,
-            change == Neighbour::data_up ? Change::up : Change::down,
-            deadline.remaining_s());
+        return measure.neighbour_error(study.methods[run.method], run.elements,
+                                       run.substeps, change, deadline.remaining_s());
       },
       work.until(coarse_share));
   search.coarse();
@@ -192,40 +295,56 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline) {
     return measure.time(study.methods[run.method], run.elements, run.substeps,
                         plan.repeat);
   });
+  heartbeat.doing("timing the best runs again");
   settle(study, finalists, search_plan.targets, deadline);
+  std::map<double, double> gains;
+  if (plan.exhaustive) {
+    search.go_on([&] { return deadline.passed(); });
+    gains = exhaust(study, search, finalists, search_plan.targets, deadline);
+  }
   for (const double target : plan.targets) {
+    const std::size_t winner = rows.size();
     add_target(study, finalists, target, rows);
+    const auto gain = gains.find(target - study.gap());
+    if (gain != gains.end()) rows[winner].set("exhaustive_gain", gain->second);
     add_control(study, finalists, target, rows);
   }
   add_budget(study, finalists, rows);
-  for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {
-    rows.push_back(row_of(study, "front", run));
-    rows.back().set("time_scatter", finalists.scatter(run));
+  if (!plan.advise) {
+    for (const Trial& run : finalists.front(study.floor(), plan.targets.front())) {
+      rows.push_back(row_of(study, "front", run));
+      rows.back().set("time_scatter", finalists.scatter(run));
+    }
   }
-  add_given(study, rows);
+  add_given(study, plan.advise ? deadline.remaining_s() : never, rows);
   if (search.cut()) how += ", cut while settling";
   if (work.late(last_share)) how += ", by the clock";
   for (Row& row : rows) {
     row.set("runs", search.runs().size()).set("passed_over", search.passed_over());
     row.set("work", 1e-6 * work.done()).set("search", how);
   }
+  if (plan.advise) conclude(study, rows);
   return rows;
 }
 
 }  // namespace
 
 std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
-                             const Row& identity, const Deadline& deadline) {
+                             const Row& identity, const Deadline& of_row) {
+  const bool own = plan.advise && plan.answer_s > 0;
+  const Deadline deadline(own ? std::min(plan.answer_s, of_row.remaining_s())
+                              : of_row.remaining_s());
+  Heartbeat heartbeat(std::string(identity.text("scene")), plan.report);
   std::optional<Study> study;
   try {
-    study.emplace(ready(file, plan, identity));
+    study.emplace(ready(file, plan, identity, deadline, heartbeat));
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& failure) {
     Row row = identity;
     return {row.failed("no_reference", failure.what())};
   }
-  return all_rows(*study, deadline);
+  return all_rows(*study, deadline, heartbeat);
 }
 
 }  // namespace tress::experiments::cost_of_accuracy

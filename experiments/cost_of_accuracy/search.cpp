@@ -89,7 +89,7 @@ double Search::neighbour_error(const Trial& own, Neighbour which) {
     case Neighbour::two_more:
       return error(run(own.method, own.elements + 2, own.substeps));
     case Neighbour::shorter_steps:
-      return error(run(own.method, own.elements, (3 * own.substeps + 1) / 2));
+    case Neighbour::longer_steps:
     case Neighbour::data_up:
     case Neighbour::data_down:
       break;
@@ -101,8 +101,10 @@ bool Search::holds(const Trial& given, double target) {
   const auto index = seen_.at({given.method, given.elements, given.substeps});
   Trial& own = runs_[*index];
   while (own.judged() <= target && own.examined < neighbour_count) {
-    const double error = neighbour_error(own, static_cast<Neighbour>(own.examined));
+    const auto which = static_cast<Neighbour>(own.examined);
+    const double error = neighbour_error(own, which);
     if (cut_) return false;  // unknown
+    if (error >= own.neighbours) own.worst = which;
     own.neighbours = std::max(own.neighbours, error);
     ++own.examined;
   }
@@ -227,9 +229,10 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
     return run != nullptr && run->judged() <= target;
   };
   most = std::min(most, most_substeps(method, elements));
-  if (most < 1) return nullptr;
-  // Bracket: `few` fails, `enough` succeeds.
-  int few = 0, enough = std::clamp(guess, 1, most);
+  // Bracket: `few` fails, or is not tried; `enough` succeeds.
+  const int least = unit(method);
+  if (most < least) return nullptr;
+  int few = least - 1, enough = std::clamp(guess, least, most);
   const Trial* best = run(method, elements, enough);
   while (!meets(best)) {
     if (cut_ || enough == most) return nullptr;
@@ -238,8 +241,8 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
     best = run(method, elements, enough);
   }
   while (enough > few + 1 && enough > resolution * few) {
-    const int middle = few == 0
-                           ? enough / 2
+    const int middle = few < least
+                           ? (least + enough) / 2
                            : static_cast<int>(std::lround(std::sqrt(1.0 * few * enough)));
     const int next = std::clamp(middle, few + 1, enough - 1);
     const Trial* found = run(method, elements, next);

@@ -17,7 +17,7 @@ struct SearchPlan {
   std::vector<int> elements;    // coarse ladders, ascending
   std::vector<int> substeps;
   long longest_run;  // elements x substeps; longer runs are not tried
-  /// "Substeps" of a method that its ladder counts as one; without it 1.
+  /// "Substeps" of a method that its ladder counts as one, its fewest; without it 1.
   std::function<int(std::size_t method)> unit = {};
   /// Methods of one kind need similar elements and substeps: once one of a kind has
   /// climbed to the tightest target the others begin near its answer. Without it each
@@ -56,7 +56,8 @@ class Search {
   /// A run and its time; empty if it fails.
   using Measure =
       std::function<std::optional<Trial>(std::size_t method, int elements, int substeps)>;
-  /// The error of a run with the scene's data changed up or down, infinite if it fails.
+  /// The error of a run with longer or shorter steps, or with the scene's data changed,
+  /// infinite if it fails.
   using Changed = std::function<double(const Trial& run, Neighbour change)>;
 
   /// `stop`: true once the work is done; measurements so far are kept.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
+#include "simulation/scene/scene.h"
 #include "simulation/scene/scene_tables.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -14,6 +15,9 @@ void set_wall(const Study& study, double wall_s, Row& row) {
   row.set("wall_s_per_sim_s", wall_s / study.comparison.horizon());
   row.set("ms_per_frame", 1e3 * wall_s / static_cast<double>(study.comparison.frames));
 }
+
+/// A run whose error exceeds the loosest target so many times is abandoned.
+constexpr double useless = 10;
 
 /// Reason for the missing winner.
 std::string not_met(bool cut) {
@@ -28,7 +32,11 @@ Row begin(const Study& study, std::string_view kind) {
   Row row = study.identity;
   row.set("kind", kind).set("reference_gap", study.gap());
   if (study.refined) row.set("refined_gap", study.refined->tips.gap);
-  row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut);
+  row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut());
+  row.set("asked_s", static_cast<double>(study.asked) / study.comparison.rate);
+  row.set("duration_s", study.given.duration);
+  if (study.cut()) row.set("parted_rel", study.beyond);
+  if (!study.how.empty()) row.set("references", study.how);
   return row;
 }
 
@@ -37,21 +45,26 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   set_method(study.methods[run.method], row);
   row.set("elements", run.elements);
   const Method& method = study.methods[run.method];
+  const Accuracy chosen = accuracy(method, run.substeps, study.comparison.rate);
   if (method.by_tolerance) {
-    row.set("tolerance", tolerance_of(method, run.substeps));
+    row.set("tolerance", chosen.tolerance);
+    if (run.steps > 0) row.set("mean_step_s", study.comparison.horizon() / run.steps);
   } else {
-    row.set("dt_s", 1 / (study.comparison.rate * run.substeps));
+    row.set("dt_s", chosen.step);
   }
   row.set("error_rel", run.error);
-  if (run.examined == neighbour_count) row.set("error_neighbours_rel", run.neighbours);
+  if (run.examined == neighbour_count) {
+    row.set("error_neighbours_rel", run.neighbours);
+    row.set("worst_neighbour", name(run.worst, method.by_tolerance));
+  }
   if (run.indicator > 0) row.set("error_indicator", run.indicator);
   set_wall(study, run.wall_s, row);
   return row;
 }
 
 SceneMeasure measure_of(const Study& study) {
-  return {study.given, study.comparison, study.reference.tips.tip, study.changed,
-          study.plan.longest_run};
+  return {study.given,   study.comparison,       study.reference.tips.tip,
+          study.changed, study.plan.longest_run, useless * study.plan.targets.front()};
 }
 
 void add_target(const Study& study, Finalists& finalists, double target,
@@ -61,10 +74,10 @@ void add_target(const Study& study, Finalists& finalists, double target,
     row.set("target_error_rel", target);
     rows.push_back(row.failed("below_reference",
                               fmt::format("target {} < {} x gap {:.3g} of the references",
-                                          target, believed, study.gap())));
+                                          target, study.trusted(), study.gap())));
     return;
   }
-  const auto met = finalists.of(target - study.gap());
+  const auto met = finalists.of(target - study.gap(), !study.plan.advise);
   if (!met) {
     const auto nearest = finalists.nearest();
     Row row = nearest ? row_of(study, "winner", *nearest) : begin(study, "winner");
@@ -146,7 +159,28 @@ void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows
   rows.push_back(std::move(row));
 }
 
-void add_given(const Study& study, std::vector<Row>& rows) {
+bool confirm(const Study& study, Row& row) {
+  const double rate = study.comparison.rate;
+  const std::string text = advised_text(study.given, row, rate);
+  const auto run =
+      measure_of(study).best_of(parse_scene(text, "advised scene"), 0, never);
+  if (!run) {
+    row.failed("file_differs", "the advised file does not run to the end");
+    return false;
+  }
+  const double promised = row.number("error_rel");
+  row.set("error_rel", run->error);
+  if (run->error <= std::max(promised, row.number("target_error_rel") - study.gap())) {
+    return true;
+  }
+  row.failed(
+      "file_differs",
+      fmt::format("the advised file has an error of {:.3g}, the search found {:.3g}",
+                  run->error, promised));
+  return false;
+}
+
+void add_given(const Study& study, double most_s, std::vector<Row>& rows) {
   const Scene& given = study.given;
   Row row = begin(study, "as_given");
   Method method{{given.model, {}, given.integrator, given.options.formulation}};
@@ -164,9 +198,9 @@ void add_given(const Study& study, std::vector<Row>& rows) {
   } else {
     row.set("dt_s", given.options.step);
   }
-  const auto run = measure_of(study).best_of(given, study.plan.repeat);
+  const auto run = measure_of(study).best_of(given, study.plan.repeat, most_s);
   if (!run) {
-    row.failed("diverged", "the scene as given does not run to the horizon");
+    row.failed("diverged", "the scene as given does not run to the horizon, or too long");
   } else {
     row.set("error_rel", run->error);
     if (run->indicator > 0) row.set("error_indicator", run->indicator);

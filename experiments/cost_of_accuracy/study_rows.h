@@ -16,14 +16,18 @@ struct Study {
   const Scene given;
   const Row& identity;
   Comparison comparison = {};  // truncated where the references diverge
-  bool cut = false;
+  std::size_t asked = 0;       // frames, before that
+  double beyond = 0;           // how far the references differ from there on
+  std::string how = {};        // DecidedReference::how
   SceneReference reference = {};
   std::optional<SceneReference> refined = {};
   ChangedTips changed = {};
   std::vector<Method> methods = {};
 
   double gap() const { return reference.tips.gap; }
-  double floor() const { return believed * gap(); }
+  bool cut() const { return comparison.frames < asked; }
+  double trusted() const { return plan.advise ? believed_in_advice : believed; }
+  double floor() const { return trusted() * gap(); }
 };
 
 /// A row with the columns common to the study; the second with those of a run.
@@ -40,8 +44,11 @@ void add_control(const Study& study, Finalists& finalists, double target,
                  std::vector<Row>& rows);
 /// The best run within the time per frame, if requested.
 void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows);
+/// Runs the advised scene as its file has it, and writes the error and the time of that
+/// run into its row. False: the error is not that of the row, or the file does not run.
+bool confirm(const Study& study, Row& row);
 /// The scene with the file's own model, integrator, elements and step; steps end at the
-/// frames of the comparison.
-void add_given(const Study& study, std::vector<Row>& rows);
+/// frames of the comparison, `most_s` of wall time at most.
+void add_given(const Study& study, double most_s, std::vector<Row>& rows);
 
 }  // namespace tress::experiments::cost_of_accuracy

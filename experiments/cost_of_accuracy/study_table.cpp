@@ -11,7 +11,7 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-constexpr Column columns[] = {
+constexpr Column table_columns[] = {
     {"scene", "name of the scene"},
     {"kind",
      "winner, runner_up (another model or integrator), without (one choice replaced), "
@@ -39,14 +39,16 @@ constexpr Column columns[] = {
     {"extrapolated",
      "whether the tip is extrapolated from these elements and half as many (Richardson)"},
     {"dt_s", "time step; empty: by tolerance"},
-    {"tolerance", "asked error over the length, of a run that chooses its steps"},
+    {"tolerance", "requested tolerance over the length, of a run that chooses its steps"},
+    {"mean_step_s", "mean step of that run"},
     {"error_rel",
      "tip against the continuous rod: rms over frames and strands, over the length"},
     {"error_refined_rel", "the same against the reference refined once more"},
     {"error_neighbours_rel",
-     "largest error of its neighbours: 1 and 2 elements more, 1.5 times the steps, "
-     "moduli "
-     "and length 2 % up and down"},
+     "largest error of its neighbours: 1 and 2 elements more, step or tolerance times "
+     "0.7 "
+     "and 1.4, moduli and length 2 % up and down"},
+    {"worst_neighbour", "neighbour that has this error"},
     {"margin", "the same and the gap over the wanted error; at most 1.5, or it is luck"},
     {"error_indicator",
      "what the method itself says of its worst step, over an unknown's scale; beyond 0.1 "
@@ -55,6 +57,10 @@ constexpr Column columns[] = {
     {"refined_gap", "the same refined once more"},
     {"horizon_s", "compared time: what was asked for, or until the references part"},
     {"horizon_cut", "whether the references parted before the end"},
+    {"asked_s", "time that was to be compared: duration_s, or horizon_s of --set"},
+    {"duration_s", "duration of the scene"},
+    {"parted_rel", "rms distance of the references from there on, over the length"},
+    {"references", "models of the references of an own scene, and how fine they are"},
     {"wall_s_per_sim_s",
      "wall time per simulated second on one thread with nothing beside it", true},
     {"ms_per_frame", "the same per frame", true},
@@ -73,6 +79,10 @@ constexpr Column columns[] = {
      true},
     {"time_scatter", "how badly that time repeats: two halves of its repeats, less 1",
      true},
+    {"exhaustive_gain",
+     "time of the search's winner over that of the cheapest run after every method was "
+     "tried on a grid; empty: not asked (exhaustive)",
+     true},
     {"tied", "whether the time cannot be told from the winner's", true},
     {"runs", "runs that the search took", true},
     {"work", "million elements x steps of all of them", true},
@@ -84,7 +94,7 @@ constexpr std::string_view own_columns[] = {"modes", "tangent", "solver"};
 
 }  // namespace
 
-std::span<const Column> study_columns() { return columns; }
+std::span<const Column> study_columns() { return table_columns; }
 
 void set_method(const Method& method, Row& row) {
   row.set("model", method.model->id).set("integrator", method.integrator);
@@ -107,7 +117,7 @@ void set_method(const Method& method, Row& row) {
   if (!others.empty()) row.set("options", others);
 }
 
-Configuration configuration(const Row& row, double rate) {
+Configuration configuration(const Row& row) {
   Configuration made;
   made.method.model = &find_model(row.text("model"));
   made.method.integrator = std::string(row.text("integrator"));
@@ -136,9 +146,9 @@ Configuration configuration(const Row& row, double rate) {
   made.method.cut_at_rest = row.text("cuts") == "rest";
   made.method.extrapolated = row.text("extrapolated") == "true";
   made.method.by_tolerance = row.has("tolerance");
-  made.substeps = made.method.by_tolerance
-                      ? fineness_of(made.method, row.number("tolerance"))
-                      : static_cast<int>(std::lround(1 / (rate * row.number("dt_s"))));
+  made.accuracy = made.method.by_tolerance
+                      ? Accuracy{.tolerance = row.number("tolerance")}
+                      : Accuracy{.step = row.number("dt_s")};
   return made;
 }
 

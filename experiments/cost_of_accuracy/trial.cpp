@@ -1,5 +1,7 @@
 #include "experiments/cost_of_accuracy/trial.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace tress::experiments::cost_of_accuracy {
@@ -10,6 +12,25 @@ namespace {
 constexpr double front_gain = 0.9;
 
 }  // namespace
+
+std::string name(Neighbour neighbour, bool by_tolerance) {
+  const char* const control = by_tolerance ? "tolerance" : "dt";
+  switch (neighbour) {
+    case Neighbour::one_more_element:
+      return "1 element more";
+    case Neighbour::two_more:
+      return "2 elements more";
+    case Neighbour::shorter_steps:
+      return fmt::format("{} x {}", control, shorter);
+    case Neighbour::longer_steps:
+      return fmt::format("{} x {}", control, longer);
+    case Neighbour::data_up:
+      return "moduli and lengths + 2 %";
+    case Neighbour::data_down:
+      break;
+  }
+  return "moduli and lengths - 2 %";
+}
 
 double Trial::judged() const { return std::max(error, neighbours / neighbour_allowance); }
 

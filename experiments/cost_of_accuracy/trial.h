@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "contract/layers.h"
@@ -19,6 +20,27 @@ inline constexpr double resolution = 1.1;
 /// The error of a run that fails, and the time of one that never meets a target.
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
+/// A run may be accidentally accurate: at the edge of stability, or where spatial and
+/// temporal errors cancel. It counts for a target only if its neighbours are within
+/// neighbour_allowance times that target: 1 and 2 elements more, the step or the
+/// tolerance times 0.7 and 1.4, and the run itself with the scene's data changed a little
+/// up and down.
+/// In this order: those with more elements are runs that may win themselves, and are not
+/// looked at beside a run that fails otherwise.
+enum class Neighbour {
+  shorter_steps,
+  longer_steps,
+  data_up,
+  data_down,
+  one_more_element,
+  two_more
+};
+inline constexpr int neighbour_count = 6;
+inline constexpr double shorter = 0.7, longer = 1.4;
+
+/// "one element more", "tolerance x 1.4" ... of a run by steps or by tolerance.
+std::string name(Neighbour neighbour, bool by_tolerance);
+
 /// One measured run. A method is a model with its options and an integrator, identified
 /// here by its index.
 struct Trial {
@@ -27,24 +49,19 @@ struct Trial {
   int substeps = 0;  // steps per frame
   double error = 0;
   double wall_s = 0;
-  // Number of neighbours examined (see Neighbour), and their largest error.
+  // Number of neighbours examined (see Neighbour), their largest error, and which has it.
   int examined = 0;
   double neighbours = 0;
+  Neighbour worst = Neighbour::shorter_steps;
 
   /// Largest over its steps, 0 if the method has none (ErrorIndicator).
   double indicator = 0;
+  double steps = 0;  // of a strand, mean
 
   /// The smallest target for which the run counts, by its own error and by those of its
   /// neighbours under the allowance. A lower bound until all neighbours were examined.
   double judged() const;
 };
-
-/// A run may be accidentally accurate: at the edge of stability, or where spatial and
-/// temporal errors cancel. It counts for a target only if its neighbours are within
-/// neighbour_allowance times that target: 1 and 2 elements more, half as many more steps,
-/// and the run itself with the scene's data changed a little up and down.
-enum class Neighbour { one_more_element, two_more, shorter_steps, data_up, data_down };
-inline constexpr int neighbour_count = 5;
 
 /// The cheapest run accepted by `accept` that is judged at most `target`; null when there
 /// is none.

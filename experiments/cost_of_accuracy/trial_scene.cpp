@@ -1,7 +1,10 @@
 #include "experiments/cost_of_accuracy/trial_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -37,15 +40,13 @@ int order_of(const Method& method) {
 
 }  // namespace
 
-double tolerance_of(const Method& method, int substeps) {
+Accuracy accuracy(const Method& method, int substeps, double rate) {
+  if (!method.by_tolerance) return {.step = 1 / (rate * substeps)};
   const double fineness = static_cast<double>(substeps) / fineness_unit;
-  // The coarsest rungs of a ladder ask for no more than this.
-  return std::min(1.0, loosest_tolerance * std::pow(fineness, -order_of(method)));
-}
-
-int fineness_of(const Method& method, double tolerance) {
-  const double fineness = std::pow(tolerance / loosest_tolerance, -1. / order_of(method));
-  return std::max(1, static_cast<int>(std::lround(fineness_unit * fineness)));
+  const double exact = loosest_tolerance * std::pow(fineness, -order_of(method));
+  // As it is printed and written: what is run is what is said.
+  const double shown = std::stod(fmt::format("{:.1e}", exact));
+  return {.tolerance = std::min(shown, loosest_tolerance)};
 }
 
 int steps_unit(const Method& method) { return method.by_tolerance ? fineness_unit : 1; }
@@ -69,14 +70,20 @@ bool may_extrapolate(const Scene& scene) {
 
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
                   double rate) {
+  return trial_scene(std::move(given), method, elements, accuracy(method, substeps, rate),
+                     rate);
+}
+
+Scene trial_scene(Scene given, const Method& method, int elements, Accuracy accuracy,
+                  double rate) {
   Scene scene = with_method(std::move(given), method);
   scene = method.cut_at_rest ? with_elements_at_rest(std::move(scene), elements)
                              : with_elements(std::move(scene), elements);
   if (method.by_tolerance) {
     scene.options.step = Options{}.step;  // does not count
-    scene.options.tolerance = tolerance_of(method, substeps);
+    scene.options.tolerance = accuracy.tolerance;
   } else {
-    scene.options.step = 1 / (rate * substeps);
+    scene.options.step = accuracy.step;
     scene.options.refresh = method.refresh;
     scene.options.newton_tolerance = newton_tolerance;
   }

@@ -22,13 +22,20 @@ struct Method : simulation::Method {
   bool cut_at_rest = false;
 };
 
-/// 0.1 (fineness_unit/s)^p over the length, p the method's order.
-inline constexpr int fineness_unit = 8;
-double tolerance_of(const Method& method, int substeps);
-/// The number s of which tolerance_of is nearest to `tolerance`.
-int fineness_of(const Method& method, double tolerance);
+/// What decides the accuracy of a run in time: one of the two is 0.
+struct Accuracy {
+  double step = 0;       // s
+  double tolerance = 0;  // of the length
+};
 
-/// Steps of a run that an integer s counts as one (fineness_unit, or 1), and the work of
+/// A frame of 1/rate in s steps; by tolerance 0.1 (fineness_unit/s)^p over the length, p
+/// the method's order, to two digits. A looser tolerance than 0.1 does not control the
+/// error: its longest steps are right or wrong by luck.
+inline constexpr int fineness_unit = 8;
+Accuracy accuracy(const Method& method, int substeps, double rate);
+
+/// Steps of a run that an integer s counts as one, its fewest (fineness_unit, or 1), and
+/// the work of
 /// a frame, in elements x steps of one linear solve.
 int steps_unit(const Method& method);
 double frame_work(const Method& method, int elements, int substeps);
@@ -49,7 +56,10 @@ bool may_extrapolate(const Scene& scene);
 Scene read_open_scene(const std::string& file);
 
 /// The scene by this method, with `elements` per strand, `rate` frames per second and
-/// steps that divide a frame, or the tolerance. Throws InputError as with_elements does.
+/// this step or tolerance. Throws InputError as with_elements does.
+Scene trial_scene(Scene given, const Method& method, int elements, Accuracy accuracy,
+                  double rate);
+/// As above, with steps that divide a frame, or a tolerance, of `substeps`.
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
                   double rate);
 
@@ -64,7 +74,8 @@ inline constexpr double newton_tolerance = 1e-6;
 /// Every strand model with its options and every integrator that can drive it on this
 /// scene: with fixed steps, those with error control also by tolerance, unless a tangent
 /// decides about their steps, and these also extrapolated. Other adaptive methods are
-/// left out: they control an error of the unknowns and not of the strand.
+/// left out: they control an error of the unknowns and not of the strand. Options that
+/// lose digits (models::loses_digits) are left out as well.
 struct MethodChoice {
   std::vector<std::string> models, integrators;  // empty: all
   /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `tangent` in
@@ -72,6 +83,8 @@ struct MethodChoice {
   std::vector<std::string> options;
   /// Integrators with error control also with fixed steps.
   bool fixed_steps = true;
+  /// Those by tolerance also extrapolated.
+  bool extrapolated = true;
   /// Elements also as strands at rest need them, where a scene leaves that open.
   bool cuts_at_rest = false;
   /// When integrators that iterate rebuild their matrix.

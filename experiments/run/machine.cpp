@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "math/instructions.h"
 
@@ -80,6 +81,16 @@ std::array<double, 3> load_average() {
   std::array<double, 3> loads{};
   if (::getloadavg(loads.data(), 3) != 3) loads = {};
   return loads;
+}
+
+std::optional<std::string> timing_doubt() {
+  const double load = load_average().front();
+  const auto processors = static_cast<double>(std::thread::hardware_concurrency());
+  if (load <= processors) return {};
+  return fmt::format(
+      "times are uncertain: the load of the machine is {:.2g} on {} "
+      "processors",
+      load, processors);
 }
 
 Spent spent_so_far() {

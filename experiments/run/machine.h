@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,10 @@ Machine machine();
 
 /// Load averages over 1, 5 and 15 minutes.
 std::array<double, 3> load_average();
+
+/// "times are uncertain: ..." where more runs than the machine has processors; empty
+/// where a timing can be trusted.
+std::optional<std::string> timing_doubt();
 
 /// What this process and those that it has waited for took until now.
 struct Spent {

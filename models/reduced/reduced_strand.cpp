@@ -7,6 +7,7 @@
 #include "contract/constants.h"
 #include "contract/input_error.h"
 #include "math/gauss_legendre.h"
+#include "models/reduced/pitfalls.h"
 #include "models/strand/geometry.h"
 
 namespace tress::models {
@@ -33,6 +34,8 @@ constexpr Parameter own_parameters[] = {
      .max = 64,
      .whole = true},
 };
+
+constexpr std::string_view plain_solver = "recursive_plain";
 
 Vec times(const Vec& x, const Vec& y) { return {x.x * y.x, x.y * y.y, x.z * y.z}; }
 LinearStrain times(const Vec& x, const LinearStrain& y) {
@@ -125,6 +128,10 @@ void add_rotors(ReducedStrand& reduced, const Strand& strand, Unknown unknown) {
 
 }  // namespace
 
+bool loses_digits(std::string_view option, std::string_view word) {
+  return option == "solver" && word == plain_solver;
+}
+
 std::span<const Parameter> reduced_parameters() { return own_parameters; }
 
 ReducedOptions reduced_options(const Parameters& p) {
@@ -132,10 +139,10 @@ ReducedOptions reduced_options(const Parameters& p) {
                          tangent = p.word("tangent");
   ReducedOptions options;
   options.dofs = modes == "bend_twist" ? 3 : modes == "bend" ? 2 : 1;
-  options.method = solver == "composite"         ? TreeMethod::composite
-                   : solver == "sparse"          ? TreeMethod::sparse
-                   : solver == "recursive_plain" ? TreeMethod::recursive_plain
-                                                 : TreeMethod::recursive;
+  options.method = solver == "composite"    ? TreeMethod::composite
+                   : solver == "sparse"     ? TreeMethod::sparse
+                   : solver == plain_solver ? TreeMethod::recursive_plain
+                                            : TreeMethod::recursive;
   options.tangent = tangent == "exact"   ? ReducedTangent::exact
                     : tangent == "stiff" ? ReducedTangent::stiff
                                          : ReducedTangent::less_implicit;

@@ -1,6 +1,14 @@
 #include "simulation/run/timing.h"
 
+#include <time.h>
+
 namespace tress::simulation {
+
+double ThreadTimer::processor_s() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;

@@ -22,6 +22,31 @@ double seconds_of(F&& f) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Time since its construction on this thread, as if nothing else ran on the machine (s).
+/// A short span is wall time: on a virtual machine the thread's processor clock may stand
+/// still for some milliseconds. A longer span is processor time, which other load on the
+/// machine hardly lengthens. Only for work that stays on this thread.
+class ThreadTimer {
+ public:
+  static constexpr double short_s = 0.02;
+
+  ThreadTimer() : wall_(Clock::now()), processor_s_(processor_s()) {}
+  double wall_s() const {
+    return std::chrono::duration<double>(Clock::now() - wall_).count();
+  }
+  double seconds() const {
+    const double wall = wall_s();
+    return wall < short_s ? wall : processor_s() - processor_s_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double processor_s();
+
+  Clock::time_point wall_;
+  double processor_s_;
+};
+
 /// Times of repeated calls, in s. Tables show the median: the minimum is an unusually
 /// fast run, and one interruption distorts the mean.
 struct Timing {

@@ -34,16 +34,21 @@ void add_tips(World& world, std::vector<double>& tips) {
 TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
   TipPaths paths;
   World world(scene);
+  const ThreadTimer timer;
   for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
-    if (f > 0) paths.once_s += seconds_of([&] { advance(world, scene.time_of(f)); });
-    if (paths.once_s > limit.wall_s) throw std::runtime_error("takes too long");
+    if (f > 0) advance(world, scene.time_of(f));
+    if (timer.wall_s() > limit.wall_s) throw std::runtime_error("takes too long");
     const Stats stats = world.stats();
     if (static_cast<double>(stats.newton_iterations) >
         limit.iterations_per_step * static_cast<double>(stats.steps)) {
       throw std::runtime_error("takes too many iterations");
     }
     add_tips(world, paths.x);
+    if (limit.useless && limit.useless(paths.x)) {
+      throw std::runtime_error("is too far off");
+    }
   }
+  paths.once_s = timer.seconds();
   paths.indicator = world.error_indicator();
   paths.stats = world.stats();
   if (repeat == 0) return paths;
@@ -67,7 +72,9 @@ std::vector<double> wall_times(const Scene& guarded, int runs, double at_least_s
   std::vector<double> times;
   for (double all = 0; std::ssize(times) < runs || all < at_least_s;) {
     world.restore(start);
-    times.push_back(seconds_of([&] { advance_by_frames(world, scene); }));
+    const ThreadTimer timer;
+    advance_by_frames(world, scene);
+    times.push_back(timer.seconds());
     all += times.back();
   }
   return times;

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +77,8 @@ TEST(TrialScene, ElementsShareWhatBendsTheStrandAtRest) {
   Row row;
   set_method(method, row);
   row.set("elements", 9).set("dt_s", 1.0 / 420);
-  EXPECT_TRUE(configuration(row, 60).method.cut_at_rest);
+  EXPECT_TRUE(configuration(row).method.cut_at_rest);
+  EXPECT_EQ(configuration(row).accuracy.step, 1.0 / 420);
   EXPECT_NE(scene_text(trial_scene(given, method, 9, 7, 60)).find("cuts = \"rest\""),
             std::string::npos);
   // Cuts are no physics.
@@ -169,6 +171,10 @@ TEST(Methods, AreAllThatCanDoTheScene) {
   };
   EXPECT_TRUE(has("super_helix", "modes", "bend"));
   EXPECT_TRUE(has("super_helix", "solver", "sparse"));
+  EXPECT_FALSE(has("super_helix", "solver", "recursive_plain"));  // it loses digits
+  for (const Method& method : with_other_words(given, all.front(), "solver")) {
+    EXPECT_NE(method.word("solver"), "recursive_plain");
+  }
   EXPECT_TRUE(has("der", "stretch", "inextensible"));
   EXPECT_TRUE(has("mass_spring", "torsion", "altitude"));
 }
@@ -216,15 +222,21 @@ TEST(Methods, AreNotExtrapolatedWhereSomethingTouches) {
 TEST(Methods, AskForATenthOfTheLengthAtFirstAndLessByTheirOrder) {
   Method method{{&find_model("super_helix"), {}, "esdirk43"}};
   method.by_tolerance = true;
-  EXPECT_DOUBLE_EQ(tolerance_of(method, steps_unit(method)), 0.1);
-  EXPECT_DOUBLE_EQ(tolerance_of(method, 2 * steps_unit(method)), 0.1 / 16);
-  for (const int substeps : {5, 8, 9, 21, 64, 500}) {
-    EXPECT_EQ(fineness_of(method, tolerance_of(method, substeps)), substeps);
+  const auto tolerance = [&](int substeps) {
+    return accuracy(method, substeps, 60).tolerance;
+  };
+  EXPECT_EQ(tolerance(steps_unit(method)), 0.1);
+  EXPECT_EQ(tolerance(2 * steps_unit(method)), 0.0063);  // 0.1 / 16 to two digits
+  // Beyond a tenth of the length nothing is controlled.
+  EXPECT_EQ(tolerance(1), 0.1);
+  // What is said in two digits is what is run.
+  for (const int substeps : {8, 9, 21, 64, 500}) {
+    EXPECT_EQ(std::stod(fmt::format("{:.2g}", tolerance(substeps))), tolerance(substeps));
   }
   const Scratch folder;
   const Scene given = read_open_scene(folder.write("curly.toml", curly));
   const Scene scene = trial_scene(given, method, 6, 16, 60);
-  EXPECT_DOUBLE_EQ(scene.options.tolerance, 0.1 / 16);
+  EXPECT_EQ(scene.options.tolerance, 0.0063);
 }
 
 TEST(Methods, DifferInOneWord) {
