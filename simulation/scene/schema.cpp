@@ -7,8 +7,10 @@
 #include <iterator>
 #include <limits>
 
+#include "simulation/files/toml_text.h"
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/scene_tables.h"
+#include "simulation/scene/strand_tables.h"
 #include "simulation/scene/write_scene.h"
 
 namespace tress::simulation {
@@ -46,7 +48,7 @@ Numbers are in SI units, named at the end of the key. Vectors are lists, `[x, y,
 lists. z is up, a head faces x. Several strands, grooms or effects of one kind are written
 `[[strand]]`, `[[groom]]`, `[[effects.body]]`. Files are named relative to the scene's folder. What is
 misspelt, out of range, of no effect or refused by a model or an integrator is reported with
-file:line:column. A scene has at most 10 000 strands, 200 000 elements and 4 MiB.
+file:line:column.
 )";
 
 void add_keys(std::string& page, std::span<const Parameter> parameters,
@@ -145,6 +147,14 @@ std::string default_value(const Parameter& p) { return toml_value(p, p.default_t
 
 std::string scene_schema() {
   std::string page(page_head);
+  page += fmt::format(
+      "\nA file has at most {} MiB. A scene has at most {} strands and {} elements. One "
+      "that runs "
+      "as a batch\n(`simulate --as head`) makes its strands one at a time and has at "
+      "most {} "
+      "strands and {} elements.\n",
+      most_toml_bytes >> 20, held_at_once.strands, held_at_once.elements,
+      made_singly.strands, made_singly.elements);
   page += "\n## Before the first table\n";
   add_keys(page, top_parameters());
   add_models(page);

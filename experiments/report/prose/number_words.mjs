@@ -1,6 +1,6 @@
 // Words that state an amount: like a number they need a query, or a reason to stand.
 const count =
-  'two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|thirty|forty|fifty|sixty|hundreds?|thousands?|millions?|billions?|dozens?';
+  'two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|thirteen|fourteen|fifteen|sixteen|seventeen|eighteen|nineteen|twenty|thirty|forty|fifty|sixty|hundreds?|thousands?|millions?|billions?|dozens?';
 const part = 'third|quarter|fifth|sixth|eighth|tenth|hundredth|thousandth|millionth|hundred-thousandth';
 const population = 'of|cases|runs|rows|hairs|strands|models|methods|integrators|scenes|steps|winners|tests|pairs|answers|problems';
 

@@ -1,0 +1,32 @@
+// Whether an effect of a scene has to stay, for a target accuracy.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+namespace tress::experiments::effect_audit {
+
+/// What an effect changes, all over the length: the distance of the tips without it, by
+/// how much that distance changes in a refined scene, and the discretisation error of the
+/// scene.
+struct Change {
+  double change, change_error, discretisation;
+};
+
+/// Returns keep, drop, too close to call, or why nothing can be told, for a target
+/// accuracy.
+///
+/// An effect is kept when its change exceeds both the accuracy and the discretisation
+/// error, and dropped when its change is below the accuracy, each by more than the
+/// change's own error. The discretisation error is no bound to drop below: where it
+/// exceeds the accuracy, an effect between the two is worth more than what was asked for.
+inline std::string verdict(const Change& of, double accuracy) {
+  if (of.change - of.change_error > std::max(accuracy, of.discretisation)) return "keep";
+  if (of.change + of.change_error < accuracy) return "drop";
+  if (of.discretisation <= accuracy) return "too close to call";
+  return fmt::format("cannot tell: discretisation {:.2g} %", 1e2 * of.discretisation);
+}
+
+}  // namespace tress::experiments::effect_audit
