@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "contract/decimal.h"
 #include "contract/input_error.h"
 
 namespace tress {
@@ -52,10 +53,9 @@ double parse_number(const Parameter& declared, std::string_view text,
                     const std::string& where) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
-  double x = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  const double x = decimal(text).value_or(std::nan(""));
   const std::string name(declared.name);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x)) {
+  if (!std::isfinite(x)) {
     throw InputError(name + " = '" + std::string(text) + "' is not a finite number",
                      where, "give a number: " + std::string(declared.help));
   }
@@ -63,6 +63,13 @@ double parse_number(const Parameter& declared, std::string_view text,
     throw InputError(name + " = " + std::string(text) + " is out of range", where,
                      "give a number between " + number_text(declared.min) + " and " +
                          number_text(declared.max) + ": " + std::string(declared.help));
+  }
+  // From 2^53 on, other whole numbers may have been rounded to this one.
+  constexpr double first_rounded = 9007199254740992;
+  if (declared.whole && !(std::abs(x) < first_rounded)) {
+    throw InputError(name + " = " + std::string(text) + " is too large", where,
+                     "give a whole number of at most " + number_text(first_rounded - 1) +
+                         ": " + std::string(declared.help));
   }
   if (declared.whole && x != std::floor(x)) {
     throw InputError(name + " = " + std::string(text) + " is not a whole number", where,

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "contract/decimal.h"
 #include "contract/input_error.h"
 #include "contract/read_file.h"
 #include "simulation/files/csv.h"
@@ -71,9 +71,8 @@ class Reader {
 
   double number(std::size_t i, std::size_t c) const {
     const std::string_view text = cell(i, c);
-    double x = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x)) {
+    const double x = decimal(text).value_or(std::nan(""));
+    if (!std::isfinite(x)) {
       throw InputError(
           fmt::format("{} = '{}' is not a finite number", table_.header[c], text),
           place(i + 1, c), "give a number, or leave out the line");

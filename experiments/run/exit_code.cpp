@@ -9,19 +9,11 @@
 #include "contract/input_error.h"
 #include "experiments/run/command_line.h"
 #include "experiments/run/message.h"
-#include "simulation/files/parse.h"
 
 namespace tress::experiments {
 namespace {
 
-/// One line; a long message (a key of a megabyte, say) is shortened to its beginning and
-/// its end, which holds location and remedy.
-std::string readable(std::string_view message) {
-  constexpr std::size_t part = 2000;
-  std::string line = one_line(message);
-  if (line.size() > 2 * part) line.replace(part, line.size() - 2 * part, " ... ");
-  return line;
-}
+constexpr std::size_t longest_message = 4000;
 
 }  // namespace
 
@@ -36,10 +28,10 @@ int exit_code(std::string_view program, const std::function<int()>& run) {
     std::fputs(text.what(), stdout);
     return done;
   } catch (const InputError& error) {
-    tell("{}: error: {}\n", program, readable(error.what()));
+    tell("{}: error: {}\n", program, error.what());
     return usage_error;
   } catch (const std::exception& error) {
-    tell("{}: internal error: {}\n", program, readable(error.what()));
+    tell("{}: internal error: {}\n", program, shortened(error.what(), longest_message));
     return internal_error;
   }
 }

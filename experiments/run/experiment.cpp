@@ -208,7 +208,7 @@ int report(const Experiment& experiment, const CommandLine& line,
     for (const auto& [status, count] : counts)
       text += fmt::format(", {} {}", count, status);
     if (failed != nullptr) {
-      text += fmt::format("; first: {}", one_line(failed->text("reason")));
+      text += fmt::format("; first: {}", printable(failed->text("reason")));
     }
     tell("{}: {} rows{} -> {}\n", experiment.name, rows.size(), text, line.out);
   }

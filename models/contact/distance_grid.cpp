@@ -5,8 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
+#include <type_traits>
 
+#include "contract/decimal.h"
 #include "contract/input_error.h"
 #include "contract/read_file.h"
 
@@ -40,17 +43,16 @@ class Numbers {
   template <class T>
   T next(const char* what) {
     const std::string_view word = next_word();
-    T x{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    const std::optional<T> x = read<T>(word);
     if (word.empty()) {
       throw InputError(std::string("the file ends before ") + what, where(),
                        "give nx ny nz, the origin, the spacing and nx ny nz values");
     }
-    if (error != std::errc{} || end != word.data() + word.size()) {
+    if (!x) {
       throw InputError("'" + std::string(word.substr(0, 40)) + "' is not " + what,
                        where(), "give numbers, separated by blanks");
     }
-    return x;
+    return *x;
   }
   /// Throws when there is more.
   void finish() {
@@ -68,6 +70,17 @@ class Numbers {
   }
 
  private:
+  template <class T>
+  static std::optional<T> read(std::string_view word) {
+    if constexpr (std::is_floating_point_v<T>) {
+      return decimal(word);
+    } else {
+      T x{};
+      const char* const last = word.data() + word.size();
+      const auto [end, error] = std::from_chars(word.data(), last, x);
+      return error == std::errc{} && end == last ? std::optional(x) : std::nullopt;
+    }
+  }
   std::string_view next_word() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size()));
     while (rest_.starts_with('#')) {

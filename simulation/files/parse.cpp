@@ -109,12 +109,4 @@ std::pair<int, int> parse_shard(std::string_view text, const std::string& where)
                    "give i/n with 1 <= i <= n, as in 2/5");
 }
 
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; },
-      ' ');
-  return line;
-}
-
 }  // namespace tress::simulation

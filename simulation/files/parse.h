@@ -31,7 +31,4 @@ std::uint64_t parse_whole(std::string_view text, const std::string& where,
 std::vector<std::string> split(std::string_view text, char separator,
                                const std::string& where);
 
-/// Control characters replaced by blanks, so that a message stays one line.
-std::string one_line(std::string_view text);
-
 }  // namespace tress::simulation

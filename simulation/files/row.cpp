@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "contract/decimal.h"
 #include "simulation/files/checksum.h"
 
 namespace tress::simulation {
@@ -44,11 +44,7 @@ std::string_view Row::text(std::string_view column) const {
 }
 
 double Row::number(std::string_view column) const {
-  const std::string_view cell = text(column);
-  double x = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-  const bool whole_cell = error == std::errc{} && end == cell.data() + cell.size();
-  return whole_cell ? x : std::numeric_limits<double>::quiet_NaN();
+  return decimal(text(column)).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 std::string_view Row::status() const {

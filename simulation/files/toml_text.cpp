@@ -7,7 +7,6 @@
 
 #include "contract/input_error.h"
 #include "contract/parameters.h"
-#include "simulation/files/parse.h"
 
 namespace tress::simulation {
 namespace {
@@ -148,7 +147,7 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
   try {
     return toml::parse(text, std::string_view(file));
   } catch (const toml::parse_error& error) {
-    throw InputError(one_line(error.description()), place_of(error.source(), file),
+    throw InputError(std::string(error.description()), place_of(error.source(), file),
                      "correct the TOML there");
   }
 }

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "contract/decimal.h"
 #include "contract/input_error.h"
-#include "simulation/files/parse.h"
 
 namespace tress::simulation {
 namespace {
@@ -98,31 +98,21 @@ std::string_view ByteStream::digits() {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
            c == '.' || c == '-' || c == '+';
   };
-  constexpr std::size_t longest = 60;
-  if (end_ - next_ < longest && at() + (end_ - next_) < size_) {
-    const std::uint64_t here = at();
-    base_ = here;  // reads on with what is needed at the front
-    next_ = end_ = 0;
-    fill();
+  number_.clear();
+  while (true) {
+    const std::size_t from = next_;
+    while (next_ < end_ && part(buffer_[next_])) ++next_;
+    const std::string_view read(buffer_.data() + from, next_ - from);
+    if (next_ < end_ && number_.empty()) return read;
+    number_ += read;
+    if (next_ < end_ || !fill()) return number_;
   }
-  const std::size_t last = std::min(end_, next_ + longest);
-  const std::size_t from = next_;
-  while (next_ < last && part(buffer_[next_])) ++next_;
-  return {buffer_.data() + from, next_ - from};
 }
 
 double ByteStream::decimal() {
   const std::string_view text = digits();
-  const char* first = text.data();
-  const char* const last = first + text.size();
-  if (first != last && *first == '+') ++first;
-  double x = 0;
-  const auto [end, error] = std::from_chars(first, last, x);
-  if (end == last && error == std::errc{}) return x;
-  // Beyond what a double holds: no place of a strand either way.
-  if (end == last && error == std::errc::result_out_of_range) {
-    return std::numeric_limits<double>::infinity();
-  }
+  const auto x = tress::decimal(text.starts_with('+') ? text.substr(1) : text);
+  if (x) return *x;
   refuse_text(text.empty() ? std::string("there is no number")
                            : fmt::format("'{}' is no number", text),
               "write it again, or mend it there");
@@ -154,12 +144,10 @@ std::string ByteStream::byte_place() const {
   return fmt::format("{}: byte {}", file_, at());
 }
 void ByteStream::refuse_text(const std::string& problem, const std::string& remedy) {
-  throw InputError(one_line(problem), text_place(),
-                   remedy.empty() ? std::string(damaged) : remedy);
+  throw InputError(problem, text_place(), remedy.empty() ? std::string(damaged) : remedy);
 }
 void ByteStream::refuse(const std::string& problem, const std::string& remedy) const {
-  throw InputError(one_line(problem), byte_place(),
-                   remedy.empty() ? std::string(damaged) : remedy);
+  throw InputError(problem, byte_place(), remedy.empty() ? std::string(damaged) : remedy);
 }
 
 }  // namespace tress::simulation

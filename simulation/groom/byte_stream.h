@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "contract/layers.h"
@@ -44,11 +45,12 @@ class ByteStream {
     take(&x, sizeof x);
     return x;
   }
-  /// Bytes of so many numbers, or InputError with `what` where the file has not as many.
+  /// Throws InputError with `what` unless `count` items of `each` bytes are left.
   void require(std::uint64_t count, std::uint64_t each, const std::string& what) const;
 
   void skip_blanks();
-  /// A number in decimal digits, nan or inf; InputError if there is none.
+  /// A number in decimal digits, nan or inf; InputError if there is none. Any number of
+  /// digits; 0 below the least double, infinite beyond the largest.
   double decimal();
   std::uint64_t whole();
   /// The rest of the line, without its end; InputError beyond 4096 bytes.
@@ -62,13 +64,14 @@ class ByteStream {
 
  private:
   bool fill();
-  /// What may be a number, 60 bytes at most; until the next call.
+  /// What may be a number; until the next call.
   std::string_view digits();
 
   std::string file_;
   File input_;
   std::uint64_t size_ = 0, base_ = 0;
   std::vector<char> buffer_;
+  std::string number_;  // one that the buffer does not have whole
   std::size_t next_ = 0, end_ = 0;
   int line_ = 1;
 };

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "simulation/files/parse.h"
 
 namespace tress::simulation {
 namespace {
@@ -73,7 +72,7 @@ std::string value_text(const Parameter& p, const toml::node& node,
   if (p.text || !p.choices.empty()) {
     const bool flag = p.choices == "true|false" && node.is_boolean();
     if (!node.is_string() && !flag) wrong_type(p, node, file);
-    std::string text = one_line(scalar_text(node));
+    std::string text = printable(scalar_text(node));
     if (!p.text || !p.name.ends_with("file") || text.empty()) return text;
     return (std::filesystem::path(file).parent_path() / text).string();
   }
@@ -88,7 +87,7 @@ std::string value_text(const Parameter& p, const toml::node& node,
   std::vector<std::string_view> known(nested.begin(), nested.end());
   for (const Parameter& p : declared) known.push_back(p.name);
   throw InputError(
-      fmt::format("unknown key '{}' in {}", one_line(key), name), where,
+      fmt::format("unknown key '{}' in {}", key, name), where,
       suggestion(key, known, fmt::format("use one of: {}", fmt::join(known, ", "))));
 }
 

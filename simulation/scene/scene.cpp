@@ -12,7 +12,6 @@
 #include "integrators/integrator_options.h"
 #include "models/effects/obstacle.h"
 #include "models/strand/geometry.h"
-#include "simulation/files/parse.h"
 #include "simulation/scene/file_groom.h"
 #include "simulation/scene/read_table.h"
 #include "simulation/scene/root_table.h"
@@ -24,7 +23,7 @@
 namespace tress::simulation {
 namespace {
 
-constexpr std::size_t most_effects = 1000;
+constexpr std::size_t most_effects = 1000, most_groom_files = 100;
 constexpr double most_frames = 1e6;
 
 constexpr std::string_view known_tables[] = {"model", "integrator", "material", "strand",
@@ -218,12 +217,24 @@ class Reader {
                  StrandTables& tables) {
     const toml::node* node = root_.get(name);
     if (node == nullptr) return;
-    for (const toml::table* one : each(*node, name, true)) {
+    const auto all = each(*node, name, true);
+    if (all.size() > held_at_once.strands) {
+      throw InputError(fmt::format("{} tables [[{}]]", all.size(), name),
+                       place_of(all[held_at_once.strands]->source(), file_),
+                       fmt::format("give at most {}: one [groom] makes many strands",
+                                   held_at_once.strands));
+    }
+    std::size_t files = 0;
+    for (const toml::table* one : all) {
       StrandSource source{
           read_table(*one, declared, "[" + name + "]", file_, material_table),
           {},
           name == "groom"};
       if (source.groom) source.file = read_file_groom(source.table);
+      if (source.file && ++files > most_groom_files) {
+        throw InputError(fmt::format("more than {} grooms from files", most_groom_files),
+                         source.table.place("file"), "write their strands to one file");
+      }
       if (const toml::node* own = one->get("material")) {
         const std::string own_name = name + ".material";
         source.material =
@@ -240,8 +251,7 @@ class Reader {
     // The keys are in alphabetical order, in which tether and wind would follow it.
     for (const bool between : {false, true}) {
       for (const auto& [key, node] : *all) {
-        const EffectEntry& entry =
-            find_effect(one_line(key.str()), place_of(key.source(), file_));
+        const EffectEntry& entry = find_effect(key.str(), place_of(key.source(), file_));
         if ((entry.make == nullptr) == between) read_effect(entry, node);
       }
     }

@@ -53,7 +53,7 @@ constexpr Parameter top[] = {
      .help = "of everything random",
      .number = 1,
      .min = 0,
-     .max = 9007199254740992,  // whole numbers that a double holds exactly
+     .max = 9007199254740991,  // no other whole number is rounded to these
      .whole = true},
 };
 

@@ -55,4 +55,29 @@ TEST(Parameters, BadInputNamesPlaceAndRemedy) {
   EXPECT_THAT(message_of("curve", "square"), HasSubstr("circle, ellipse, helix"));
 }
 
+/// Whole numbers from 2^53 on share their double with others: which one was meant is not
+/// known any more. Below the least double there is 0; what is beyond the largest is
+/// refused.
+TEST(Parameters, AreNotRounded) {
+  constexpr Parameter any[] = {
+      {.name = "seed", .help = "a seed", .whole = true},
+      {.name = "x", .help = "a number"},
+  };
+  Parameters p(any, "test");
+  p.set("seed", "9007199254740991");
+  EXPECT_EQ(p.number("seed"), 9007199254740991);
+  for (const char* rounded : {"9007199254740993", "9007199254740992", "-1e300"}) {
+    try {
+      p.set("seed", rounded);
+      ADD_FAILURE() << rounded;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("is too large"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("at most 9007199254740991"));
+    }
+  }
+  p.set("x", "1e-400");
+  EXPECT_EQ(p.number("x"), 0);
+  EXPECT_THROW(p.set("x", "1e400"), InputError);
+}
+
 }  // namespace tress::test_parameters
