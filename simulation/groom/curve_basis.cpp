@@ -5,7 +5,7 @@
 namespace tress::simulation {
 namespace {
 
-constexpr int parts_of_piece = 4;
+constexpr std::size_t parts_of_piece = 4;
 
 /// Weights of the four control points of a piece at u in [0, 1].
 std::array<double, 4> weights(CurveBasis basis, double u) {
@@ -32,11 +32,32 @@ std::optional<CurveBasis> curve_basis(std::string_view type, std::string_view ba
   return std::nullopt;
 }
 
+std::size_t points_of_curve(std::size_t control, CurveBasis basis, bool pinned) {
+  if (basis == CurveBasis::linear) return control < 2 ? 0 : control;
+  if (basis == CurveBasis::bezier) {
+    return control < 4 || (control - 4) % 3 != 0 ? 0
+                                                 : (control - 1) / 3 * parts_of_piece + 1;
+  }
+  const std::size_t least = pinned ? 2 : 4;
+  return control < least ? 0 : (control - (least - 1)) * parts_of_piece + 1;
+}
+
+std::string counts_in_words(CurveBasis basis, bool pinned) {
+  if (basis == CurveBasis::linear) return "linear curves need 2 points or more";
+  if (basis == CurveBasis::bezier) return "bezier curves need 4, 7, 10, ... points";
+  const std::string name = basis == CurveBasis::bspline ? "bspline" : "catmullRom";
+  return pinned ? "pinned " + name + " curves need 2 points or more"
+                : name + " curves that are not pinned need 4 points or more";
+}
+
 std::vector<Vec> points_on(std::span<const Vec> control, CurveBasis basis, bool pinned) {
-  std::vector<Vec> points(control.begin(), control.end());
-  if (basis == CurveBasis::linear) return points;
+  std::vector<Vec> on;
+  const std::size_t count = points_of_curve(control.size(), basis, pinned);
+  if (count == 0) return on;
+  if (basis == CurveBasis::linear) return {control.begin(), control.end()};
   const std::size_t step = basis == CurveBasis::bezier ? 3 : 1;
-  if (basis != CurveBasis::bezier && pinned && points.size() >= 2) {
+  std::vector<Vec> points(control.begin(), control.end());
+  if (basis != CurveBasis::bezier && pinned) {
     // Phantom points: the end pieces then begin and end at the outer points.
     const std::size_t n = points.size();
     const Vec first = 2.0 * points[0] - points[1];
@@ -44,8 +65,7 @@ std::vector<Vec> points_on(std::span<const Vec> control, CurveBasis basis, bool 
     points.insert(points.begin(), first);
     points.push_back(last);
   }
-  std::vector<Vec> on;
-  if (points.size() < 4 || (points.size() - 4) % step != 0) return on;
+  on.reserve(count);
   const auto add = [&](std::size_t i, double u) {
     const std::array<double, 4> w = weights(basis, u);
     on.push_back(w[0] * points[i] + w[1] * points[i + 1] + w[2] * points[i + 2] +
@@ -53,7 +73,7 @@ std::vector<Vec> points_on(std::span<const Vec> control, CurveBasis basis, bool 
   };
   std::size_t i = 0;
   for (; i + 3 < points.size(); i += step) {
-    for (int k = 0; k < parts_of_piece; ++k) {
+    for (std::size_t k = 0; k < parts_of_piece; ++k) {
       add(i, static_cast<double>(k) / parts_of_piece);
     }
   }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,10 +14,17 @@ namespace tress::simulation {
 enum class CurveBasis { linear, bezier, bspline, catmull_rom };
 std::optional<CurveBasis> curve_basis(std::string_view type, std::string_view basis);
 
+/// Points of points_on() of so many control points; 0: there are too few for a piece, or
+/// of bezier no whole number of pieces.
+std::size_t points_of_curve(std::size_t control, CurveBasis basis, bool pinned);
+
+/// Which numbers of control points suit a basis, as "... need 4, 7, 10 points".
+std::string counts_in_words(CurveBasis basis, bool pinned);
+
 /// Points on the curve of these control points, which are not on it themselves: four to a
-/// piece of a cubic, and its end; those of a linear curve are its own. Pinned: the curve
-/// begins and ends at the outer control points. Empty if there are too few for a piece,
-/// or of bezier no whole number of pieces.
+/// piece of a cubic, and its end; those of a linear curve are its own. A bspline or
+/// catmullRom that is pinned begins and ends at the outer control points; one that is not
+/// has its first piece between the second and the third. Empty if points_of_curve() is 0.
 std::vector<Vec> points_on(std::span<const Vec> control, CurveBasis basis, bool pinned);
 
 }  // namespace tress::simulation

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "contract/input_error.h"
+#include "simulation/groom/groom_lengths.h"
 #include "simulation/groom/space_curve.h"
 
 namespace tress::simulation {
@@ -14,12 +16,6 @@ namespace {
 
 constexpr double farthest = 1e3;       // m
 constexpr double usual_length = 0.15;  // m, of hair
-
-double polyline_length(std::span<const Vec> x) {
-  double length = 0;
-  for (std::size_t i = 1; i < x.size(); ++i) length += norm(x[i] - x[i - 1]);
-  return length;
-}
 
 /// The middle one of the lengths that are finite and not 0; 0: none is.
 double middle_length(const Polylines& lines) {
@@ -34,35 +30,63 @@ double middle_length(const Polylines& lines) {
   return *middle;
 }
 
+std::string axis_name(const FileAxis& up) {
+  return std::string(up.back ? "-" : "") + "xyz"[up.axis];
+}
+
+/// Among the decimal ones: hair in inches looks like hair in centimetres.
 const FileUnit& guessed_unit(double length) {
   return *std::ranges::min_element(file_units, {}, [length](const FileUnit& unit) {
-    return std::abs(std::log(length * unit.metres / usual_length));
+    const double ratio = std::abs(std::log(length * unit.metres / usual_length));
+    return unit.name == "inch" ? std::numeric_limits<double>::infinity() : ratio;
   });
 }
 
-FileAxis guessed_up(const Polylines& lines) {
-  Vec sum;
+/// Sums over strands of directions of length 1.
+struct Directions {
+  Vec run;   // from root to tip
+  Vec bend;  // of the last piece less that of the first
+  double strands = 0;
+};
+
+Directions directions_of(const Polylines& lines) {
+  const auto unit = [](const Vec& x) { return norm(x) > 0 ? 1 / norm(x) * x : Vec{}; };
+  Directions sum;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const std::span<const Vec> x = lines.strand(k);
-    if (x.empty()) continue;
-    const Vec d = x.back() - x.front();
-    if (is_finite(d) && norm(d) > 0) sum = sum + 1 / norm(d) * d;
+    if (x.size() < 2) continue;
+    const Vec run = unit(x.back() - x.front());
+    const Vec bend = unit(x.back() - x[x.size() - 2]) - unit(x[1] - x[0]);
+    if (!is_finite(run) || !is_finite(bend)) continue;
+    sum.run = sum.run + run;
+    sum.bend = sum.bend + bend;
+    sum.strands += 1;
   }
-  const std::array<double, 3> down{sum.x, sum.y, sum.z};
-  // Of a groom that hangs nowhere: z, as in Blender.
+  return sum;
+}
+
+/// The axis against which hair hangs.
+FileAxis guessed_up(const Polylines& lines, const std::string& file) {
+  constexpr double least_bend = 0.2;  // of a strand, on average
+  const Directions sum = directions_of(lines);
+  const std::array<double, 3> run{sum.run.x, sum.run.y, sum.run.z},
+      bend{sum.bend.x, sum.bend.y, sum.bend.z};
   const auto most = std::ranges::max_element(
-      down, [](double a, double b) { return std::abs(a) < std::abs(b); });
-  if (*most == 0) return {2, false};
-  return {static_cast<int>(most - down.begin()), *most > 0};
+      run, [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto axis = static_cast<std::size_t>(most - run.begin());
+  const FileAxis against{static_cast<int>(axis), *most > 0};
+  const double bends = *most > 0 ? bend[axis] : -bend[axis];
+  if (bends > least_bend * sum.strands) return against;
+  throw InputError(
+      "the file has no axis that points up, and its strands do not show one", file,
+      fmt::format("give up = \"{}\" if they hang, up = \"{}\" if they stand, or another "
+                  "axis",
+                  axis_name(against), axis_name({against.axis, !against.back})));
 }
 
 Vec upright(const Vec& x, const FileAxis& up) {
   const Vec y = up.axis == 0 ? Vec{x.y, x.z, x.x} : up.axis == 1 ? Vec{x.z, x.x, x.y} : x;
   return up.back ? Vec{y.x, -y.y, -y.z} : y;
-}
-
-std::string axis_name(const FileAxis& up) {
-  return std::string(up.back ? "-" : "") + "xyz"[up.axis];
 }
 
 /// Goes through the strands of a file and keeps those that are good.
@@ -134,41 +158,62 @@ class Cleaning {
   std::size_t repeated_ = 0;
 };
 
+/// Metres per unit.
+double unit_of(const GroomFile& read, const std::string& file,
+               const GroomPlacing& placing, std::vector<std::string>& notes) {
+  if (placing.metres) return *placing.metres;
+  if (read.metres) return *read.metres;
+  if (read.format_metres) {
+    notes.push_back(
+        fmt::format("the file has no unit: {:g} m, as its format has it (unit_m = {:g} "
+                    "says so)",
+                    *read.format_metres, *read.format_metres));
+    return *read.format_metres;
+  }
+  const double middle = middle_length(read.lines);
+  if (middle == 0) {
+    throw InputError("no strand has a length", file, "give a file with strands");
+  }
+  const FileUnit& unit = guessed_unit(middle);
+  notes.push_back(
+      fmt::format("the unit is guessed: {}, by which half the strands are longer than "
+                  "{:.3g} m (unit = \"{}\" says so)",
+                  unit.name, middle * unit.metres, unit.name));
+  return unit.metres;
+}
+
+FileAxis axis_of(const GroomFile& read, const std::string& file,
+                 const GroomPlacing& placing, std::vector<std::string>& notes) {
+  if (placing.up) return *placing.up;
+  if (read.up) return *read.up;
+  const FileAxis up = read.format_up ? *read.format_up : guessed_up(read.lines, file);
+  notes.push_back(
+      read.format_up
+          ? fmt::format("the file has no axis that points up: {0}, as its format has it "
+                        "(up = \"{0}\" says so)",
+                        axis_name(up))
+          : fmt::format("the axis that points up is guessed: {0}, against which hair "
+                        "hangs (up = \"{0}\" says so)",
+                        axis_name(up)));
+  return up;
+}
+
 }  // namespace
 
 PlacedGroom place_groom(GroomFile read, const std::string& file,
                         const GroomPlacing& placing) {
   PlacedGroom placed;
   placed.file = file;
-  if (!read.note.empty()) placed.notes.push_back(read.note);
-  const double middle = middle_length(read.lines);
-  std::optional<double> metres = placing.metres ? placing.metres : read.metres;
-  if (!metres) {
-    if (middle == 0) {
-      throw InputError("no strand has a length", file, "give a file with strands");
-    }
-    const FileUnit& unit = guessed_unit(middle);
-    metres = unit.metres;
-    placed.notes.push_back(
-        fmt::format("the unit is guessed: {}, by which half the strands are longer than "
-                    "{:.3g} m (unit = \"{}\" says so)",
-                    unit.name, middle * unit.metres, unit.name));
-  }
-  std::optional<FileAxis> up = placing.up ? placing.up : read.up;
-  if (!up) {
-    up = guessed_up(read.lines);
-    placed.notes.push_back(fmt::format(
-        "the axis that points up is guessed: {0}, against which hair hangs (up = \"{0}\" "
-        "says so)",
-        axis_name(*up)));
-  }
+  placed.notes = read.notes;
+  const double metres = unit_of(read, file, placing, placed.notes);
+  const FileAxis up = axis_of(read, file, placing, placed.notes);
   Cleaning cleaning(read, file, placing.bad);
   cleaning.lines.points.reserve(read.lines.points.size() / placing.every);
   std::vector<Vec> x;
   for (std::size_t k = 0; k < read.lines.size(); k += placing.every) {
     x.clear();
     for (const Vec& point : read.lines.strand(k)) {
-      x.push_back(placing.position + *metres * upright(point, *up));
+      x.push_back(placing.position + metres * upright(point, up));
     }
     cleaning.add(k, x);
   }
@@ -176,6 +221,9 @@ PlacedGroom place_groom(GroomFile read, const std::string& file,
   placed.lines = std::move(cleaning.lines);
   if (placed.lines.size() == 0) {
     throw InputError("no strand is left", file, "give a file with strands");
+  }
+  for (std::string& note : notes_on_lengths(placed.lines)) {
+    placed.notes.push_back(std::move(note));
   }
   return placed;
 }

@@ -9,9 +9,6 @@
 
 namespace tress::simulation {
 
-/// What to do with strands that cannot be simulated.
-enum class BadStrands { refuse, drop };
-
 /// Units that files have.
 struct FileUnit {
   std::string_view name;
@@ -41,9 +38,12 @@ struct PlacedGroom {
 /// x) or (z, x, y), and a turn by pi about x where its negative direction points up; so
 /// that what faces z in a file with y up, as in Houdini, faces x, as a head does here.
 ///
-/// A unit is guessed as the one of file_units in which the middle one of all
-/// lengths is nearest to 15 cm, by ratio; an axis as the one against which hair hangs on
-/// average, from roots to tips. Both are said.
+/// Without a unit from the scene, the file or its format, it is guessed as m, cm or mm,
+/// whichever brings the median length nearest to 15 cm, by ratio. An axis is guessed as
+/// the one along which strands run most, from roots to tips, and towards which they bend
+/// on their way, as hanging hair does. Straight hair, and hair that stands, could be
+/// either way round: InputError asks for the axis. Guesses and fallbacks are noted, and
+/// notes_on_lengths().
 ///
 /// A strand is bad if it has fewer than two points, one that is not finite or farther
 /// than 1 km from the origin, or a point that repeats the one before (within 1 nm).

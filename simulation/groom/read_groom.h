@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "simulation/groom/byte_stream.h"
 #include "simulation/groom/polylines.h"
@@ -14,35 +15,52 @@ struct FileAxis {
   bool back;  // its negative direction
 };
 
+/// What to do with strands that cannot be simulated.
+enum class BadStrands { refuse, drop };
+
+/// How a file is read.
+struct GroomReading {
+  int strand_points = 0;                // of every strand of a .ply; 0: the file's own
+  BadStrands bad = BadStrands::refuse;  // of curves whose count does not suit their basis
+  bool hidden = false;                  // take the curves that USD does not render
+};
+
 /// Strands as they are in a file, in its units and axes.
 struct GroomFile {
   Polylines lines;
   std::optional<double> metres;  // per unit, where the file says
   std::optional<FileAxis> up;    // where it says
-  bool text = false;             // Polylines::places are lines, not bytes
-  std::string note;              // what a user should know; empty: nothing
+  // What the format takes where a file does not say; none: nothing.
+  std::optional<double> format_metres;
+  std::optional<FileAxis> format_up;
+  bool text = false;               // Polylines::places are lines, not bytes
+  std::vector<std::string> notes;  // for the user, one sentence each
 };
 
 /// By the ending of the file:
 ///
-///     .hair   [Yuksel], 128 bytes of header, then arrays by bits
+///     .hair   [Yuksel], 128 bytes of header, then arrays by bits; or without header:
+///             u32 strands, u32 points, u16 points of each strand, three f32 of each
+///             point
 ///     .data   i32 strands; of each strand i32 points, then three f32 of each
 ///     .bin    the same with seven f32
 ///     .ply    vertices, and how many of each strand: element strand with nsegs, or edges
 ///             in order, or `strand_points` of each; ascii and both binary forms
-///     .usda   BasisCurves, linear or cubic, evaluated on the curve [OpenUSD]
+///     .usda   BasisCurves, linear or cubic, evaluated on the curve and placed by the
+///             transforms above them [OpenUSD]
 ///     .vtp    lines of PolyData; ascii, binary and appended, not compressed [VTK]
 ///
 /// Strands may have any number of points of any value: place_groom() judges them. Throws
-/// InputError, naming byte or line, where sizes or syntax are wrong. O(bytes), through a
-/// buffer; memory is that of the points.
-GroomFile read_groom(const std::string& file, int strand_points = 0);
+/// InputError, naming byte or line, where sizes or syntax are wrong, where data follow
+/// the last strand, and where memory does not suffice. O(bytes), through a buffer; memory
+/// is that of the points, whatever sizes the file claims.
+GroomFile read_groom(const std::string& file, const GroomReading& reading = {});
 
 // One format each.
 GroomFile read_hair(ByteStream& from);
 GroomFile read_counted(ByteStream& from, int floats);
 GroomFile read_ply(ByteStream& from, int strand_points);
-GroomFile read_usda(ByteStream& from);
+GroomFile read_usda(ByteStream& from, const GroomReading& reading);
 GroomFile read_vtp(ByteStream& from);
 
 }  // namespace tress::simulation

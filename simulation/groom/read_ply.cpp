@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <sstream>
 
 #include "contract/input_error.h"
@@ -87,8 +89,9 @@ PlyHeader ply_header(ByteStream& from) {
       }
     } else if (word == "element") {
       std::uint64_t count = 0;
-      std::istringstream number(second);
-      if (first.empty() || second.starts_with('-') || !(number >> count)) {
+      const char* const last = second.data() + second.size();
+      const auto [end, error] = std::from_chars(second.data(), last, count);
+      if (second.empty() || end != last || error != std::errc{}) {
         from.refuse_text(fmt::format("element '{}' of '{}'", first, second),
                          std::string(ply_remedy));
       }
@@ -160,7 +163,7 @@ std::uint64_t least_bytes(PlyForm form, const PlyElement& element) {
     bytes += form == PlyForm::ascii ? 2 : static_cast<std::uint64_t>(type.bytes);
   }
   // The last number of a file of text may end with it.
-  return std::max<std::uint64_t>(bytes - (form == PlyForm::ascii && bytes > 0), 1);
+  return bytes - (form == PlyForm::ascii && bytes > 0);
 }
 
 class PlyReader {
@@ -171,7 +174,10 @@ class PlyReader {
   GroomFile read() {
     made_.text = header_.form == PlyForm::ascii;
     for (const PlyElement& element : header_.elements) {
-      from_.require(element.count, least_bytes(header_.form, element), element.name);
+      // Items without properties have no bytes, whatever their number.
+      if (element.properties.empty() && !has_strands(element)) continue;
+      const std::uint64_t each = least_bytes(header_.form, element);
+      from_.require(element.count, std::max<std::uint64_t>(each, 1), element.name);
       if (element.name == "vertex") {
         vertices(element);
       } else if (element.name == "strand") {
@@ -182,11 +188,24 @@ class PlyReader {
         for_items(element, [](const std::vector<double>&) {});
       }
     }
+    refuse_more();
     divide();
     return std::move(made_);
   }
 
  private:
+  static bool has_strands(const PlyElement& element) {
+    return element.name == "vertex" || element.name == "strand" || element.name == "edge";
+  }
+  void refuse_more() {
+    if (made_.text) from_.skip_blanks();
+    if (from_.left() == 0) return;
+    const std::string problem =
+        fmt::format("{} bytes are left after the last element", from_.left());
+    const std::string remedy =
+        "correct the counts in the header, or write the file again";
+    made_.text ? from_.refuse_text(problem, remedy) : from_.refuse(problem, remedy);
+  }
   template <class Use>
   void for_items(const PlyElement& element, const Use& use) {
     std::vector<double> values;
@@ -215,9 +234,10 @@ class PlyReader {
   }
   void counts(const PlyElement& element) {
     const std::size_t segments = at(element, "nsegs");
+    counts_.reserve(element.count);
     for_items(element, [&](const std::vector<double>& v) {
       const double n = v[segments];
-      if (!(n >= 0 && n < 1e9)) {
+      if (!(n >= 0 && n < 1e9 && n == std::floor(n))) {
         from_.refuse(fmt::format("strand {} has {} segments", counts_.size(), n), "");
       }
       counts_.push_back(static_cast<std::size_t>(n) + 1);

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 
 #include "contract/input_error.h"
-#include "simulation/groom/curve_basis.h"
 #include "simulation/groom/read_groom.h"
+#include "simulation/groom/usd_curves.h"
 #include "simulation/groom/usd_text.h"
 
 namespace tress::simulation {
@@ -12,35 +12,30 @@ namespace {
 
 /// One prim: { ... }.
 struct Prim {
-  bool curves = false;
-  std::string moved;  // the transform that is not the identity; empty: none
+  std::string kind;       // BasisCurves, Xform, ...; empty: none is given
+  std::size_t first = 0;  // of the curve sets within
+  Hidden hidden = Hidden::no;
+  std::optional<Hidden> purpose;
+  std::map<std::string, std::vector<double>, std::less<>> operations;
+  std::vector<std::string> order;  // of the operations
+  // Of BasisCurves.
   std::string type = "cubic", basis = "bezier", wrap = "nonperiodic";
-  std::vector<std::size_t> counts;
-  std::vector<Vec> points;
-  int line = 0;  // of the points
-};
+  UsdCurveSet curves;
 
-bool is_identity(std::string_view op, const std::vector<double>& x) {
-  const auto all = [&x](double value) {
-    return std::ranges::all_of(x, [value](double y) { return y == value; });
-  };
-  if (op.starts_with("xformOp:translate") || op.starts_with("xformOp:rotate")) {
-    return all(0);
-  }
-  if (op.starts_with("xformOp:scale")) return all(1);
-  if (op.starts_with("xformOp:orient")) {
-    return x == std::vector<double>{1, 0, 0, 0};
-  }
-  if (!op.starts_with("xformOp:transform") || x.size() != 16) return false;
-  for (std::size_t i = 0; i < 16; ++i) {
-    if (x[i] != (i % 5 == 0 ? 1 : 0)) return false;
-  }
-  return true;
-}
+  bool is_curves() const { return kind == "BasisCurves"; }
+  /// Only these prims have transforms [OpenUSD, UsdGeomXformable].
+  bool is_placed() const { return !kind.empty() && kind != "Scope"; }
+};
 
 class UsdReader {
  public:
-  explicit UsdReader(ByteStream& from) : from_(from), text_(from) { made_.text = true; }
+  UsdReader(ByteStream& from, const GroomReading& reading)
+      : from_(from), text_(from), reading_(reading), curves_(from) {
+    made_.text = true;
+    // [OpenUSD, UsdGeomGetStageMetersPerUnit, UsdGeomGetStageUpAxis]
+    made_.format_metres = 0.01;
+    made_.format_up = FileAxis{1, false};
+  }
 
   GroomFile read() {
     std::string first = from_.text_line();
@@ -50,53 +45,39 @@ class UsdReader {
                            ? "write it as text: usdcat -o strands.usda"
                            : "give a USD file in text form");
     }
-    if (text_.next() == '(') read_layer();
+    if (text_.next() == '(') {
+      text_.metadata([this](std::string_view key) { return read_of_layer(key); });
+    }
     while (text_.next() >= 0 || !prims_.empty()) read_statement();
-    if (curves_ == 0) {
+    if (curves_.size() == 0) {
       throw InputError("no BasisCurves", from_.file(),
                        "export hair as curves, not as meshes or NURBS");
     }
-    if (samples_) made_.note = "of an animation the first frame is read";
+    if (samples_) made_.notes.emplace_back("of an animation the first frame is read");
+    curves_.finish(reading_, made_);
     return std::move(made_);
   }
 
  private:
-  /// The layer's metadata.
-  void read_layer() {
-    text_.expect('(');
-    while (text_.next() != ')') {
-      const int c = text_.next();
-      if (c == '"' || c == '\'') {
-        text_.quoted();
-        continue;
+  bool read_of_layer(std::string_view key) {
+    text_.next();
+    if (key == "metersPerUnit") {
+      const double metres = from_.decimal();
+      if (!(metres > 0 && metres < 1e6)) {
+        from_.refuse_text(fmt::format("metersPerUnit = {}", metres),
+                          "give a number of metres > 0");
       }
-      if (c == ';' || c == ',') {
-        from_.get();
-        continue;
+      made_.metres = metres;
+    } else if (key == "upAxis") {
+      const std::string axis = text_.quoted();
+      if (axis.size() != 1 || axis[0] < 'X' || axis[0] > 'Z') {
+        from_.refuse_text(fmt::format("upAxis = \"{}\"", axis), "give X, Y or Z");
       }
-      const std::string key = text_.word();
-      if (key.empty()) text_.expect(')');
-      if (text_.next() != '=') continue;
-      text_.expect('=');
-      text_.next();
-      if (key == "metersPerUnit") {
-        const double metres = from_.decimal();
-        if (!(metres > 0 && metres < 1e6)) {
-          from_.refuse_text(fmt::format("metersPerUnit = {}", metres),
-                            "give a number of metres > 0");
-        }
-        made_.metres = metres;
-      } else if (key == "upAxis") {
-        const std::string axis = text_.quoted();
-        if (axis.size() != 1 || axis[0] < 'X' || axis[0] > 'Z') {
-          from_.refuse_text(fmt::format("upAxis = \"{}\"", axis), "give X, Y or Z");
-        }
-        made_.up = FileAxis{axis[0] - 'X', false};
-      } else {
-        text_.skip_value();
-      }
+      made_.up = FileAxis{axis[0] - 'X', false};
+    } else {
+      return false;
     }
-    text_.expect(')');
+    return true;
   }
 
   void read_statement() {
@@ -127,17 +108,27 @@ class UsdReader {
     std::string word = text_.word();
     if (word.empty()) text_.expect('}');
     if (word == "def" || word == "over" || word == "class") {
-      begin_prim();
+      begin_prim(word);
     } else {
       name_ = std::move(word);  // the last one before = is the attribute's
     }
   }
 
-  void begin_prim() {
+  void begin_prim(std::string_view specifier) {
     Prim prim;
-    if (text_.next() != '"') prim.curves = text_.word() == "BasisCurves";
+    prim.first = curves_.size();
+    if (specifier == "over") prim.hidden = Hidden::undefined;
+    if (specifier == "class") prim.hidden = Hidden::abstract;
+    if (text_.next() != '"') prim.kind = text_.word();
     text_.quoted();
-    if (text_.next() == '(') text_.skip_value();
+    if (text_.next() == '(') {
+      text_.metadata([&](std::string_view key) {
+        if (key != "active") return false;
+        const std::string value = text_.word();
+        if (value == "false" || value == "0") prim.hidden = Hidden::inactive;
+        return true;
+      });
+    }
     text_.expect('{');
     constexpr std::size_t most_depth = 100;
     if (prims_.size() == most_depth) {
@@ -150,40 +141,60 @@ class UsdReader {
   void read_value() {
     std::string name = std::move(name_);
     name_.clear();
-    const bool sampled = name.ends_with(".timeSamples");
-    if (sampled) name.resize(name.size() - std::string_view(".timeSamples").size());
-    if (prims_.empty() || text_.next() == 'N') {  // None
-      text_.skip_value();
+    constexpr std::string_view samples = ".timeSamples";
+    const bool sampled = name.ends_with(samples);
+    if (sampled) name.resize(name.size() - samples.size());
+    if (prims_.empty() || text_.next() == 'N' || !knows(prims_.back(), name)) {
+      text_.skip_value();  // also None
       return;
     }
-    Prim& prim = prims_.back();
-    if (name.starts_with("xformOp:")) {
-      if (!is_identity(name, text_.numbers()) || sampled) prim.moved = name;
-      return;
-    }
-    const bool of_curves = name == "points" || name == "curveVertexCounts";
-    if (!prim.curves || (sampled && !of_curves)) {
-      text_.skip_value();
-      return;
-    }
-    if (name == "type") {
-      prim.type = text_.quoted();
-    } else if (name == "basis") {
-      prim.basis = text_.quoted();
-    } else if (name == "wrap") {
-      prim.wrap = text_.quoted();
-    } else if (of_curves) {
-      if (sampled) {
-        text_.expect('{');
-        text_.next();
-        from_.decimal();
-        text_.expect(':');
-        samples_ = true;
+    if (sampled) {
+      text_.expect('{');
+      if (text_.next() == '}') return text_.expect('}');
+      from_.decimal();
+      text_.expect(':');
+      if (text_.next() == 'N') {
+        text_.skip_value();
+      } else {
+        read_attribute(prims_.back(), name);
       }
-      name == "points" ? read_points(prim) : read_counts(prim);
-      if (sampled) skip_samples();
+      skip_samples();
+      samples_ = true;
     } else {
-      text_.skip_value();
+      read_attribute(prims_.back(), name);
+    }
+  }
+
+  static bool knows(const Prim& prim, std::string_view name) {
+    if (name.starts_with("xformOp:")) return name.find('.') == std::string_view::npos;
+    if (name == "xformOpOrder" || name == "visibility" || name == "purpose") return true;
+    return prim.is_curves() && (name == "type" || name == "basis" || name == "wrap" ||
+                                name == "points" || name == "curveVertexCounts");
+  }
+
+  void read_attribute(Prim& prim, const std::string& name) {
+    if (name.starts_with("xformOp:")) {
+      prim.operations[name] = text_.numbers();
+    } else if (name == "xformOpOrder") {
+      prim.order.clear();
+      text_.list([&] { prim.order.push_back(text_.quoted()); });
+    } else if (name == "visibility") {
+      const bool invisible = text_.quoted() == "invisible";
+      if (invisible && prim.hidden == Hidden::no) prim.hidden = Hidden::invisible;
+    } else if (name == "purpose") {
+      const std::string purpose = text_.quoted();
+      prim.purpose = purpose == "guide"   ? Hidden::guide
+                     : purpose == "proxy" ? Hidden::proxy
+                                          : Hidden::no;
+    } else if (name == "points") {
+      read_points(prim.curves);
+    } else if (name == "curveVertexCounts") {
+      prim.curves.counts.clear();
+      text_.list([&] { prim.curves.counts.push_back(from_.whole()); });
+    } else {
+      (name == "type"    ? prim.type
+       : name == "basis" ? prim.basis
+                         : prim.wrap) = text_.quoted();
     }
   }
 
@@ -199,9 +210,9 @@ class UsdReader {
     text_.expect('}');
   }
 
-  void read_points(Prim& prim) {
-    prim.points.clear();
-    prim.line = from_.line();
+  void read_points(UsdCurveSet& curves) {
+    curves.points.clear();
+    curves.line = from_.line();
     text_.list([&] {
       Vec x;
       text_.expect('(');
@@ -211,68 +222,77 @@ class UsdReader {
       text_.expect(',');
       x.z = from_.decimal();
       text_.expect(')');
-      prim.points.push_back(x);
+      curves.points.push_back(x);
     });
-  }
-  void read_counts(Prim& prim) {
-    prim.counts.clear();
-    text_.list([&] { prim.counts.push_back(from_.whole()); });
   }
 
   void end_prim() {
-    if (prims_.back().curves) add_curves(prims_.back());
+    Prim& prim = prims_.back();
+    if (prim.is_curves()) add_curves(prim);
+    if (curves_.size() > prim.first) {
+      if (prim.is_placed()) place(prim);
+      if (prim.purpose) curves_.set_purpose(prim.first, *prim.purpose);
+      if (prim.hidden != Hidden::no) curves_.hide(prim.first, prim.hidden);
+    }
     prims_.pop_back();
     name_.clear();
   }
 
-  void add_curves(const Prim& prim) {
-    ++curves_;
-    for (const Prim& above : prims_) {
-      if (above.moved.empty()) continue;
-      from_.refuse_text(
-          fmt::format("curves moved by {}, which is not applied here", above.moved),
-          "apply the transform (Blender: Object > Apply > All Transforms) and export "
-          "again");
-    }
+  void add_curves(Prim& prim) {
     const auto basis = curve_basis(prim.type, prim.basis);
-    if (!basis || prim.wrap == "periodic") {
+    if (!basis || (prim.wrap != "nonperiodic" && prim.wrap != "pinned")) {
       from_.refuse_text(
           fmt::format("curves of type {}, basis {}, wrap {}", prim.type, prim.basis,
                       prim.wrap),
           "export linear curves, or bezier, bspline or catmullRom that are open");
     }
-    std::size_t from = 0;
-    const bool pinned = prim.wrap == "pinned";
-    for (const std::size_t count : prim.counts) {
-      if (count > prim.points.size() - from) {
-        from_.refuse_text(fmt::format("curves of more than the {} points that there are",
-                                      prim.points.size()),
-                          "the file is damaged: write it again");
+    prim.curves.basis = *basis;
+    prim.curves.pinned = prim.wrap == "pinned";
+    curves_.add(prim.curves);
+  }
+
+  /// The operations in their order, of which the first is applied last.
+  void place(const Prim& prim) {
+    constexpr std::string_view invert = "!invert!";
+    Affine all;
+    bool reset = false;
+    for (std::string_view name : prim.order) {
+      if (name == "!resetXformStack!") {
+        all = {};
+        reset = true;
+        continue;
       }
-      const std::span control = std::span(prim.points).subspan(from, count);
-      const std::vector<Vec> on = points_on(control, *basis, pinned);
-      made_.lines.points.insert(made_.lines.points.end(), on.begin(), on.end());
-      made_.lines.end_strand(made_.lines.size(), static_cast<std::uint64_t>(prim.line));
-      from += count;
+      const bool inverted = name.starts_with(invert);
+      if (inverted) name.remove_prefix(invert.size());
+      const auto found = prim.operations.find(name);
+      std::optional<Affine> one;
+      if (found != prim.operations.end()) one = usd_operation(name, found->second);
+      if (one && inverted) one = inverse(*one);
+      if (!one) {
+        from_.refuse_text(fmt::format("curves placed by {}{}, which has no map here",
+                                      inverted ? invert : "", name),
+                          "apply the transform (Blender: Object > Apply > All "
+                          "Transforms) and export again");
+      }
+      all = all * *one;
     }
-    if (from != prim.points.size()) {
-      from_.refuse_text(
-          fmt::format("curves of {} points where there are {}", from, prim.points.size()),
-          "the file is damaged: write it again");
-    }
+    if (!prim.order.empty()) curves_.place(prim.first, all, reset);
   }
 
   ByteStream& from_;
   UsdText text_;
+  GroomReading reading_;
+  UsdCurves curves_;
   GroomFile made_;
   std::vector<Prim> prims_;
   std::string name_;
-  int curves_ = 0;
   bool samples_ = false;
 };
 
 }  // namespace
 
-GroomFile read_usda(ByteStream& from) { return UsdReader(from).read(); }
+GroomFile read_usda(ByteStream& from, const GroomReading& reading) {
+  return UsdReader(from, reading).read();
+}
 
 }  // namespace tress::simulation

@@ -113,6 +113,10 @@ struct VtpArray {
 struct VtpPiece {
   std::uint64_t points = 0, lines = 0;
   VtpArray places, connectivity, ends;
+
+  bool appended() const {
+    return places.appended || connectivity.appended || ends.appended;
+  }
 };
 
 class VtpReader {
@@ -130,6 +134,8 @@ class VtpReader {
       } else if (tag->name == "Piece") {
         pieces_.push_back(
             {whole(*tag, "NumberOfPoints"), whole(*tag, "NumberOfLines"), {}, {}, {}});
+      } else if (tag->name == "/Piece") {
+        if (!pieces_.empty() && !pieces_.back().appended()) add(pieces_.back());
       } else if (tag->name == "Points" || tag->name == "Lines") {
         section_ = tag->name;
       } else if (tag->name == "/Points" || tag->name == "/Lines") {
@@ -210,6 +216,11 @@ class VtpReader {
     std::uint64_t size = 0;
     bytes.take(&size, wide_ ? 8 : 4);
     from_.require(size, 1, "bytes of an array");
+    taken_ += size;
+    if (taken_ > from_.size()) {
+      from_.refuse("arrays that have more bytes than the file: two share an offset",
+                   "write the file again");
+    }
     const auto read_as = [&]<class T>(T) {
       array.values.reserve(size / sizeof(T));
       for (std::uint64_t i = 0; i < size / sizeof(T); ++i) {
@@ -234,6 +245,7 @@ class VtpReader {
     const std::uint64_t base = from_.at();
     const bool raw = tag["encoding"] == "raw";
     for (VtpPiece& piece : pieces_) {
+      if (!piece.appended()) continue;
       for (VtpArray* array : {&piece.places, &piece.connectivity, &piece.ends}) {
         if (!array->appended) continue;
         array->appended = false;
@@ -248,9 +260,11 @@ class VtpReader {
           load(*array, bytes);
         }
       }
+      add(piece);
     }
   }
 
+  /// Judges the piece and leaves nothing of it but its strands.
   void add(VtpPiece& piece) {
     const auto count = [&](const VtpArray& array, std::string_view name,
                            std::uint64_t wanted, std::size_t each = 1) {
@@ -259,7 +273,10 @@ class VtpReader {
       throw InputError(fmt::format("{} {} where {} belong", found / each, name, wanted),
                        from_.file(), "the file is damaged: write it again");
     };
-    if (piece.lines == 0) return;
+    if (piece.lines == 0) {
+      piece = {};
+      return;
+    }
     count(piece.places, "points", piece.points, 3);
     count(piece.ends, "ends of lines", piece.lines);
     count(piece.connectivity, "points of lines",
@@ -295,6 +312,7 @@ class VtpReader {
   GroomFile made_;
   std::vector<VtpPiece> pieces_;
   std::string section_;
+  std::uint64_t taken_ = 0;  // bytes of all arrays so far
   bool wide_ = false;
 };
 

@@ -1,37 +1,62 @@
 #include "simulation/groom/space_curve.h"
 
-#include <gsl/gsl_spline.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "contract/input_error.h"
 
 namespace tress::simulation {
 
-struct SpaceCurve::Splines {
-  struct Free {
-    void operator()(gsl_spline* s) const { gsl_spline_free(s); }
-    void operator()(gsl_interp_accel* a) const { gsl_interp_accel_free(a); }
+/// Second derivatives at the knots of a cubic spline: of the inner ones
+///
+///     h0 m0 + 2 (h0 + h1) m1 + h1 m2 = 6 (d1 - d0)
+///
+/// with h the distances of knots and d the slopes of chords before and after; at an end
+/// m0 = m1 + r (m1 - m2), r = h0/h1, by which the third derivative passes the knot next
+/// to it. A last piece that is longer than twice the one before takes r = 2: noise in m1
+/// - m2 would grow with r. O(n).
+void SpaceCurve::interpolate(std::span<const Vec> points) {
+  places_.assign(points.begin(), points.end());
+  const std::size_t n = points.size();
+  bends_.assign(n, {});
+  if (n < 3) return;
+  const auto h = [this](std::size_t i) { return knots_[i + 1] - knots_[i]; };
+  const auto slope = [&](std::size_t i) {
+    return 1 / h(i) * (points[i + 1] - points[i]);
   };
-  std::array<std::unique_ptr<gsl_spline, Free>, 3> of;
-  std::unique_ptr<gsl_interp_accel, Free> near{gsl_interp_accel_alloc()};
-
-  Vec by(double (*evaluate)(const gsl_spline*, double, gsl_interp_accel*),
-         double u) const {
-    return {evaluate(of[0].get(), u, near.get()), evaluate(of[1].get(), u, near.get()),
-            evaluate(of[2].get(), u, near.get())};
+  if (n == 3) {
+    std::ranges::fill(bends_, 2 / (h(0) + h(1)) * (slope(1) - slope(0)));
+    return;
   }
-};
-
-SpaceCurve::SpaceCurve(SpaceCurve&&) noexcept = default;
-SpaceCurve::~SpaceCurve() = default;
+  constexpr double farthest = 2;
+  const double first = std::min(h(0) / h(1), farthest);
+  const double last = std::min(h(n - 2) / h(n - 3), farthest);
+  // Thomas' algorithm for the inner knots; the end rows lose m0 and m_{n-1}.
+  std::vector<double> upper(n);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    double below = h(i - 1), diagonal = 2 * (h(i - 1) + h(i)), above = h(i);
+    if (i == 1) {
+      diagonal += (1 + first) * below;
+      above -= first * below;
+      below = 0;
+    }
+    if (i + 2 == n) {
+      diagonal += (1 + last) * h(i);
+      below -= last * h(i);
+      above = 0;
+    }
+    const double pivot = diagonal - below * upper[i - 1];
+    upper[i] = above / pivot;
+    bends_[i] = 1 / pivot * (6.0 * (slope(i) - slope(i - 1)) - below * bends_[i - 1]);
+  }
+  for (std::size_t i = n - 2; i-- > 1;) bends_[i] = bends_[i] - upper[i] * bends_[i + 1];
+  bends_[0] = bends_[1] + first * (bends_[1] - bends_[2]);
+  bends_[n - 1] = bends_[n - 2] + last * (bends_[n - 2] - bends_[n - 3]);
+}
 
 SpaceCurve::SpaceCurve(std::span<const Vec> points, int fine, const std::string& where)
-    : fine_(fine), splines_(std::make_unique<Splines>()) {
+    : fine_(fine) {
   const std::size_t n = points.size();
-  std::array<std::vector<double>, 3> x;
   for (std::size_t i = 0; i < n; ++i) {
     knots_.push_back(i == 0 ? 0 : knots_.back() + norm(points[i] - points[i - 1]));
     if (i > 0 && !(knots_[i] - knots_[i - 1] >= least_step)) {
@@ -39,15 +64,8 @@ SpaceCurve::SpaceCurve(std::span<const Vec> points, int fine, const std::string&
                            " are less than 1 nm apart",
                        where, "leave one of them out");
     }
-    x[0].push_back(points[i].x);
-    x[1].push_back(points[i].y);
-    x[2].push_back(points[i].z);
   }
-  const gsl_interp_type* kind = n < 3 ? gsl_interp_linear : gsl_interp_cspline;
-  for (std::size_t k = 0; k < 3; ++k) {
-    splines_->of[k].reset(gsl_spline_alloc(kind, n));
-    gsl_spline_init(splines_->of[k].get(), knots_.data(), x[k].data(), n);
-  }
+  interpolate(points);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     for (int j = 0; j < fine; ++j) {
       u_.push_back(std::lerp(knots_[i], knots_[i + 1], static_cast<double>(j) / fine));
@@ -71,11 +89,25 @@ double SpaceCurve::parameter(double s) const {
   return std::lerp(u_[i], u_[j], (s - arc_[i]) / (arc_[j] - arc_[i]));
 }
 
+SpaceCurve::Piece SpaceCurve::piece(double u) const {
+  const std::ptrdiff_t inner = std::ranges::upper_bound(knots_, u) - knots_.begin() - 1;
+  const auto most = static_cast<std::ptrdiff_t>(knots_.size()) - 2;
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(inner, 0, most));
+  const double h = knots_[i + 1] - knots_[i];
+  return {i, h, std::clamp((u - knots_[i]) / h, 0.0, 1.0)};
+}
+
 Vec SpaceCurve::position(double u) const {
-  return splines_->by(gsl_spline_eval, std::clamp(u, 0.0, knots_.back()));
+  const auto [i, h, t] = piece(u);
+  const double s = 1 - t, w = h * h / 6;
+  return s * places_[i] + t * places_[i + 1] + w * (s * s * s - s) * bends_[i] +
+         w * (t * t * t - t) * bends_[i + 1];
 }
 Vec SpaceCurve::rate(double u) const {
-  return splines_->by(gsl_spline_eval_deriv, std::clamp(u, 0.0, knots_.back()));
+  const auto [i, h, t] = piece(u);
+  const double s = 1 - t, w = h / 6;
+  return 1 / h * (places_[i + 1] - places_[i]) + w * (1 - 3 * s * s) * bends_[i] +
+         w * (3 * t * t - 1) * bends_[i + 1];
 }
 Vec SpaceCurve::tangent(double u) const {
   const Vec r = rate(u);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,9 +8,12 @@
 
 namespace tress::simulation {
 
-/// Natural cubic splines of the three coordinates over the length u of a polyline, and
-/// the arc length s of the curve: a curve through points, straight at its two ends. For
-/// one thread at a time.
+/// A smooth curve through points: the cubic spline over the length u of their polyline,
+/// and its arc length s. The second derivative is extrapolated linearly from the two
+/// inner knots next to an end (not-a-knot), so that the curve keeps its curvature there:
+/// for points of a smooth curve at distances h, places are off by O(h^4), the curvature
+/// by O(h^2), up to the ends [de Boor 2001, chapter IV; Floater & Surazhsky 2006].
+/// Through two points it is straight, through three a parabola, through four one cubic.
 class SpaceCurve {
  public:
   /// Points nearer to each other than this are refused, m.
@@ -20,8 +22,6 @@ class SpaceCurve {
   /// Arc length by Simpson's rule in `fine` parts between two points. Throws InputError
   /// naming `where` on two points of a row that are nearer than least_step.
   SpaceCurve(std::span<const Vec> points, int fine, const std::string& where);
-  ~SpaceCurve();
-  SpaceCurve(SpaceCurve&&) noexcept;
 
   /// u of each point (m), and the arc length there.
   std::span<const double> knots() const { return knots_; }
@@ -41,10 +41,17 @@ class SpaceCurve {
   std::span<const double> arcs() const { return arc_; }
 
  private:
-  struct Splines;
+  /// The piece with u, between knots i and i + 1 that are h apart, and how far along.
+  struct Piece {
+    std::size_t i;
+    double h, t;
+  };
+  Piece piece(double u) const;
+  void interpolate(std::span<const Vec> points);
+
   int fine_;
   std::vector<double> knots_, u_, arc_;
-  std::unique_ptr<Splines> splines_;
+  std::vector<Vec> places_, bends_;  // at the knots: x and d^2x/du^2
 };
 
 }  // namespace tress::simulation

@@ -10,7 +10,8 @@ constexpr std::size_t longest_word = 1000;
 
 bool of_word(int c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-         c == '_' || c == ':' || c == '.' || c == '-' || c == '+' || c == '!';
+         c == '_' || c == ':' || c == '.' || c == '-' || c == '+' || c == '!' ||
+         c >= 0x80;  // of UTF-8
 }
 
 }  // namespace
@@ -88,10 +89,36 @@ void UsdText::skip_balanced() {
       quoted();
       continue;
     }
+    if (c == '@') {
+      skip_asset();
+      continue;
+    }
     from_.get();
     if (c == '(' || c == '[' || c == '{') ++depth;
     if (c == ')' || c == ']' || c == '}') --depth;
   } while (depth > 0);
+}
+
+void UsdText::skip_asset() {
+  const auto skip_marks = [this](int most) {
+    int marks = 0;
+    for (; marks < most && from_.peek() == '@'; ++marks) from_.get();
+    return marks;
+  };
+  const int opened = skip_marks(3);
+  if (opened == 2) return;  // an empty one
+  for (int closed = 0; closed < opened; closed = skip_marks(opened)) {
+    while (from_.peek() >= 0 && from_.peek() != '@') from_.get();
+    if (from_.peek() < 0) {
+      from_.refuse_text("an asset without its closing @", std::string(usd_remedy));
+    }
+  }
+}
+
+void UsdText::skip_path() {
+  expect('<');
+  while (from_.peek() >= 0 && from_.peek() != '>') from_.get();
+  expect('>');
 }
 
 void UsdText::skip_value() {
@@ -100,12 +127,11 @@ void UsdText::skip_value() {
     quoted();
   } else if (c == '(' || c == '[' || c == '{') {
     skip_balanced();
-  } else if (c == '@' || c == '<') {
-    const int closing = c == '@' ? '@' : '>';
-    from_.get();
-    while (from_.peek() >= 0 && from_.peek() != closing) from_.get();
-    expect(static_cast<char>(closing));
-    if (next() == '<') skip_value();  // a path within the asset
+  } else if (c == '@') {
+    skip_asset();
+    if (next() == '<') skip_path();  // within the asset
+  } else if (c == '<') {
+    skip_path();
   } else if (word().empty()) {
     from_.refuse_text("no value", std::string(usd_remedy));
   }

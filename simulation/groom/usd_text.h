@@ -36,8 +36,32 @@ class UsdText {
 
   ByteStream& from() { return from_; }
 
+  /// Metadata in parentheses: use(key) reads the value after the = or returns false.
+  template <class Use>
+  void metadata(const Use& use) {
+    expect('(');
+    for (int c = next(); c != ')'; c = next()) {
+      if (c == '"' || c == '\'') {
+        quoted();  // a comment
+      } else if (c == '(') {
+        skip_value();  // of the value before
+      } else if (c == ';' || c == ',') {
+        from_.get();
+      } else {
+        const std::string key = word();
+        if (key.empty()) expect(')');
+        if (next() != '=') continue;
+        expect('=');
+        if (!use(key)) skip_value();
+      }
+    }
+    expect(')');
+  }
+
  private:
   void skip_balanced();
+  void skip_asset();
+  void skip_path();
 
   ByteStream& from_;
 };

@@ -25,7 +25,8 @@ constexpr Parameter file_keys[] = {
              "takes so many of them, evenly spread",
      .text = true},
     {.name = "unit",
-     .help = "of the file; file: as it says (.usda), or else guessed, and said",
+     .help = "of the file; file: as it or its format says (.usda: cm), or else guessed, "
+             "and printed",
      .choices = "file|m|cm|mm|inch"},
     {.name = "unit_m",
      .help = "the same as a number: metres per unit; 0: by unit",
@@ -33,9 +34,8 @@ constexpr Parameter file_keys[] = {
      .min = 0,
      .max = 1e6},
     {.name = "up",
-     .help =
-         "axis of the file that points up; file: as it says (.usda), or else guessed, "
-         "and said",
+     .help = "axis of the file that points up; file: as it or its format says (.usda: "
+             "y), or else guessed from hair that bends as it hangs, and printed",
      .choices = "file|x|y|z|-x|-y|-z"},
     {.name = "position_m",
      .help = "file: place of its origin x, y, z (m)",
@@ -50,10 +50,15 @@ constexpr Parameter file_keys[] = {
      .max = 1e9,
      .whole = true},
     {.name = "bad_strands",
-     .help =
-         "file: strands of fewer than two points, with repeated points, or with points "
-         "that are not finite; drop: left out, and counted",
+     .help = "file: strands of fewer than two points, with repeated points, with points "
+             "that are not finite, or (.usda) with a number of points that does not suit "
+             "their basis; drop: left out, and counted",
      .choices = "refuse|drop"},
+    {.name = "hidden_strands",
+     .help =
+         "file: curves of a .usda that USD does not render (inactive, invisible, of a "
+         "class, of purpose guide or proxy); drop: left out, and counted",
+     .choices = "drop|take"},
     {.name = "strand_points",
      .help = "file: points of every strand of a .ply that does not say; 0: it says",
      .number = 0,
@@ -136,8 +141,12 @@ std::shared_ptr<const PlacedGroom> read_file_groom(const Table& groom) {
   placing.position = p.vec("position_m");
   placing.bad = p.word("bad_strands") == "drop" ? BadStrands::drop : BadStrands::refuse;
   placing.every = static_cast<std::size_t>(p.whole("every"));
+  GroomReading reading;
+  reading.strand_points = p.whole("strand_points");
+  reading.bad = placing.bad;
+  reading.hidden = p.word("hidden_strands") == "take";
   return std::make_shared<const PlacedGroom>(
-      place_groom(read_groom(file, p.whole("strand_points")), file, placing));
+      place_groom(read_groom(file, reading), file, placing));
 }
 
 void refuse_file_keys(const Table& groom) {

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/groom/curve_basis.h"
+#include "simulation/groom/read_groom.h"
+#include "simulation/groom/usd_transform.h"
+
+namespace tress::simulation {
+
+/// Why USD does not render a prim [OpenUSD, UsdPrimDefaultPredicate, UsdGeomImageable].
+enum class Hidden { no, inactive, undefined, abstract, invisible, guide, proxy };
+
+/// The attributes of one BasisCurves.
+struct UsdCurveSet {
+  CurveBasis basis = CurveBasis::bezier;
+  bool pinned = false;
+  std::vector<std::size_t> counts;  // of the points of each curve
+  std::vector<Vec> points;
+  int line = 0;  // of the points
+};
+
+/// The curves of a stage, in the order of their prims: what surrounds a prim acts on the
+/// sets that were added within it, which is known where the prim ends.
+class UsdCurves {
+ public:
+  explicit UsdCurves(ByteStream& from) : from_(from) {}
+
+  std::size_t size() const { return sets_.size(); }
+  void add(const UsdCurveSet& set);
+  /// The sets from `first` on lie within a prim with this map, which alone places them if
+  /// `reset`.
+  void place(std::size_t first, const Affine& map, bool reset);
+  /// They lie within a prim that is hidden.
+  void hide(std::size_t first, Hidden why);
+  /// They lie within a prim of this purpose, which those have that have none yet.
+  void set_purpose(std::size_t first, Hidden why);
+
+  /// The strands that are left, with notes on those that are not.
+  void finish(const GroomReading& reading, GroomFile& made);
+
+ private:
+  struct Set {
+    std::size_t first_point, first_strand;
+    CurveBasis basis;
+    bool pinned, placed = false, has_purpose = false;
+    Hidden hidden = Hidden::no;
+    // Curves whose count does not suit the basis, and the first of them.
+    std::size_t unfit = 0, number = 0, count = 0;
+    int line = 0;
+    double lost =
+        0;  // largest share of a curve before its first point and after its last
+  };
+  std::size_t end_point(std::size_t set) const;
+  std::size_t end_strand(std::size_t set) const;
+  void leave_out_hidden(const GroomReading& reading, GroomFile& made);
+  void judge_counts(const GroomReading& reading, GroomFile& made) const;
+  void note_lost_ends(GroomFile& made) const;
+
+  ByteStream& from_;
+  Polylines lines_;
+  std::vector<Set> sets_;
+  std::size_t curves_ = 0;
+};
+
+}  // namespace tress::simulation
