@@ -118,7 +118,7 @@ void set_tree(Parameters& p, std::string_view tree) {
   p.set("root_tangent", "up");
   number("density_kg_m3", material.density);
   number("youngs_modulus_pa", material.youngs_modulus);
-  number("poisson_ratio", material.youngs_modulus / (2 * material.shear_modulus) - 1);
+  number("shear_modulus_pa", material.shear_modulus);
   number("internal_friction_kg_m3_s", material.internal_friction);
 }
 

@@ -64,15 +64,23 @@ constexpr Parameter geometry_table[] = {
      .max = 1e6},
 };
 
+constexpr double default_poisson_ratio = 0.48;
+
 constexpr Parameter material_table[] = {
     {.name = "youngs_modulus_pa",
      .help = "Young's modulus E (Pa)",
      .number = 3e9,
      .min = 1e-3,
      .max = 1e15},
+    {.name = "shear_modulus_pa",
+     .help = "shear modulus G (Pa) in place of poisson_ratio, for a material that is not "
+             "isotropic; 0: G from poisson_ratio",
+     .number = 0,
+     .min = 0,
+     .max = 1e15},
     {.name = "poisson_ratio",
-     .help = "Poisson's ratio, above -1: G = E/(2 (1 + nu))",
-     .number = 0.48,
+     .help = "Poisson's ratio nu of an isotropic material, above -1: G = E/(2 (1 + nu))",
+     .number = default_poisson_ratio,
      .min = -1,
      .max = 0.5},
     {.name = "density_kg_m3",
@@ -178,17 +186,29 @@ std::span<const Parameter> strand_parameters() {
 
 std::span<const Parameter> material_parameters() { return material_table; }
 
-Material material(const Parameters& parameters) {
-  const double poisson_ratio = parameters.number("poisson_ratio");
-  if (poisson_ratio <= -1) {
+namespace {
+
+double shear_modulus(const Parameters& p) {
+  const double shear = p.number("shear_modulus_pa"), ratio = p.number("poisson_ratio");
+  if (shear == 0) {
+    if (ratio > -1) {
+      return Material::shear_modulus_of(p.number("youngs_modulus_pa"), ratio);
+    }
     throw InputError("poisson_ratio = -1 has no shear modulus", "material",
                      "give a number above -1, at most 0.5");
   }
+  if (ratio == default_poisson_ratio) return shear;
+  throw InputError("shear_modulus_pa and poisson_ratio are both given", "material",
+                   "leave one of them out");
+}
+
+}  // namespace
+
+Material material(const Parameters& parameters) {
   Material material;
   material.density = parameters.number("density_kg_m3");
   material.youngs_modulus = parameters.number("youngs_modulus_pa");
-  material.shear_modulus =
-      Material::shear_modulus_of(material.youngs_modulus, poisson_ratio);
+  material.shear_modulus = shear_modulus(parameters);
   material.internal_friction = parameters.number("internal_friction_kg_m3_s");
   return material;
 }

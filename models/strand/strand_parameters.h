@@ -23,7 +23,8 @@ std::span<const Parameter> strand_parameters();
 /// (trees).
 std::span<const Parameter> material_parameters();
 
-/// Throws InputError on poisson_ratio = -1.
+/// Throws InputError on poisson_ratio = -1, and where shear_modulus_pa is set and
+/// poisson_ratio is not the default.
 Material material(const Parameters& parameters);
 
 /// The clamp, at rest at the origin: e0 along root_tangent, e1 = y, so that curvature

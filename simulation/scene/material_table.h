@@ -22,9 +22,12 @@ struct StrandMaterial {
 
 std::span<const Parameter> material_table_parameters();
 
+/// Throws InputError on a table that gives shear_modulus_pa and poisson_ratio.
+void refuse_both_moduli(const Table& table);
+
 /// The values of `scene`, overridden by those of `own` ([strand.material]), if any: a
 /// name sets all of its values, other keys change single ones. Throws InputError naming
-/// the key that a custom material lacks.
+/// the key that a custom material lacks, and on two keys for one modulus.
 StrandMaterial strand_material(const Table& scene, const Table* own);
 
 }  // namespace tress::simulation

@@ -127,6 +127,7 @@ class Reader {
     if (const toml::table* given = table("model")) read_key(*given, "id", file_, id);
     const ModelEntry* model = &find_model(id.values().word("id"));
     const Table options = read_or_default("model", model_table_parameters(*model));
+    refuse_both_moduli(options);  // of a tree
     scene_.model = model;
     scene_.model_options = options.values();
     places_.model = options.place("id");

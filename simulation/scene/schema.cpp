@@ -77,7 +77,7 @@ void add_uses(std::string& page, const TableEntry& entry) {
 /// The values that each name stands for.
 void add_materials(std::string& page) {
   page +=
-      "\n| name | radius | ellipticity | E | nu | density | curl radius, pitch |\n"
+      "\n| name | radius | ellipticity | E | G | density | curl radius, pitch |\n"
       "|---|---|---|---|---|---|---|\n";
   const auto parameters = material_table_parameters();
   for (const std::string_view name : words_of(parameters.front().choices)) {
@@ -85,13 +85,13 @@ void add_materials(std::string& page) {
     Table table(parameters, "[material]", "");
     table.set("name", name, "");
     const StrandMaterial m = strand_material(table, nullptr);
-    const double poisson = m.material.youngs_modulus / (2 * m.material.shear_modulus) - 1;
-    fmt::format_to(std::back_inserter(page),
-                   "| `{}` | {:.1f} um | {:.2f} | {:.2f} GPa | {:.2f} | {:.0f} kg/m^3 | "
-                   "{:g}, {:g} mm |\n",
-                   name, 1e6 * std::sqrt(m.section.a1 * m.section.a2),
-                   m.section.a1 / m.section.a2, 1e-9 * m.material.youngs_modulus, poisson,
-                   m.material.density, 1e3 * m.curl_radius, 1e3 * m.curl_pitch);
+    fmt::format_to(
+        std::back_inserter(page),
+        "| `{}` | {:.1f} um | {:.2f} | {:.2f} GPa | {:.2f} GPa | {:.0f} kg/m^3 | "
+        "{:g}, {:g} mm |\n",
+        name, 1e6 * std::sqrt(m.section.a1 * m.section.a2), m.section.a1 / m.section.a2,
+        1e-9 * m.material.youngs_modulus, 1e-9 * m.material.shear_modulus,
+        m.material.density, 1e3 * m.curl_radius, 1e3 * m.curl_pitch);
   }
   page +=
       "\nSources, and what is from memory: "

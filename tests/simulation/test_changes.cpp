@@ -129,6 +129,7 @@ shape = "material"
 position_m = [0.1, -0.25, 1e-7]
 [strand.material]
 radius_m = 3.3333333333333335e-05
+shear_modulus_pa = 0.91e9
 [root]
 motion = "keyframes"
 keyframes = [[0, 0, 0, 0, 0], [1, 0.1, 0, 0.3, 0]]

@@ -147,6 +147,20 @@ const Wrong wrong_scenes[] = {
      "give radius_m in [material]"},
     {"NoShearModulus", strand + "[material]\npoisson_ratio = -1\n", "4:17",
      "no shear modulus"},
+    {"TwoKeysForTheShearModulus",
+     strand + "[material]\nshear_modulus_pa = 9e8\npoisson_ratio = 0.3\n", "5:17",
+     "leave one of them out"},
+    {"TwoKeysForTheShearModulusOfAStrand",
+     strand + "[strand.material]\npoisson_ratio = 0.3\nshear_modulus_pa = 9e8\n", "4:17",
+     "leave one of them out"},
+    {"TwoKeysForTheShearModulusOfATree",
+     "[model]\nid = \"super_helix_tree\"\npoisson_ratio = 0.48\nshear_modulus_pa = "
+     "9e8\n",
+     "4:17", "leave one of them out"},
+    {"CustomLacksShear",
+     strand + "[material]\nname = \"custom\"\nradius_m = 4e-5\nyoungs_modulus_pa = "
+              "4e9\ndensity_kg_m3 = 1320\n",
+     "4:8", "give shear_modulus_pa or poisson_ratio in [material]"},
     {"KeyframesBackwards",
      strand + "[root]\nmotion = \"keyframes\"\n"
               "keyframes = [[1, 0, 0, 0, 0], [0, 0, 0, 0, 0]]\n",

@@ -60,7 +60,8 @@ std::string with_table(const TableEntry& entry) {
   for (const Parameter& p : entry.parameters) {
     // Rows and texts are empty by default: there they would say nothing.
     const bool says_nothing = (p.rows || p.text) && p.fallback.empty();
-    if (says_nothing || !used(entry.uses, word, p.name)) continue;
+    const bool excluded = p.name == "poisson_ratio";  // by shear_modulus_pa
+    if (says_nothing || excluded || !used(entry.uses, word, p.name)) continue;
     text += std::string(p.name) + " = " + default_value(p) + "\n";
   }
   return text;

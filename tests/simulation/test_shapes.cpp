@@ -84,6 +84,35 @@ TEST(Fuzzy, IsTheSameForTheSameSeedAndStreamOnly) {
   EXPECT_NE(fuzzy_shape(30, 0.01, 8, 3)(0.02).y, one);
 }
 
+TEST(Materials, TheShearModulusIsThatOfTheLastKeyForIt) {
+  const Scene scene = parse_scene(R"(title = "t"
+[material]
+shear_modulus_pa = 5e8
+[[strand]]
+[[strand]]
+[strand.material]
+youngs_modulus_pa = 1e9
+[[strand]]
+[strand.material]
+poisson_ratio = 0.25
+[[strand]]
+[strand.material]
+name = "custom"
+radius_m = 4e-5
+youngs_modulus_pa = 2e9
+shear_modulus_pa = 7e8
+density_kg_m3 = 1320
+)",
+                                  "t.toml");
+  const auto shear = [&](std::size_t i) {
+    return scene.strands[i].material.shear_modulus;
+  };
+  EXPECT_EQ(shear(0), 5e8);
+  EXPECT_EQ(shear(1), 5e8);
+  EXPECT_EQ(shear(2), 3.8e9 / 2.5);
+  EXPECT_EQ(shear(3), 7e8);
+}
+
 TEST(Materials, ANameBringsItsValuesAndKeysChangeSingleOnes) {
   const Scene scene = parse_scene(R"(title = "t"
 [material]
@@ -101,10 +130,13 @@ name = "hair.asian"
   ASSERT_EQ(scene.strands.size(), 3u);
   const auto material = [&](std::size_t i) { return scene.strands[i].material; };
   EXPECT_EQ(material(0).youngs_modulus, 1e6);
-  EXPECT_EQ(material(0).density, 1300);
+  EXPECT_EQ(material(0).density, 1320);
   EXPECT_EQ(material(1).youngs_modulus, 1e6);
   EXPECT_EQ(material(1).density, 1000);
-  EXPECT_EQ(material(2).youngs_modulus, 3.89e9);
+  EXPECT_EQ(material(2).youngs_modulus, 3.8e9);
+  // Hair is not isotropic: 3.89 and 0.89 GPa. Softer hair has the same ratio.
+  EXPECT_DOUBLE_EQ(material(2).shear_modulus, 3.8e9 * 0.89 / 3.89);
+  EXPECT_DOUBLE_EQ(material(0).shear_modulus, 1e6 * 0.89 / 3.89);
   const CrossSection& section = scene.strands[0].segments[0].section;
   EXPECT_NEAR(section.a1 / section.a2, 1.29, 1e-14);
   EXPECT_NEAR(section.area(), 5063e-12, 0.0025 * 5063e-12);  // radius to 0.1 um

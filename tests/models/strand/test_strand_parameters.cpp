@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
 #include "contract/input_error.h"
 #include "models/catalogue.h"
@@ -241,6 +243,58 @@ TEST(StrandParameters, RefuseNumbersOutsideTheirMeaning) {
     EXPECT_THROW(strand_parameters({setting}), InputError) << setting.first;
   }
   EXPECT_THROW(strand(strand_parameters({{"poisson_ratio", "-1"}})), InputError);
+}
+
+TEST(StrandParameters, ShearModulusTakesThePlaceOfPoissonsRatio) {
+  const Strand s = strand(strand_parameters({{"shear_modulus_pa", "0.87e9"}}));
+  EXPECT_EQ(s.material.shear_modulus, 0.87e9);
+  EXPECT_EQ(s.material.youngs_modulus, 3e9);
+  EXPECT_THROW(
+      strand(strand_parameters({{"shear_modulus_pa", "1e9"}, {"poisson_ratio", "0.3"}})),
+      InputError);
+}
+
+/// A clamped rod of n elements whose tip is turned by an angle about its axis has the
+/// torsional energy G J angle^2/(2 L): here the straight shape of one whose natural shape
+/// is twisted. Joints between n elements see the twist on (n - 1/2)/n of the length or on
+/// all of it; a rate of twist of angle/n per joint is off by its square over 12 where
+/// models take sines of half angles: 2e-6 here.
+TEST(StrandParameters, ShearModulusAloneResistsTwistInEveryModelThatTwists) {
+  constexpr double radius = 50e-6, ellipticity = 1.5, length = 0.2, twist = 0.5;
+  constexpr double shear = 0.4e9;
+  constexpr int elements = 20;
+  const double a1 = radius * std::sqrt(ellipticity), a2 = radius / std::sqrt(ellipticity);
+  const double torsion = pi * std::pow(a1 * a2, 3) / (a1 * a1 + a2 * a2);  // Saint-Venant
+  const double energy = shear * torsion * twist * twist * length / 2;
+  const auto stored = [&](std::string_view model, std::string_view youngs_modulus) {
+    const ModelEntry& entry = find_model(model);
+    Parameters p(setup_parameters(entry), "model");
+    for (const auto& [key, value] : Settings{{"elements", "20"},
+                                             {"length_m", "0.2"},
+                                             {"radius_m", "50e-6"},
+                                             {"ellipticity", "1.5"},
+                                             {"youngs_modulus_pa", youngs_modulus},
+                                             {"shear_modulus_pa", "0.4e9"},
+                                             {"natural_twist_1_m", "0.5"},
+                                             {"initial", "straight"},
+                                             {"gravity_m_s2", "0"},
+                                             {"modes", "bend_twist"}}) {
+      if (p.knows(key)) p.set(key, value);
+    }
+    const auto system = entry.make(p);
+    const auto count = static_cast<std::size_t>(system->layout().coordinates);
+    std::vector<double> q(count), v(count);
+    system->initial_state(q, v);
+    return system->energetics()->energy(0, q, v).potential;
+  };
+  for (const std::string_view model :
+       {"super_helix", "super_clothoid", "articulated_chain", "force_transport", "der",
+        "corde", "xpbd_cosserat", "dynamic_spline", "kirchhoff_nodal"}) {
+    const double soft = stored(model, "1e9");
+    EXPECT_NEAR(soft / energy, 1, 0.5 / elements + 2e-6) << model;
+    // E has no part in it.
+    EXPECT_NEAR(stored(model, "4e9") / soft, 1, 1e-9) << model;
+  }
 }
 
 }  // namespace tress::test_strand_parameters
