@@ -1,4 +1,4 @@
-// Which BDF order suits a hair of 20 elements, compared with ESDIRK, at equal errors.
+// Which BDF order suits a rod of 20 elements, compared with ESDIRK, at equal errors.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,15 +11,18 @@ namespace tress::experiments::family {
 namespace {
 
 constexpr Claim claims[] = {
-    {"bdf_order2_at_1e-2", "BDF of order 2 at most is no dearer than of 5 at 1e-2",
+    {"bdf_order2_at_1e-2",
+     "BDF of order 2 at most needs no more work than of order 5 at 1e-2",
      "work of order 5 over that of order 2 at a tip error of 1e-2"},
-    {"bdf_order2_at_1e-3", "BDF of order 2 at most is no dearer than of 5 at 1e-3",
+    {"bdf_order2_at_1e-3",
+     "BDF of order 2 at most needs no more work than of order 5 at 1e-3",
      "work of order 5 over that of order 2 at a tip error of 1e-3"},
-    {"bdf_order2_at_1e-4", "BDF of order 2 at most is no dearer than of 5 at 1e-4",
+    {"bdf_order2_at_1e-4",
+     "BDF of order 2 at most needs no more work than of order 5 at 1e-4",
      "work of order 5 over that of order 2 at a tip error of 1e-4"},
     {"esdirk_steps_at_1e-3", "ESDIRK takes no more steps than BDF of any order at 1e-3",
      "steps of the BDF with fewer over those of ESDIRK at a tip error of 1e-3"},
-    {"esdirk_work_at_1e-3", "ESDIRK is no dearer than BDF of any order at 1e-3",
+    {"esdirk_work_at_1e-3", "ESDIRK needs no more work than BDF of any order at 1e-3",
      "work of the cheaper BDF over that of ESDIRK at a tip error of 1e-3"}};
 
 constexpr double t_end = 0.2;  // s
@@ -38,8 +41,8 @@ constexpr std::array methods{Method{"cvode_bdf", 2}, Method{"cvode_bdf", 5},
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-TipRun run_at(const Hair& hair, const Method& method, double rtol, long most) {
-  const auto system = make_system(straightened(hair), "super_helix", elements, "bend");
+TipRun run_at(const Rod& rod, const Method& method, double rtol, long most) {
+  const auto system = make_system(straightened(rod), "super_helix", elements, "bend");
   Options options;
   options.rtol = options.atol = rtol;
   options.max_order = method.order;
@@ -59,12 +62,12 @@ struct Cost {
 
 using Costs = std::array<Cost, targets.size()>;
 
-Costs costs_of(const Hair& hair, const Method& method, In reference) {
+Costs costs_of(const Rod& rod, const Method& method, In reference) {
   Costs least;
   for (const double rtol : tolerances) {
-    const TipRun run = run_at(hair, method, rtol, most_steps);
+    const TipRun run = run_at(rod, method, rtol, most_steps);
     if (run.status != Status::ok) continue;
-    const double error = tip_error(run.tip, reference, hair.length);
+    const double error = tip_error(run.tip, reference, rod.length);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       if (error > targets[i] || work_of(run.stats) >= least[i].work) continue;
       least[i] = {static_cast<double>(run.stats.steps), work_of(run.stats)};
@@ -77,16 +80,16 @@ Row compared(Row row, const Claim& claim, double work, double other) {
   if (!std::isfinite(work) && !std::isfinite(other)) {
     return no_answer(row, claim, "not_met", "neither met the error in 4000 steps");
   }
-  // A method that never meets the target is dearer by the step limit.
+  // A method that never meets the target is more expensive by the step limit.
   constexpr double most = 100;
   const double ratio = std::clamp(other / work, 1 / most, most);
   return answer(row.set("elements", elements), claim, ratio, other >= work);
 }
 
-std::vector<Row> run(const Hair& hair, const Row& row) {
-  const TipRun fine = run_at(hair, methods[2], reference_tolerance, 10 * most_steps);
-  const TipRun other = run_at(hair, methods[1], reference_tolerance, 10 * most_steps);
-  const double gap = tip_error(other.tip, fine.tip, hair.length);
+std::vector<Row> run(const Rod& rod, const Row& row) {
+  const TipRun fine = run_at(rod, methods[2], reference_tolerance, 10 * most_steps);
+  const TipRun other = run_at(rod, methods[1], reference_tolerance, 10 * most_steps);
+  const double gap = tip_error(other.tip, fine.tip, rod.length);
   std::vector<Row> rows;
   if (!(gap < targets.back() / 3)) {
     for (const Claim& claim : claims) {
@@ -95,9 +98,9 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
     }
     return rows;
   }
-  const Costs two = costs_of(hair, methods[0], fine.tip);
-  const Costs five = costs_of(hair, methods[1], fine.tip);
-  const Costs esdirk = costs_of(hair, methods[2], fine.tip);
+  const Costs two = costs_of(rod, methods[0], fine.tip);
+  const Costs five = costs_of(rod, methods[1], fine.tip);
+  const Costs esdirk = costs_of(rod, methods[2], fine.tip);
   const Row with = Row(row).set("gap", gap);
   for (std::size_t i = 0; i < targets.size(); ++i) {
     rows.push_back(compared(with, claims[i], two[i].work, five[i].work));

@@ -14,88 +14,112 @@
 
 namespace tress::experiments::family {
 
-/// The excitation of a hair. By `level` in [0, 1]: shake by 1 to 5 cm; a head that turns
-/// by 0.2 to 0.8 rad, 10 cm behind the root; none (released horizontally); a sideways
-/// wind of 0.5 to 5 m/s at its peak, a sine in time, with linear drag of 2e-5 kg/(m s).
+/// The population that a rod is drawn from.
+enum class Family { hair, rods };
+std::string_view name(Family family);
+
+/// The excitation of a rod. By `level` in [0, 1]: shake by 1 to 5 cm, as the head of a
+/// person who walks or runs; a head that turns by 0.2 to 0.83 rad, 10 cm behind the root;
+/// none (released horizontally); a sideways wind of 0.5 to 10 m/s at its peak
+/// (logarithmic), a sine in time.
 enum class Drive { shake, turning_head, release, wind };
 inline constexpr int drives = 4;
 std::string_view name(Drive drive);
 
-/// One member of the family. Its natural twist is 0.3 times its natural curvature.
-struct Hair {
-  int number;                // 1, 2, ...
-  double length;             // m
-  double radius;             // m
-  double youngs_modulus;     // Pa
-  double ellipticity;        // half-axis along e1 over half-axis along e2
-  double natural_curvature;  // 1/m
-  double internal_friction;  // kg m^3/s
+/// One member of a family: a hair, or a rod of another material.
+struct Rod {
+  Family family = Family::hair;
+  int number = 1;                // 1, 2, ... within its family
+  std::string_view kind = {};    // of hair: straight, wavy or coily; else the material
+  std::string_view state = {};   // of hair: dry or wet
+  double length;                 // m
+  double radius;                 // m; of an ellipse the geometric mean
+  double youngs_modulus;         // Pa
+  double shear_modulus;          // Pa
+  double density;                // kg/m^3
+  double ellipticity = 1;        // half-axis along e1 over half-axis along e2
+  double natural_curvature = 0;  // 1/m
+  double natural_twist = 0;      // 1/m
+  double internal_friction = 0;  // kg m^3/s
+  double drag = 0;               // of air, linear, per length, kg/(m s)
   Drive drive;
   double level;      // of the drive, in [0, 1]
   double frequency;  // of the drive, 1/s
 
-  /// rho A g L^3/(EI) of the round section: how far gravity bends the hair.
+  double mass_per_length() const;    // kg/m
+  double bending_stiffness() const;  // E I of the round section of the same area, N m^2
+  /// rho A g L^3/(EI) of that section: how far gravity bends the rod.
   double gravito_bending() const;
   /// Angle by which the natural shape turns from root to tip (rad).
   double winding() const;
+  /// Typical speed of the rod relative to the air (m/s): of the wind at its peak, of the
+  /// root (with a head, of the middle of the rod), or of a fall by half the length.
+  double air_speed() const;
 
-  /// Sets the columns that describe the hair.
+  /// Sets the columns that describe the rod.
   void describe(Row& row) const;
 };
 
 /// Columns that `describe` sets.
-std::vector<Column> hair_columns();
+std::vector<Column> rod_columns();
 
-/// A Latin hypercube [McKay, Beckman & Conover 1979]: every parameter's range is divided
-/// into `count` equal parts, and each part holds exactly one hair. Length 3 to 40 cm,
-/// radius 20 to 60 um, Young's modulus 1e6 to 4e9 Pa (logarithmic), ellipticity 1 to 1.6,
-/// natural curvature 0 to 300 1/m, internal friction 0 for a quarter of the hairs and
-/// 1e-13 to 1e-10 kg m^3/s (logarithmic) for the others, drives in equal shares,
-/// frequency 1 to 4 1/s. Equal seeds give equal hairs on every machine.
-std::vector<Hair> latin_hypercube(int count, std::uint64_t seed);
+/// Force of still air per length and speed (kg/(m s)) on a cylinder that crosses it at
+/// this speed: models::CylinderDrag. Of a hair of 36 um 8e-5 at 0.1 m/s, 5e-4 at 5 m/s.
+double air_drag(double radius, double speed);
 
-/// The hair with its natural shape straightened, its section and material kept.
-Hair straightened(Hair hair);
+/// A Latin hypercube [McKay, Beckman & Conover 1979]: every coordinate is divided into
+/// `count` equal parts, and each part holds exactly one rod. A coordinate is a quantile
+/// of the distribution of its parameter. Equal seeds give equal rods on every machine.
+///
+/// Hair: measured distributions of human hair, dry and wet, in three groups (hair.cpp).
+/// Rods: fifteen other materials, each with an equal share where `count` is a multiple of
+/// fifteen (materials.cpp). Drives in equal shares. Frequency of a shake 2 to 3.2 1/s
+/// (walking, running), of others 1 to 2.6 1/s.
+std::vector<Rod> latin_hypercube(Family family, int count, std::uint64_t seed);
+
+/// The rod with its natural shape straightened, its section and material kept.
+Rod straightened(Rod rod);
 
 /// Elements that follow its natural shape: at least 20, and no more than 1.5 rad of
 /// winding in each, for those of der must stay below half a circle.
-int elements_of(const Hair& hair);
+int elements_of(const Rod& rod);
 
-/// Parameters of `model` for this hair.
-Parameters parameters_of(const Hair& hair, std::string_view model, int elements);
+/// Parameters of `model` for this rod.
+Parameters parameters_of(const Rod& rod, std::string_view model, int elements);
 
-/// The model of the hair, under gravity and its drive. `modes`: "bend_twist" or "bend",
+/// The model of the rod, under gravity and its drive. `modes`: "bend_twist" or "bend",
 /// for the models with that option (super_helix, articulated_chain).
-std::unique_ptr<System> make_system(const Hair& hair, std::string_view model,
-                                    int elements, std::string_view modes = "bend_twist");
-/// Guard of that system; its hair is complete, with bending and twist.
-Guard make_guard(const Hair& hair, std::string_view model, int elements, System& system);
+std::unique_ptr<System> make_system(const Rod& rod, std::string_view model, int elements,
+                                    std::string_view modes = "bend_twist");
+/// Guard of that system; its strand is complete, with bending and twist.
+Guard make_guard(const Rod& rod, std::string_view model, int elements, System& system);
 
 /// Peak of the wind (m/s) at this level.
-double wind_speed(const Hair& hair);
-inline constexpr double wind_drag = 2e-5;  // kg/(m s), linear drag per length
+double wind_speed(const Rod& rod);
+/// Greatest speed (m/s) at which the root moves, or a turning head moves the tip.
+double root_speed(const Rod& rod);
 
-/// A statement of the README about one hair, to be tested on all.
+/// A statement of the README about one rod, to be tested on all.
 struct Claim {
   std::string_view id;
-  std::string_view statement;  // a sentence, true of a hair where the claim holds
+  std::string_view statement;  // a sentence, true of a rod where the claim holds
   std::string_view value;      // meaning of the column `value`, with unit
 };
 
-/// One computation on one hair that answers one or more claims. Bounded by numbers of
+/// One computation on one rod that answers one or more claims. Bounded by numbers of
 /// steps, never by time.
 struct Study {
   std::string_view id;
   std::span<const Claim> claims;
   /// Rows in the order of `claims`, once for each integrator that they are about. `row`:
-  /// identity and hair are set; with `models`, `model`, `tolerance` and `most_calls` too.
-  std::vector<Row> (*run)(const Hair& hair, const Row& row);
-  /// A piece of work on each of these models; empty: one on the hair.
+  /// identity and rod are set; with `models`, `model`, `tolerance` and `most_calls` too.
+  std::vector<Row> (*run)(const Rod& rod, const Row& row);
+  /// A piece of work on each of these models; empty: one on the rod.
   std::span<const std::string_view> models = {};
   /// What --quick leaves of it.
   struct Quick {
-    int stride = 1;          // the first hair and every so manieth after it
-    std::size_t models = 0;  // the first so many
+    int stride = 1;          // the first rod and every n-th after it
+    std::size_t models = 0;  // the first n
   } quick = {};
 };
 
@@ -105,7 +129,7 @@ std::span<const Study> studies();
 /// in every step. A run beyond it counts as without an answer.
 double enough_work(System& system, double t_end, double dt);
 
-/// A row that answers `claim`: its value, and whether the claim holds for this hair.
+/// A row that answers `claim`: its value, and whether the claim holds for this rod.
 Row answer(Row row, const Claim& claim, double value, bool holds);
 
 /// A row without an answer, with the reason.
@@ -126,20 +150,21 @@ double rank_correlation(std::span<const double> x, std::span<const double> y);
 struct Stump {
   bool found = false;  // false: no threshold predicts better than a constant
   double threshold = 0;
-  double share_below = 0, share_above = 0;  // of the claim among hairs on either side
-  double right = 0;                         // share of all hairs that the rule classifies
+  double share_below = 0, share_above = 0;  // of the claim among rods on either side
+  double right = 0;                         // share of all rods that the rule classifies
                                             // correctly
 };
 
-/// The threshold on x that best predicts `holds`, with at least `least` hairs on either
+/// The threshold on x that best predicts `holds`, with at least `least` rods on either
 /// side.
 Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
                  std::size_t least);
 
-/// One row per claim, model and integrator over the hairs that answered it: their number,
-/// the share for which it holds, quantiles of the value, the hair parameter with the
-/// strongest rank correlation with the value, and the one that best predicts by one
-/// threshold whether the claim holds.
+/// One row per claim, family, model, integrator and range of the gravito-bending number
+/// over the rods that answered it: their number, the share for which it holds, and
+/// quantiles of the value; rods without an answer are counted by reason. The row over all
+/// numbers also has the parameter with the strongest rank correlation with the value, and
+/// the one that best predicts by one threshold whether the claim holds.
 std::vector<Row> summarize(std::span<const Row> rows);
 
 std::span<const Column> summary_columns();

@@ -1,9 +1,8 @@
-// Largest stable step of backward_euler with the exact tangent, hair by hair.
+// Largest stable step of backward_euler with the exact tangent, rod by rod.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <span>
 #include <string>
 
@@ -26,38 +25,37 @@ constexpr Claim claims[] = {
 constexpr double t_end = 0.5;  // s
 // Half a decade apart. Stability is not monotone: a step counts when all shorter ones of
 // the ladder are stable. One shorter step decides between two models that are both
-// unstable at the first of those; for other hairs it would take most of the study's time.
+// unstable at the first of those; for other rods it would take most of the study's time.
 constexpr std::array ladder{1e-3, 0.01 / 3, 0.01, 0.1 / 3, 0.1};
 constexpr double shorter = 1e-3 / 3;
 constexpr double nothing_stable = 1e-4;  // s, value of "none of these" in ratios
 
-/// As strand_speed_bound, where wind w drives: with drag c = nu/(rho A) per mass, u u' <=
-/// c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2, the square of the root mean
-/// square speed. The tip's speed is at most sqrt(30) of that.
-double wind_speed_bound(const Hair& hair, const Parameters& p) {
-  const double area = std::numbers::pi * hair.radius * hair.radius;
-  const double c = wind_drag / (p.number("density_kg_m3") * area);
-  const double w = wind_speed(hair);
+/// As strand_speed_bound, where air moves at w or less relative to the clamp: with drag
+/// c = nu/(rho A) per mass, u u' <= c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2,
+/// the square of the root mean square speed. The tip's speed is at most sqrt(30) of that.
+double speed_bound(const Rod& rod, const Parameters& p) {
+  const double c = rod.drag / rod.mass_per_length();
+  const double w = rod.drive == Drive::wind ? wind_speed(rod) : root_speed(rod);
   const double calm = strand_speed_bound(p, t_end);  // sqrt(30) sqrt(2 g L)
   return std::sqrt(calm * calm + 30 * c * w * w * t_end / 2);
 }
 
-StabilityBounds bounds_of(const Hair& hair, const Parameters& p, System& system) {
-  const bool driven = hair.drive != Drive::release;
+StabilityBounds bounds_of(const Rod& rod, const Parameters& p, System& system) {
+  const bool driven = rod.drive != Drive::release;
   const StrandScene scene{"family", "", {}, t_end, StabilityBounds::none, driven};
   StabilityBounds bounds = stability_bounds(scene, p, system);
-  if (hair.drive == Drive::wind) bounds.speed = wind_speed_bound(hair, p);
+  if (driven) bounds.speed = speed_bound(rod, p);
   return bounds;
 }
 
 /// The longest of ascending steps such that it and all shorter ones are stable; 0 if
 /// there is none.
-double longest_stable(const Hair& hair, std::string_view model, std::string_view modes,
+double longest_stable(const Rod& rod, std::string_view model, std::string_view modes,
                       std::span<const double> steps) {
-  const int elements = elements_of(hair);
-  const auto system = make_system(hair, model, elements, modes);
+  const int elements = elements_of(rod);
+  const auto system = make_system(rod, model, elements, modes);
   const StabilityBounds bounds =
-      bounds_of(hair, parameters_of(hair, model, elements), *system);
+      bounds_of(rod, parameters_of(rod, model, elements), *system);
   const State start = perturbed_start(*system);
   const auto broken = std::ranges::find_if_not(steps, [&](double dt) {
     Options options;
@@ -67,19 +65,19 @@ double longest_stable(const Hair& hair, std::string_view model, std::string_view
   return broken == steps.begin() ? 0 : *std::prev(broken);
 }
 
-std::vector<Row> run(const Hair& hair, const Row& row) {
-  double twisting = longest_stable(hair, "super_helix", "bend_twist", ladder);
-  const double bending = longest_stable(hair, "super_helix", "bend", ladder);
-  double der = longest_stable(hair, "der", "", ladder);
+std::vector<Row> run(const Rod& rod, const Row& row) {
+  double twisting = longest_stable(rod, "super_helix", "bend_twist", ladder);
+  const double bending = longest_stable(rod, "super_helix", "bend", ladder);
+  double der = longest_stable(rod, "der", "", ladder);
   Row with = row;
-  with.set("elements", elements_of(hair));
+  with.set("elements", elements_of(rod));
   const auto longest = [&](const Claim& claim, double dt) {
     return answer(with, claim, std::max(dt, nothing_stable), dt >= ladder.back());
   };
   const std::array rows{longest(claims[0], twisting), longest(claims[1], bending)};
   if (twisting == 0 && der == 0) {
-    twisting = longest_stable(hair, "super_helix", "bend_twist", {&shorter, 1});
-    der = longest_stable(hair, "der", "", {&shorter, 1});
+    twisting = longest_stable(rod, "super_helix", "bend_twist", {&shorter, 1});
+    der = longest_stable(rod, "der", "", {&shorter, 1});
   }
   const Row both = Row(with).set("reduced", twisting).set("maximal", der);
   const double ratio = std::max(twisting, nothing_stable) / std::max(der, nothing_stable);

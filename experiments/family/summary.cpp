@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <string>
 
 #include "experiments/family/family.h"
 
@@ -10,13 +13,16 @@ namespace {
 constexpr Column columns[] = {
     {"study", "the piece of work"},
     {"claim", "the statement's name"},
+    {"family", "hair, or rods of other materials"},
     {"model", "where it is about one"},
     {"integrator", "where it is about one"},
-    {"statement", "what is claimed of every hair"},
+    {"range", "gravito-bending numbers of the rods that are counted"},
+    {"statement", "what is claimed of every rod"},
     {"value", "what the quantiles are of"},
-    {"hairs", "hairs that answered"},
-    {"no_answer", "hairs that did not: no reference, unresolved, ..."},
-    {"holds_share", "share of the hairs that answered for which the claim holds"},
+    {"hairs", "rods that answered"},
+    {"no_answer", "rods that did not"},
+    {"reasons", "their number by status: no_reference, unresolved, ..."},
+    {"holds_share", "share of the rods that answered for which the claim holds"},
     {"decile_1", "a tenth of the values lie below"},
     {"median", "of the values"},
     {"decile_9", "a tenth of the values lie above"},
@@ -28,17 +34,17 @@ constexpr Column columns[] = {
     {"threshold", "of that parameter"},
     {"share_below", "share for which the claim holds below the threshold"},
     {"share_above", "the same above it"},
-    {"told_right_share", "share of the hairs that this threshold tells rightly"},
+    {"told_right_share", "share of the rods that this threshold tells rightly"},
 };
 
-// Minimum on either side of a threshold: fewer hairs are separated by chance.
+// Minimum on either side of a threshold: fewer rods are separated by chance.
 constexpr std::size_t least_hairs = 4;
 
-constexpr std::string_view numbers_of_a_hair[] = {
-    "gravito_bending",      "winding_rad", "internal_friction_kg_m3_s",
-    "ellipticity",          "length_m",    "radius_m",
-    "youngs_modulus_pa",    "drive_level", "frequency_hz",
-    "natural_curvature_1_m"};
+constexpr std::string_view numbers_of_a_rod[] = {
+    "gravito_bending", "winding_rad",          "damping_time_s",
+    "drag_kg_m_s",     "ellipticity",          "length_m",
+    "radius_m",        "youngs_modulus_pa",    "drive_level",
+    "frequency_hz",    "natural_curvature_1_m"};
 
 /// Ranks of the values in ascending order; ties share their mean.
 std::vector<double> ranks_of(std::span<const double> x) {
@@ -55,7 +61,7 @@ std::vector<double> ranks_of(std::span<const double> x) {
   return ranks;
 }
 
-/// A parameter of all hairs, or one value of the drive as 0 or 1.
+/// A parameter of all rods, or one value of the drive as 0 or 1.
 struct Predictor {
   std::string name;
   std::vector<double> x;
@@ -68,7 +74,7 @@ std::vector<Predictor> predictors_of(const std::vector<const Row*>& rows) {
     for (const Row* row : rows) p.x.push_back(value_of(*row));
     all.push_back(std::move(p));
   };
-  for (const std::string_view column : numbers_of_a_hair) {
+  for (const std::string_view column : numbers_of_a_rod) {
     add(std::string(column), [&](const Row& row) { return row.number(column); });
   }
   for (int i = 0; i < drives; ++i) {
@@ -100,11 +106,31 @@ void describe_decision(const std::vector<const Row*>& rows,
 
 /// What a claim is about.
 struct Subject {
-  std::string_view model, integrator;  // empty: it compares its own
+  std::string_view family, model, integrator;  // no model: it compares its own
   bool operator==(const Subject&) const = default;
 };
 
-Subject subject_of(const Row& row) { return {row.text("model"), row.text("integrator")}; }
+Subject subject_of(const Row& row) {
+  return {row.text("family"), row.text("model"), row.text("integrator")};
+}
+
+/// Gravito-bending numbers from `low` to below `high`.
+struct Numbers {
+  std::string_view name;
+  double low, high;
+};
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+constexpr Numbers everything{"all", 0, unbounded};
+constexpr Numbers ranges[] = {everything,
+                              {"below 10", 0, 10},
+                              {"10 to 100", 10, 100},
+                              {"100 to 1000", 100, 1000},
+                              {"above 1000", 1000, unbounded}};
+
+bool contains(const Numbers& range, const Row& row) {
+  const double number = row.number("gravito_bending");
+  return range.low <= number && number < range.high;
+}
 
 /// In the order of their first rows; one without a name if there are no rows.
 std::vector<Subject> subjects_of(const Claim& claim, std::span<const Row> rows) {
@@ -119,20 +145,34 @@ std::vector<Subject> subjects_of(const Claim& claim, std::span<const Row> rows) 
   return all;
 }
 
+/// "3 no_reference, 1 short_horizon"
+std::string listed(const std::map<std::string_view, int>& reasons) {
+  std::string text;
+  for (const auto& [status, count] : reasons) {
+    text +=
+        (text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(status);
+  }
+  return text;
+}
+
 Row summary_of(const Study& study, const Claim& claim, const Subject& subject,
-               std::span<const Row> rows) {
+               const Numbers& range, std::span<const Row> rows) {
   Row summary;
-  summary.set("study", study.id).set("claim", claim.id);
+  summary.set("study", study.id).set("claim", claim.id).set("family", subject.family);
   summary.set("model", subject.model).set("integrator", subject.integrator);
+  summary.set("range", range.name);
   summary.set("statement", claim.statement).set("value", claim.value);
   std::vector<const Row*> answered;
   std::vector<double> values;
   std::vector<bool> holds;
   int silent = 0;
+  std::map<std::string_view, int> reasons;
   for (const Row& row : rows) {
     if (row.text("claim") != claim.id || subject_of(row) != subject) continue;
+    if (!contains(range, row)) continue;
     if (!row.ok()) {
       ++silent;
+      ++reasons[row.status()];
       continue;
     }
     answered.push_back(&row);
@@ -140,12 +180,13 @@ Row summary_of(const Study& study, const Claim& claim, const Subject& subject,
     holds.push_back(row.text("holds") == "true");
   }
   summary.set("hairs", answered.size()).set("no_answer", silent);
+  summary.set("reasons", listed(reasons));
   if (answered.empty()) return summary;
   const auto held = static_cast<double>(std::ranges::count(holds, true));
   summary.set("holds_share", held / static_cast<double>(holds.size()));
   summary.set("decile_1", quantile(values, 0.1)).set("median", quantile(values, 0.5));
   summary.set("decile_9", quantile(values, 0.9));
-  describe_decision(answered, values, holds, summary);
+  if (range.name == everything.name) describe_decision(answered, values, holds, summary);
   return summary;
 }
 
@@ -178,9 +219,9 @@ Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
   std::ranges::stable_sort(order, {}, [x](std::size_t i) { return x[i]; });
   const auto count = static_cast<double>(x.size());
   const auto all = static_cast<double>(std::ranges::count(holds, true));
-  // A rule must classify more hairs correctly than a constant.
+  // A rule must classify more rods correctly than a constant.
   Stump best{.right = std::max(all, count - all) / count};
-  double below = 0;  // hairs below the threshold for which the claim holds
+  double below = 0;  // rods below the threshold for which the claim holds
   for (std::size_t n = 1; n < order.size(); ++n) {
     below += holds[order[n - 1]] ? 1 : 0;
     const double low = x[order[n - 1]], high = x[order[n]];
@@ -199,7 +240,9 @@ std::vector<Row> summarize(std::span<const Row> rows) {
   for (const Study& study : studies()) {
     for (const Claim& claim : study.claims) {
       for (const Subject& subject : subjects_of(claim, rows)) {
-        all.push_back(summary_of(study, claim, subject, rows));
+        for (const Numbers& range : ranges) {
+          all.push_back(summary_of(study, claim, subject, range, rows));
+        }
       }
     }
   }

@@ -40,28 +40,28 @@ constexpr int samples = 12, elements = 20;
 constexpr double fine_step = 5e-5;  // s, of the references
 constexpr double most_gap = 1e-3;   // over the length
 
-/// The springs of the hair, straightened: natural curls of springs need springs of their
+/// The springs of the rod, straightened: natural curls of springs need springs of their
 /// own.
-TipRun run_at(const Hair& hair, std::string_view integrator, const Options& options) {
-  const auto system = make_system(straightened(hair), "mass_spring", elements);
+TipRun run_at(const Rod& rod, std::string_view integrator, const Options& options) {
+  const auto system = make_system(straightened(rod), "mass_spring", elements);
   return run_tip(integrator, *system, options, t_end, samples);
 }
 
-double error_at(const Hair& hair, std::string_view integrator, const Pace& pace,
+double error_at(const Rod& rod, std::string_view integrator, const Pace& pace,
                 In reference) {
   Options options;
   options.step = pace.dt;
   integrators::apply(options, "sweeps", pace.sweeps, "family");
-  const TipRun run = run_at(hair, integrator, options);
-  return tip_error(run.tip, reference, hair.length);
+  const TipRun run = run_at(rod, integrator, options);
+  return tip_error(run.tip, reference, rod.length);
 }
 
-std::vector<Row> run(const Hair& hair, const Row& row) {
+std::vector<Row> run(const Rod& rod, const Row& row) {
   Options fine;
   fine.step = fine_step;
-  const TipRun reference = run_at(hair, "bdf2", fine);
-  const TipRun other = run_at(hair, "generalized_alpha", fine);
-  const double gap = tip_error(other.tip, reference.tip, hair.length);
+  const TipRun reference = run_at(rod, "bdf2", fine);
+  const TipRun other = run_at(rod, "generalized_alpha", fine);
+  const double gap = tip_error(other.tip, reference.tip, rod.length);
   std::vector<Row> rows;
   for (std::size_t i = 0; i < std::size(claims); ++i) {
     Row of_claim = row;
@@ -72,8 +72,8 @@ std::vector<Row> run(const Hair& hair, const Row& row) {
       continue;
     }
     of_claim.set("gap", gap);
-    const double euler = error_at(hair, "xpbd", paces[i], reference.tip);
-    const double order2 = error_at(hair, "xpbd_bdf2", paces[i], reference.tip);
+    const double euler = error_at(rod, "xpbd", paces[i], reference.tip);
+    const double order2 = error_at(rod, "xpbd_bdf2", paces[i], reference.tip);
     if (!std::isfinite(euler)) {
       rows.push_back(no_answer(of_claim, claims[i], "not_met", "xpbd itself diverges"));
     } else {

@@ -1,4 +1,4 @@
-// Effect of omitting twist, for the straightened and the original hair.
+// Effect of omitting twist, for the straightened and the original rod.
 #include <cmath>
 #include <optional>
 
@@ -10,20 +10,20 @@ namespace {
 
 constexpr Claim claims[] = {
     {"twist_straight_negligible",
-     "leaving twist out moves the tip of the straightened hair by less than 1 %",
-     "root mean square change of the tip over the length, straightened hair"},
-    {"twist_curly_matters", "leaving twist out moves the tip of the hair by over 1 %",
-     "root mean square change of the tip over the length, the hair as it is"}};
+     "leaving twist out moves the tip of the straightened rod by less than 1 %",
+     "root mean square change of the tip over the length, straightened rod"},
+    {"twist_curly_matters", "leaving twist out moves the tip of the rod by over 1 %",
+     "root mean square change of the tip over the length, the rod as it is"}};
 
 constexpr double t_end = 0.4;  // s
-constexpr int samples = 24, elements = 20;
+constexpr int samples = 24;
 constexpr double bar = 0.01;
 constexpr double coarsest = 2e-3;  // s
 constexpr int halvings = 4;        // of a step without a solution
 
-std::optional<std::vector<double>> tip(const Hair& hair, std::string_view modes,
+std::optional<std::vector<double>> tip(const Rod& rod, std::string_view modes,
                                        double dt) {
-  const auto system = make_system(hair, "super_helix", elements, modes);
+  const auto system = make_system(rod, "super_helix", elements_of(rod), modes);
   Options options;
   options.step = dt;
   options.newton_tolerance = 1e-6;  // of the typical size
@@ -38,24 +38,24 @@ struct Change {
   double value, gap;
 };
 
-std::optional<Change> change_of(const Hair& hair) {
+std::optional<Change> change_of(const Rod& rod) {
   double dt = coarsest;
   for (int i = 0; i <= halvings; ++i, dt /= 2) {
-    const auto whole = tip(hair, "bend_twist", dt);
+    const auto whole = tip(rod, "bend_twist", dt);
     if (!whole) continue;
-    const auto part = tip(hair, "bend", dt), finer = tip(hair, "bend", dt / 2);
+    const auto part = tip(rod, "bend", dt), finer = tip(rod, "bend", dt / 2);
     if (!part || !finer) continue;
-    return Change{tip_error(*part, *whole, hair.length),
-                  tip_error(*part, *finer, hair.length)};
+    return Change{tip_error(*part, *whole, rod.length),
+                  tip_error(*part, *finer, rod.length)};
   }
   return {};
 }
 
-Row judged(const Hair& hair, Row row, const Claim& claim, bool over) {
-  const auto change = change_of(hair);
+Row judged(const Rod& rod, Row row, const Claim& claim, bool over) {
+  const auto change = change_of(rod);
   if (!change)
     return no_answer(row, claim, "solver_error", "no solution down to 0.125 ms");
-  row.set("elements", elements).set("gap", change->gap);
+  row.set("elements", elements_of(rod)).set("gap", change->gap);
   // Halving the step must not carry the value across the bar.
   if (std::abs(change->value - bar) <= change->gap) {
     return no_answer(row.set("value", change->value), claim, "unresolved",
@@ -64,9 +64,9 @@ Row judged(const Hair& hair, Row row, const Claim& claim, bool over) {
   return answer(row, claim, change->value, (change->value > bar) == over);
 }
 
-std::vector<Row> run(const Hair& hair, const Row& row) {
-  return {judged(straightened(hair), row, claims[0], false),
-          judged(hair, row, claims[1], true)};
+std::vector<Row> run(const Rod& rod, const Row& row) {
+  return {judged(straightened(rod), row, claims[0], false),
+          judged(rod, row, claims[1], true)};
 }
 
 }  // namespace

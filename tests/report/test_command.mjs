@@ -21,7 +21,7 @@ before(() => {
 after(() => remove(directory));
 
 const figures = {
-  family: ['gravito-bending number', 'holds'],
+  family: ['gravito-bending number', 'not true'],
   drift_cost: ['wall time (s)', 'largest violation max |g| (m)'],
   drift_heatmap: ['alpha (1/s²)', 'beta (1/s)'],
   drift_recovery: ['beta² / (4 alpha)', 'recovery time (s)'],

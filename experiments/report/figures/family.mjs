@@ -18,15 +18,17 @@ const statements = {
   reduced_cheaper: ['Time at 1 %: der over super helix', 'ratio of times', 1],
 };
 
+const verdicts = ['true', 'not true'];
 const least_drawn = 1e-5; // below it nothing is left of a change
 
 const rows_of = (tables) =>
   (tables.family ?? [])
+    .filter((row) => row.family === 'hair')
     .filter((row) => succeeded(row) && row.claim in statements && is_positive(row.value))
     .map((row) => ({
       ...row,
       shown: Math.max(row.value, least_drawn),
-      verdict: is_set(row.holds) ? 'holds' : 'does not hold',
+      verdict: verdicts[is_set(row.holds) ? 0 : 1],
     }));
 
 // Runs by tolerance of the whole family, where there are those, stand for those of --quick.
@@ -36,19 +38,18 @@ export function family_findings({ family_summary = [], family_tolerance_summary 
     ...family_summary.filter((row) => !whole || row.study !== 'tolerance'),
     ...family_tolerance_summary,
   ]
-    .filter((row) => row.hairs > 0)
+    .filter((row) => row.hairs > 0 && row.range === 'all')
     .map(
       (row) =>
         `${row.statement.charAt(0).toUpperCase()}${row.statement.slice(1)}` +
         `${row.model ? ` (${row.model}, ${row.integrator})` : ''}: for ` +
-        `${format_number(100 * row.holds_share, 2)} % of ${row.hairs} hairs; ` +
+        `${format_number(100 * row.holds_share, 2)} % of ${row.hairs} ` +
+        `${row.family === 'hair' ? 'hairs' : 'rods of other materials'}; ` +
         `median ${format_number(row.median)}, a tenth below ${format_number(row.decile_1)}, ` +
         `a tenth above ${format_number(row.decile_9)}` +
         `${row.no_answer > 0 ? `; ${row.no_answer} gave no answer` : ''}.`,
     );
 }
-
-const verdicts = ['holds', 'does not hold'];
 
 function panel(rows, claim, { panel_width, legend, theme, x }) {
   const [title, axis, bar] = statements[claim];
@@ -77,6 +78,8 @@ function panel(rows, claim, { panel_width, legend, theme, x }) {
             ['hair', 'hair'],
             ['value', axis, '.3g'],
             ['gravito_bending', 'gravito-bending number', '.3g'],
+            ['kind', 'group'],
+            ['state', 'dry or wet'],
             ['drive', 'drive'],
             ['length_m', 'length (m)', '.3g'],
             ['natural_curvature_1_m', 'natural curvature (1/m)', '.3g'],
@@ -93,9 +96,9 @@ export const family = {
   title: 'Statements on a family of hairs',
   table: 'family',
   caption: `What each statement is about, for every hair that gave an answer, against the hair's
-    gravito-bending number. The dashed line is where the statement begins to hold. Hairs are
-    drawn from a Latin hypercube over length, radius, stiffness, ellipticity, curl, friction and
-    drive. Made from family.csv.`,
+    gravito-bending number. The dashed line is the value from which on, or up to which, the
+    statement is true. Hairs are drawn from measured distributions of human hair. Made from
+    family.csv.`,
 
   rows: rows_of,
 
@@ -129,6 +132,6 @@ export const family = {
     const rows = rows_of(tables);
     return `One panel for each of ${distinct(rows.map((row) => row.claim)).length} statements: its
       value for up to ${distinct(rows.map((row) => row.hair)).length} hairs, log scale, against
-      the gravito-bending number; the mark says whether the statement holds.`;
+      the gravito-bending number; the mark says whether the statement is true.`;
   },
 };

@@ -1,6 +1,6 @@
 const of_family_by_tolerance = {
   command:
-    'family --set study=tolerance --models super_helix,articulated_chain,der ' +
+    'family --set study=tolerance family=hair --models super_helix,articulated_chain,der ' +
     '--out results/family_tolerance.csv',
   program: 'family',
   optional: true,
@@ -84,14 +84,14 @@ export const known_tables = {
   },
   family: {
     title: 'Statements on a family of hairs',
-    required: ['study', 'claim', 'hair', 'gravito_bending', 'value', 'holds', 'status'],
+    required: ['study', 'claim', 'family', 'hair', 'gravito_bending', 'value', 'holds', 'status'],
     numeric: ['hair', 'gravito_bending', 'value', 'reduced', 'maximal', 'gap'],
     command: './tress run',
     program: 'family',
   },
   family_summary: {
     title: 'Statements on a family of hairs, distribution',
-    required: ['claim', 'statement', 'hairs', 'holds_share', 'median'],
+    required: ['claim', 'family', 'range', 'statement', 'hairs', 'holds_share', 'median'],
     numeric: ['hairs', 'no_answer', 'holds_share', 'decile_1', 'median', 'decile_9'],
     command: './tress run',
     program: 'family',
@@ -105,7 +105,7 @@ export const known_tables = {
   },
   family_tolerance_summary: {
     title: 'Runs by tolerance on a family of hairs, distribution',
-    required: ['claim', 'model', 'integrator', 'hairs', 'holds_share', 'median'],
+    required: ['claim', 'family', 'range', 'model', 'integrator', 'hairs', 'holds_share', 'median'],
     numeric: ['hairs', 'no_answer', 'holds_share', 'decile_1', 'median', 'decile_9'],
     ...of_family_by_tolerance,
   },
