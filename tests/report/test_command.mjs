@@ -26,7 +26,7 @@ const figures = {
   drift_heatmap: ['alpha (1/s²)', 'beta (1/s)'],
   drift_recovery: ['beta² / (4 alpha)', 'recovery time (s)'],
   work_precision: ['wall time per simulated second (s/s)', 'relative error'],
-  tolerance: ['tolerance', 'achieved over asked', 'esdirk43'],
+  tolerance: ['tolerance', 'error over tolerance', 'esdirk43'],
   bdf_order: ['relative error', 'steps', 'wall time (s)'],
   stability_limit: ['largest stable dt (ms)', 'elements', '≥ 100', '33'],
   cost_by_model: ['wall time per simulated second (ms)', 'super helix'],

@@ -74,9 +74,9 @@ test('ControlFindings_CountTheRunsWithinTheBoundsAndNameTheWorst', () => {
     by_tolerance('esdirk43', 1e-3, null, { status: 'solver_error' }),
   ];
   assert.deepEqual(control_findings({ work_precision }), [
-    'tr_bdf2: achieved over asked 0.04 to 2, between 0.05 and 1 in 1 of 3 runs; above what was ' +
-      'asked in 1, most on super helix (swing, 1e-4: 2).',
-    'esdirk43: achieved over asked 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
+    'tr_bdf2: error over tolerance 0.04 to 2, between 0.05 and 1 in 1 of 3 runs; above the ' +
+      'tolerance in 1, most on super helix (swing, 1e-4: 2).',
+    'esdirk43: error over tolerance 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
   ]);
   assert.deepEqual(control_findings({}), []);
 });

@@ -53,7 +53,7 @@ export const tolerance = {
     const ratios = rows.map((row) => row.achieved_over_asked);
     const y = log_channel(
       'achieved_over_asked',
-      'achieved over asked',
+      'error over tolerance',
       log_extent([...ratios, bounds.least, bounds.most], 4),
     );
     const series = series_channels('integrator', 'integrator', style, legend);
@@ -63,7 +63,7 @@ export const tolerance = {
       ['model', 'model'],
       ['integrator', 'integrator'],
       ['tolerance', 'tolerance'],
-      ['achieved_over_asked', 'achieved over asked', '.3f'],
+      ['achieved_over_asked', 'error over tolerance', '.3f'],
       ['steps', 'steps'],
       ['rejected', 'rejected'],
     ]);

@@ -81,6 +81,12 @@ export function answers(tables, root) {
   };
 }
 
+// A page without the marks of its regions of inputs.
+const without_marks = (text) =>
+  text
+    .replace(/^<!-- (?:inputs: [^>]*|end of inputs) -->\n/gm, '')
+    .replace(/ ?<!-- (?:inputs: [^>]*|end of inputs) -->/g, '');
+
 // The same tables; the name of each that is read goes into `read`.
 const watched = (tables, read) =>
   new Proxy(tables, {
@@ -100,7 +106,9 @@ export function written_pages(root) {
     const text = readFileSync(join(root, template), 'utf8');
     problems.push(...untraced(template, text));
     const read = new Set();
-    const filled = fill(text, template, answers(watched(tables, read), root)).trimEnd();
+    const filled = without_marks(
+      fill(text, template, answers(watched(tables, read), root)),
+    ).trimEnd();
     const source = provenance([...read], root);
     return {
       page,

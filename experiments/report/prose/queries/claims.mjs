@@ -30,8 +30,8 @@ export const equal_elements = asserted(
     'elements there, `cantilever_uniform` does not',
 );
 
-// Of backward Euler at its longest step, over strand models: how much of what is stable and
-// has a reference is accurate.
+// Of backward Euler at its longest step, over all models: how much of what is stable and has
+// a reference is accurate.
 export function stable_not_accurate(tables) {
   const rows = judged(tables).filter(
     (row) => row.integrator === 'backward_euler' && !by_tolerance(row) && survives(row),

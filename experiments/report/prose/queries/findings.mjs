@@ -13,12 +13,15 @@ import { swing_findings } from '../../src/findings/swing.mjs';
 import { bdf_findings, field_table, order_table, work_findings } from '../../src/findings/work.mjs';
 import { bullets, table } from '../markdown.mjs';
 
-const most = 12; // the page has the rest
+const usual_most = 12; // the report page has the rest
 
-const listed = (sentences) => (tables) => {
+const listed = (sentences, most = usual_most) => (tables) => {
   const all = sentences(tables);
   if (all.length === 0) throw new Error('the tables hold no rows for these sentences');
-  return bullets(all.slice(0, most));
+  const rest = all.length - most;
+  return bullets(
+    rest > 0 ? [...all.slice(0, most), `${rest} more sentences are on the report page.`] : all,
+  );
 };
 
 // With the figure, which there is only where the table has such rows.
@@ -45,5 +48,6 @@ export const scaling = listed(scaling_findings);
 export const stability = listed(stability_findings);
 export const swing = listed(swing_findings);
 export const transport = listed(transport_findings);
-export const validation = listed(validation_findings);
+// Sorted by success: without its end the list would leave out the models that fail.
+export const validation = listed(validation_findings, Infinity);
 export const work = listed(work_findings);

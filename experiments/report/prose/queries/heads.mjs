@@ -87,14 +87,28 @@ export const fastest = (tables, root) => {
   return `${words.join(', ')} on ${cpus} processors`;
 };
 
-/// Which of the tables' runs had more threads than processors.
+/// Which runs had more threads than processors, and where these cannot have been timed well.
 export const oversubscribed = (tables, root) => {
   const cpus = processors(root);
-  const count = heads(tables).filter((row) => row.threads > cpus).length;
-  return count === 0
-    ? 'No row has more threads than processors'
-    : `${count} of ${heads(tables).length} rows have more threads than the machine's ${cpus} processors, to show that the states ` +
-        'stay the same; their times are no guide';
+  const rows = heads(tables);
+  const over = rows.filter((row) => row.threads > cpus);
+  if (over.length === 0) return 'No row has more threads than processors';
+  const odd = over.flatMap((row) => {
+    const full = rows.find((other) =>
+      other.threads === cpus && ['strands', 'bits', 'lanes'].every((key) => other[key] === row[key]),
+    );
+    return full && full.cost_per_step_s > 1.1 * row.cost_per_step_s ? [{ row, full }] : [];
+  });
+  const words = odd.map(
+    ({ row, full }) =>
+      `${row.strands} hairs in ${row.bits} bits take ${number(1e3 * full.cost_per_step_s)} ms with ${full.threads} threads and ` +
+      `${number(1e3 * row.cost_per_step_s)} ms with ${row.threads}`,
+  );
+  return (
+    `${over.length} of ${rows.length} rows have more threads than the machine's ${cpus} processors, to show that the states ` +
+    `stay the same. More threads cannot be faster there` +
+    (odd.length > 0 ? `; where the table has them so, the times are unreliable (${words.join('; ')})` : '')
+  );
 };
 
 export const largest_head = (tables) => largest(tables)[0].strands;

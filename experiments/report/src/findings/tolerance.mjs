@@ -30,9 +30,9 @@ function method_sentence([method, rows]) {
   const kept = rows.filter(inside).length;
   const most = minimum_by(rows, (row) => -row.achieved_over_asked);
   const above = rows.filter((row) => row.achieved_over_asked > bounds.most);
-  const worst = above.length > 0 ? `; above what was asked in ${above.length}, most on ${place(most)}` : '';
+  const worst = above.length > 0 ? `; above the tolerance in ${above.length}, most on ${place(most)}` : '';
   return (
-    `${method}: achieved over asked ${range(rows)}, between ${format_number(bounds.least)} and ` +
+    `${method}: error over tolerance ${range(rows)}, between ${format_number(bounds.least)} and ` +
     `${format_number(bounds.most)} in ${kept} of ${rows.length} runs${worst}.`
   );
 }
