@@ -25,7 +25,7 @@ export const head_accuracy = {
   id: 'head_accuracy',
   title: 'Error of all hairs and time a frame',
   table: 'head_accuracy',
-  caption: `One panel per groom: runs that nothing beats in both the error that 95 of 100 hairs do not exceed and time a frame
+  caption: `One panel per groom: runs that nothing beats in both the error that 95 % of the sampled hairs do not exceed and time a frame
     by the number of hairs. Down and to the left is better. Large marks are the answers to a wanted error. Colour: whether some hairs are
     simulated and others follow them, or each is. Made from head_accuracy.csv.`,
 

@@ -30,12 +30,12 @@ const bound_lines = (y, theme) => ({
 
 export const tolerance = {
   id: 'tolerance',
-  title: 'The error asked for, and the one achieved',
+  title: 'Error over tolerance',
   table: 'work_precision',
   finding: control_finding,
   caption: `Largest time error at the compared instants, of
     a point over the length, divided by the tolerance; the reference has the same elements.
-    1 is what was asked for; dashed lines mark that and a twentieth of it. A flat line is an
+    At 1 the error is the tolerance; dashed lines mark that and a twentieth of it. A flat line is an
     error in proportion to the tolerance. Click a legend entry to keep that method and dim the
     other. Made from work_precision.csv; failed runs, and errors below ten times the gap of the
     references, are in the table only.`,
@@ -84,7 +84,7 @@ export const tolerance = {
 
   describe(tables) {
     const rows = this.rows(tables);
-    return `Log-log charts of the achieved over the asked time error against the tolerance, for
+    return `Log-log charts of the time error over the tolerance against the tolerance, for
       ${distinct(rows.map(panel_name)).length} pairs of scene and model and
       ${distinct(rows.map((r) => r.integrator)).length} methods.`;
   },
