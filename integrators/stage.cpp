@@ -85,7 +85,6 @@ Status Stage::correct(double t, In q_bar, In v_bar, Weights w, bool linearize, I
     if (s != Status::ok) return s;
     factored_ = w;
     matrix_ = dynamics_.matrix();
-    contraction_ = 0;
     if (updates_) updates_->forget();
   }
   Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
@@ -181,11 +180,6 @@ Status Stage::by_all_means(double t, In q_bar, In v_bar, Weights w, InOut a,
   return s;
 }
 
-/// Where the tangent is exact, rates grow with the corrections.
-double Stage::expected_rate(double correction) const noexcept {
-  return updates_ ? contraction_ * std::max(1.0, correction / contracted_) : 0;
-}
-
 Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
                      Matrix matrix, InOut a, InOut lambda) noexcept {
   place(q_bar, v_bar, w, a);
@@ -209,7 +203,7 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
     rate = rate_ = correction / previous;
     // The remaining error is the sum of the corrections to come: rate / (1 - rate) of
     // this one.
-    double expected = i > 0 ? rate : expected_rate(correction);
+    double expected = rate;
     if (foreseen) {
       const double next = squared_ * correction;
       expected = i > 0 ? std::min(next, rate) : next;
@@ -219,10 +213,6 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
                                   : correction;
     if (i > 0 && linearize && foresees_) {
       squared_ = std::max(i > 1 ? squared_ : 0.0, rate / previous);
-    }
-    if (i > 0 && !linearize) {
-      contraction_ = rate;
-      contracted_ = previous;
     }
     if (correction <= tolerance_) return Status::ok;
     if (error_left <= remaining_ && (!foreseen || contacts_->cases(t, q_, v_) == cases)) {

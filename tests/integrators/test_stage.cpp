@@ -173,23 +173,24 @@ TEST_F(StageThatLearns, ImprovesTheMatrixThatStagesShare) {
   // The second correction sees how far the first was off: of one unknown that is all.
   EXPECT_EQ(corrections(stage, 1, Stage::Matrix::own), 2);
   EXPECT_LT(error_, 1e-14);
-  EXPECT_EQ(corrections(stage, 0.1, Stage::Matrix::shared), 1);
+  EXPECT_EQ(corrections(stage, 0.1, Stage::Matrix::shared), 2);
   EXPECT_LT(error_, 1e-14);
-  EXPECT_EQ(corrections(stage, 0.1, Stage::Matrix::own),
-            2);  // of a new one none is known
 }
 
-TEST_F(StageThatLearns, EndsAfterOneCorrectionOnlyWhereTheRateAllowsIt) {
+/// The rate of the stage before would allow it: it is not that of other directions.
+TEST_F(StageThatLearns, DoesNotEndAfterOneCorrectionByTheRateOfAnotherStage) {
   Stage stage(dynamics_, options_, {.remaining = 1, .learns = true});
   EXPECT_EQ(corrections(stage, 1, Stage::Matrix::own), 2);
-  EXPECT_EQ(corrections(stage, 1, Stage::Matrix::shared), 2);  // 0.5 leaves 0.03
+  EXPECT_EQ(corrections(stage, 0.1, Stage::Matrix::shared), 2);
+  EXPECT_EQ(corrections(stage, 0.1, Stage::Matrix::own), 2);
 }
 
-TEST_F(StageThatLearns, OthersDoNeither) {
+TEST_F(StageThatLearns, OthersDoNot) {
   Stage stage(dynamics_, options_, {.remaining = 1});
   EXPECT_EQ(corrections(stage, 1, Stage::Matrix::own), 2);
   EXPECT_GT(error_, 1e-4);
   EXPECT_EQ(corrections(stage, 0.1, Stage::Matrix::shared), 2);
+  EXPECT_GT(error_, 1e-6);
 }
 
 // Newton's method on atan diverges from |q| > 1.392.
