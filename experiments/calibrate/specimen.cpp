@@ -44,6 +44,9 @@ Specimen specimen(const ModelEntry& model, const Parameters& parameters) {
     p.set(gamma_key, fmt::format("{}", properties.gamma));
     p.set(drag_key, fmt::format("{}", properties.nu));
     p.set(stiffness_key, fmt::format("{}", properties.youngs_modulus));
+    const double ratio = properties.youngs_modulus / parameters.number(stiffness_key);
+    const double shear = ratio * parameters.number("shear_modulus_pa");
+    if (shear > 0) p.set("shear_modulus_pa", fmt::format("{}", shear));  // 0: not given
     p.set("elements", fmt::format("{}", finer * p.whole("elements")));
     return BuiltStrand{model.make(p), guarded_strands(model, p)};
   };
