@@ -1,7 +1,14 @@
 // Which internal friction, air drag and Young's modulus follow from a measured
 // oscillation of a strand, and how accurately? Without measured data: does a fit recover
 // the true values of simulated records?
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "experiments/calibrate/calibrate.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
 
 namespace tress::experiments::calibrate {
@@ -54,6 +61,32 @@ bool finding(const Row& row) {
           row.status() == "space_error");
 }
 
+/// The fitted values with their intervals.
+void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  std::vector<std::string> lines;
+  for (const Row& row : rows) {
+    const auto value = [&](std::string_view what, std::string_view key,
+                           std::string_view unit) {
+      const auto end = [&](std::string_view side) {
+        return row.number(fmt::format("{}_{}_{}", key, side, unit));
+      };
+      const double fitted = row.number(fmt::format("{}_{}", key, unit));
+      const bool known = !(end("low") < end("high"));
+      return known ? fmt::format("{} {:.3g} (known)", what, fitted)
+                   : fmt::format("{} {:.3g} ({:.3g} to {:.3g} at {:.3g} %)", what, fitted,
+                                 end("low"), end("high"), 1e2 * row.number("confidence"));
+    };
+    const std::string fit = fmt::format(
+        "{}, {}: {} kg m^3/s, {} kg/(m s)", row.text("data"), row.text("model"),
+        value("internal friction", "internal_friction", "kg_m3_s"),
+        value("drag", "drag", "kg_m_s"));
+    lines.push_back(
+        row.ok() ? fit
+                 : fmt::format("{}; {}: {}", fit, row.status(), row.text("reason")));
+  }
+  print_answer(line, lines);
+}
+
 constexpr OwnOption command_options[] = {
     {"scene", "scenes",
      "your own scene says what the strand is; without data: what a "
@@ -82,6 +115,7 @@ int main(int argc, char** argv) {
       .unused = unused,
       .cases = calibrate_cases,
       .checks = check_calibrate_claims,
-      .finding = finding};
+      .finding = finding,
+      .conclude = answer};
   return run_experiment(experiment, argc, argv);
 }

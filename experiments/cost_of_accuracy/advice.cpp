@@ -61,7 +61,7 @@ std::string limits(const Row& row) {
         row.number("horizon_s"), row.number("duration_s"),
         1e2 * row.number("parted_rel"));
   }
-  if (row.number("asked_s") * 1.01 < row.number("duration_s")) {
+  if (row.number("asked_s") < row.number("duration_s")) {
     return fmt::format("valid for the first {:.3g} s of {:.3g} s, as asked: ",
                        row.number("horizon_s"), row.number("duration_s"));
   }

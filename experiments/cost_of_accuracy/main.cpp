@@ -82,7 +82,7 @@ constexpr Parameter own_settings[] = {
              "share what bends a strand at rest",
      .choices = "given|both"},
     {.name = "search_work",
-     .help = "of one scene's search, million elements x steps of all runs; 0: 1 with "
+     .help = "of one scene's search, million elements x steps of all runs; 0: 5 with "
              "--quick, 15 with advise, else 60",
      .number = 0,
      .min = 0,
@@ -204,7 +204,7 @@ StudyPlan plan_of(const CommandLine& line, const Settings& settings) {
   if (plan.strands == 0) plan.strands = plan.advise ? 3 : 1;
   plan.search_work = 1e6 * own.number("search_work");
   if (plan.search_work == 0) {
-    plan.search_work = line.quick ? 1e6 : plan.advise ? 1.5e7 : 6e7;
+    plan.search_work = line.quick ? 5e6 : plan.advise ? 1.5e7 : 6e7;
   }
   plan.longest_run = line.quick ? 2048 : 8192;
   plan.exhaustive = own.word("exhaustive") == "yes";

@@ -88,12 +88,13 @@ std::function<bool(const std::vector<double>&)> SceneMeasure::useless(
 
 SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
                                             int substeps, double most_s,
-                                            std::optional<Neighbour> as) const {
+                                            std::optional<Neighbour> as,
+                                            double most_own_s) const {
   const int stages = std::max(1, find_integrator(method.integrator).stages);
   const auto of = [&](int count) {
     Scene run = scene(method, count, substeps);
     if (as) run = neighbour(std::move(run), *as);
-    RunLimit limit{most_iterations * stages, most_s};
+    RunLimit limit{most_iterations * stages, most_s, most_own_s};
     if (count == elements) limit.useless = useless(reference(as));
     return tip_paths(run, 0, limit);
   };
@@ -128,9 +129,9 @@ WallTime SceneMeasure::repeated(const Method& method, int elements, int substeps
 }
 
 std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int substeps,
-                                         double most_s) const {
+                                         double most_s, double most_own_s) const {
   try {
-    const Outcome run = outcome(method, elements, substeps, most_s);
+    const Outcome run = outcome(method, elements, substeps, most_s, {}, most_own_s);
     const double wall_s =
         run.once_s < short_run
             ? repeated(method, elements, substeps, short_repeats, 0).least_s

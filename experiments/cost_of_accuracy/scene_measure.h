@@ -64,8 +64,9 @@ class SceneMeasure {
 
   /// One run, repeated a few times if it is short. Empty where the method cannot
   /// represent the scene, fails, or is abandoned.
+  /// `most_own_s`: a run that takes longer by ThreadTimer is of no use.
   std::optional<Trial> quick(const Method& method, int elements, int substeps,
-                             double most_s) const;
+                             double most_s, double most_own_s = never) const;
   /// The error with longer or shorter steps, or with changed data against their
   /// reference; infinite where `quick` is empty.
   double neighbour_error(const Method& method, int elements, int substeps,
@@ -86,7 +87,7 @@ class SceneMeasure {
   };
   Scene scene(const Method& method, int elements, int substeps) const;
   Outcome outcome(const Method& method, int elements, int substeps, double most_s = never,
-                  std::optional<Neighbour> as = {}) const;
+                  std::optional<Neighbour> as = {}, double most_own_s = never) const;
   double strands() const {  // that are compared
     return static_cast<double>(reference_.size()) / 3 /
            static_cast<double>(comparison_.frames + 1);

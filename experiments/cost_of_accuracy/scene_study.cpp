@@ -23,8 +23,12 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Factor by which load on the machine may lengthen a run.
-constexpr double slow_run = 1.5;
+/// Factor by which load on the machine may lengthen a run: its processor time.
+constexpr double slow_run = 1.15;
+
+/// No shorter run is ended because it takes longer than others (s): a busy machine would
+/// decide.
+constexpr double never_ended_s = 0.05;
 
 /// Fraction of a search's work; the rest refines the best runs found.
 constexpr double coarse_share = 0.6;
@@ -262,6 +266,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
         fmt::format("all targets are < {} x gap {:.3g}", study.trusted(), study.gap())));
     return rows;
   }
+  bool bounded = true;  // runs, by the time of the best
   Work work(study, deadline);
   SearchProgress progress(study, search_plan.targets.back(), heartbeat);
   heartbeat.doing("searching");
@@ -270,8 +275,13 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
       [&](std::size_t method, int elements, int substeps) {
         progress.say(search);
         work.add(study.methods[method], elements, substeps);
+        const Trial* best =
+            bounded ? cheapest(search.runs(), search_plan.targets.back()) : nullptr;
+        const double most_own_s =
+            best == nullptr ? never
+                            : std::max(never_ended_s, search_plan.slack * best->wall_s);
         auto run = measure.quick(study.methods[method], elements, substeps,
-                                 deadline.remaining_s());
+                                 deadline.remaining_s(), most_own_s);
         if (run) run->method = method;
         return run;
       },
@@ -289,6 +299,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
   search.refine();
   if (search.cut()) how += ", cut while refining";
   search.go_on(work.until(last_share));
+  bounded = false;  // what replaces a winner's choice may take longer
   Finalists finalists(search, study.given, study.methods, [&](const Trial& run) {
     // Once the clock has ended the search, the time of the one run that there is must do.
     if (work.late(last_share)) return WallTime{run.wall_s, slow_run - 1};

@@ -33,8 +33,9 @@ Row begin(const Study& study, std::string_view kind) {
   row.set("kind", kind).set("reference_gap", study.gap());
   if (study.refined) row.set("refined_gap", study.refined->tips.gap);
   row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut());
-  row.set("asked_s", static_cast<double>(study.asked) / study.comparison.rate);
-  row.set("duration_s", study.given.duration);
+  const double horizon = study.plan.horizon, duration = study.given.duration;
+  row.set("asked_s", horizon > 0 ? std::min(horizon, duration) : duration);
+  row.set("duration_s", duration);
   if (study.cut()) row.set("parted_rel", study.beyond);
   if (!study.how.empty()) row.set("references", study.how);
   return row;

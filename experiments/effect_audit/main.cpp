@@ -1,4 +1,6 @@
 // Which effects of a scene change the result, by how much, and what does each cost?
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +11,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/effect_audit/verdict.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 #include "simulation/files/parse.h"
@@ -215,6 +218,32 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
+/// What leaving out each effect does, over the whole scene.
+void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  std::vector<std::string> lines;
+  for (const Row& row : rows) {
+    const std::string_view scene = row.text("scene"), effect = row.text("effect");
+    if (!row.ok()) {
+      lines.push_back(
+          fmt::format("{}: {}: no answer: {}", scene, effect, row.text("reason")));
+    } else if (effect == "none") {
+      lines.push_back(fmt::format(
+          "{}: its elements and steps are off by {:.2g} % of the length, over the whole "
+          "scene; wanted accuracy {:.2g} %",
+          scene, 1e2 * row.number("discretisation_rel"),
+          1e2 * row.number("accuracy_rel")));
+    } else {
+      lines.push_back(fmt::format(
+          "{}: {}: {} (without it the tips move by {:.2g} % of the length, and {:.0f} % "
+          "of "
+          "the time goes)",
+          scene, effect, row.text("verdict"), 1e2 * row.number("error_without_rel"),
+          1e2 * row.number("cost_share")));
+    }
+  }
+  print_answer(line, lines);
+}
+
 /// A scene that fails without one of its effects is a valid result.
 bool finding(const Row& row) { return row.text("effect") != "none"; }
 
@@ -239,6 +268,7 @@ int main(int argc, char** argv) {
       .unused = unused,
       .cases = cases,
       .checks = judge,
-      .finding = finding};
+      .finding = finding,
+      .conclude = answer};
   return run_experiment(experiment, argc, argv);
 }

@@ -12,6 +12,7 @@
 #include "experiments/matrices/system_matrices.h"
 #include "experiments/problems/scene_files.h"
 #include "experiments/problems/strand_models.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 #include "integrators/catalogue.h"
@@ -267,6 +268,29 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
+/// Size, condition and frequencies of each matrix.
+void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  std::vector<std::string> lines;
+  for (const Row& row : rows) {
+    std::string text =
+        fmt::format("{} at {:.3g} s, {}: {}: {} x {}, {} entries", row.text("scene"),
+                    row.number("time_s"), row.text("model"), row.text("matrix"),
+                    row.text("rows"), row.text("cols"), row.text("nonzeros"));
+    if (row.has("condition")) {
+      text += fmt::format(", condition {:.2g}", row.number("condition"));
+    }
+    if (row.has("frequency_least_hz")) {
+      text += fmt::format(", frequencies {:.3g} to {:.3g} Hz",
+                          row.number("frequency_least_hz"),
+                          row.number("frequency_largest_hz"));
+    }
+    lines.push_back(row.ok() ? text
+                             : fmt::format("{}: no answer: {}", row.text("scene"),
+                                           row.text("reason")));
+  }
+  print_answer(line, lines);
+}
+
 constexpr Unused unused[] = {
     {"integrators", "the scenes say theirs"}, not_random, not_repeated};
 
@@ -287,6 +311,7 @@ int main(int argc, char** argv) {
       .settings = own_settings,
       .options = command_options,
       .unused = unused,
-      .cases = cases};
+      .cases = cases,
+      .conclude = answer};
   return run_experiment(experiment, argc, argv);
 }

@@ -15,6 +15,12 @@ void print_advice(const std::vector<std::string>& lines) {
   write_all(STDOUT_FILENO, text, "standard output");
 }
 
+void print_answer(const CommandLine& line, std::vector<std::string> lines) {
+  if (line.places.count("set:scenes") == 0 || line.out == "-") return;
+  lines.push_back("table: " + line.out);
+  print_advice(lines);
+}
+
 void write_advised(std::string_view experiment, const CommandLine& line,
                    const std::string& scene, const std::string& text) {
   const auto folder = std::filesystem::path(line.out).parent_path();

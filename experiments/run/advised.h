@@ -11,6 +11,11 @@ namespace tress::experiments {
 /// What to take, a line each, on standard output.
 void print_advice(const std::vector<std::string>& lines);
 
+/// The answer of a study about the user's own scene (--scene), a line each, and where the
+/// table is, on standard output. Nothing where the study chose its scenes, or where the
+/// table itself goes there.
+void print_answer(const CommandLine& line, std::vector<std::string> lines);
+
 /// Writes the scene that is advised as <scene>.advised.toml beside the table, and says
 /// so.
 void write_advised(std::string_view experiment, const CommandLine& line,

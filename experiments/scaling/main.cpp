@@ -1,7 +1,10 @@
 // What does a step cost against the number of elements: by solver, by tangent, by modes,
 // and on trees? Beside the published table of frames per second.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,7 +14,9 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_scenes.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
+#include "experiments/run/machine.h"
 #include "experiments/scaling/scaling.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
@@ -166,6 +171,32 @@ constexpr OwnOption command_options[] = {
      "strand)"},
 };
 
+/// The cost of a step at the largest size of each series, and how it grows.
+void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  std::map<std::string, const Row*> largest;
+  for (const Row& row : rows) {
+    if (!row.ok()) continue;
+    const std::string series =
+        fmt::format("{}: {} ({}), {}", row.text("structure"), row.text("model"),
+                    row.text("solver"), row.text("grows"));
+    const Row*& so_far = largest[series];
+    if (so_far == nullptr || row.number("unknowns") > so_far->number("unknowns")) {
+      so_far = &row;
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [series, row] : largest) {
+    lines.push_back(fmt::format(
+        "{}: a step of {} unknowns takes {:.3g} us{}", series, row->text("unknowns"),
+        1e6 * row->number("cost_per_step_s"),
+        row->has("exponent")
+            ? fmt::format(", and grows with the power {:.2f}", row->number("exponent"))
+            : ""));
+  }
+  if (const auto doubt = timing_doubt()) lines.push_back(*doubt);
+  print_answer(line, lines);
+}
+
 /// A model that cannot represent the scene of a file.
 bool finding(const Row& row) { return row.status() == "refused"; }
 
@@ -189,6 +220,7 @@ int main(int argc, char** argv) {
       .cases = cases,
       .derive = add_exponents,
       .checks = tell_scaling_figures,
-      .finding = finding};
+      .finding = finding,
+      .conclude = answer};
   return run_experiment(experiment, argc, argv);
 }

@@ -7,6 +7,7 @@
 
 #include "experiments/numerics/stability.h"
 #include "experiments/problems/formulations.h"
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
 #include "experiments/stability_limit/stability_limit.h"
 #include "simulation/files/parse.h"
@@ -44,7 +45,11 @@ constexpr Column columns[] = {
     {"tolerance_tightest", "tolerance: smallest that the work was enough for"},
     {"steps_usual", "tolerance: steps at 1e-3"},
     {"work_usual", "tolerance: work at 1e-3 (max_work)"},
-    {"t_end_s", "time simulated by a run, at least"},
+    {"t_end_s",
+     "time simulated by a run, at least; of your scene that of the run at dt_max, up to "
+     "5 "
+     "times the scene's duration"},
+    {"at_1_5", "your scene: what broke at 1.5 times dt_max; stable: nothing"},
     {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
     {"energy_gain_j", "largest gain of energy at dt_max"},
     {"speed_bound_m_s", "driven scenes: speed of the tip that is unstable"},
@@ -146,6 +151,10 @@ constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
 };
 
+void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  print_answer(line, stability_answer(rows));
+}
+
 /// A method without a stable step, or one that needs impractically many steps, is an
 /// expected result.
 bool finding(const Row& row) {
@@ -172,6 +181,7 @@ int main(int argc, char** argv) {
       .unused = unused,
       .cases = cases,
       .checks = check_claims,
-      .finding = finding};
+      .finding = finding,
+      .conclude = answer};
   return run_experiment(experiment, argc, argv);
 }

@@ -27,6 +27,16 @@ Broken broken_by(const Breach& breach) {
   return Broken::energy;
 }
 
+/// A step is judged over this many times the scene's duration, as far as so many steps
+/// reach: what grows slowly is seen late. The limit that is found is judged longer than
+/// those that are tried.
+constexpr double times_as_long = 5, tried_steps = 2000, confirmed_steps = 50000;
+
+/// Time over which a step is judged: `least` at least.
+double judged_s(const Scene& scene, double least, double dt, double most_steps) {
+  return std::max(least, std::min(times_as_long * scene.duration, most_steps * dt));
+}
+
 /// One step length or tolerance of one search: stable, broken, or empty when the work is
 /// used up.
 std::optional<StabilityRun> judge(Scene scene, double t_end, double& left) {
@@ -59,6 +69,34 @@ std::optional<StabilityRun> judge(Scene scene, double t_end, double& left) {
   return run;
 }
 
+/// What happens a little below and well above the limit: where something breaks below it,
+/// the limit falls until nothing does.
+void confirm(Scene scene, const SceneLimits& how, double t_end, FoundLimit& limit,
+             Row& row) {
+  constexpr double below = 0.9, above = 1.5;
+  double left = how.most_work, left_above = how.most_work;
+  const auto end = [&](double dt) { return judged_s(scene, t_end, dt, confirmed_steps); };
+  const auto run = [&](double dt, double& work) {
+    scene.options.step = dt;
+    return judge(scene, end(dt), work);
+  };
+  auto near = run(below * limit.step, left);
+  while (near && !near->stable() && limit.step > how.search.finest) {
+    row.set("dt_first_unstable_s", below * limit.step);
+    row.set("limited_by", name(near->broken));
+    limit.step *= below * below;
+    near = run(below * limit.step, left);
+  }
+  row.set("dt_max_s", limit.step);
+  // Without work left the search's own time is what is known.
+  row.set("t_end_s", near ? end(below * limit.step)
+                          : judged_s(scene, t_end, limit.step, tried_steps));
+  if (row.text("limited_by") == "cap") return;
+  if (const auto far = run(above * limit.step, left_above)) {
+    row.set("at_1_5", far->stable() ? "stable" : name(far->broken));
+  }
+}
+
 void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   const double t_end = std::min(how.horizon, scene.duration);
   row.set("t_end_s", t_end);
@@ -71,9 +109,10 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
         how.search,
         [&](double dt) {
           tried.options.step = dt;
-          return judge(tried, t_end, left);
+          return judge(tried, judged_s(scene, t_end, dt, tried_steps), left);
         },
         row);
+    if (limit) confirm(tried, how, t_end, *limit, row);
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
   }

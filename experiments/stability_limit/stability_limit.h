@@ -136,6 +136,11 @@ std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings)
 /// that the limits of explicit methods are those of the grid's highest frequency.
 void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
+/// The answer about scene files, a line for each method, the largest step first: its
+/// largest stable step, what is beyond it, the time over which that was judged, and the
+/// time of a simulated second.
+std::vector<std::string> stability_answer(const std::vector<Row>& rows);
+
 /// The claims about the table of stability_limit. Two limits are equal when the brackets
 /// of their bisections, from dt_max_s to dt_first_unstable_s, have a step in common; the
 /// deciding number is the ratio of the two dt_max_s of the worst pair.

@@ -2,9 +2,14 @@
 // from loose to tight, on problems with exact, published or doubly computed references;
 // the maximum order of BDF on the Beam; the tip of strands, in time error alone and
 // against the continuous rod, where other simulators were also measured; and any scene.
+#include <fmt/format.h>
+
 #include <iterator>
+#include <set>
+#include <string>
 #include <vector>
 
+#include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
 #include "experiments/work_precision/work_precision.h"
 #include "simulation/files/parse.h"
@@ -70,6 +75,41 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
+/// The cheapest run of each scene within 1 and 0.1 %.
+void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  std::set<std::string> scenes;
+  for (const Row& row : rows) scenes.emplace(row.text("scene"));
+  std::vector<std::string> lines;
+  for (const std::string& scene : scenes) {
+    for (const double target : {1e-2, 1e-3}) {
+      const Row* best = nullptr;
+      for (const Row& row : rows) {
+        if (row.text("scene") != scene || !(row.number("error_rel") <= target)) continue;
+        const bool cheaper = best == nullptr || row.number("wall_s_per_sim_s") <
+                                                    best->number("wall_s_per_sim_s");
+        if (row.ok() && cheaper) best = &row;
+      }
+      if (best == nullptr) {
+        lines.push_back(fmt::format("{}: no run within {:.3g} %", scene, 1e2 * target));
+        continue;
+      }
+      const std::string steps =
+          best->has("dt_s")
+              ? fmt::format("dt {:.3g} ms", 1e3 * best->number("dt_s"))
+              : fmt::format("tolerance {:.2g}",
+                            best->number(best->has("tolerance") ? "tolerance" : "rtol"));
+      lines.push_back(
+          fmt::format("{}: within {:.3g} % ({}, over the time compared): {}, {}, {}: "
+                      "{:.2g} % in {:.3g} "
+                      "ms per simulated second",
+                      scene, 1e2 * target, best->text("error_kind"), best->text("model"),
+                      best->text("integrator"), steps, 1e2 * best->number("error_rel"),
+                      1e3 * best->number("wall_s_per_sim_s")));
+    }
+  }
+  print_answer(line, lines);
+}
+
 /// A step or tolerance too loose for the method is the end of its curve, not an error.
 bool finding(const Row&) { return true; }
 
@@ -96,6 +136,7 @@ int main(int argc, char** argv) {
       .cases = cases,
       .derive = add_series_columns,
       .checks = check_claims,
-      .finding = finding};
+      .finding = finding,
+      .conclude = answer};
   return run_experiment(experiment, argc, argv);
 }

@@ -37,7 +37,8 @@ TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
   const ThreadTimer timer;
   for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
     if (f > 0) advance(world, scene.time_of(f));
-    if (timer.wall_s() > limit.wall_s) throw std::runtime_error("takes too long");
+    if (timer.wall_s() > limit.wall_s || timer.seconds() > limit.own_s)
+      throw std::runtime_error("takes too long");
     const Stats stats = world.stats();
     if (static_cast<double>(stats.newton_iterations) >
         limit.iterations_per_step * static_cast<double>(stats.steps)) {

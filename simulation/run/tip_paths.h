@@ -21,6 +21,7 @@ struct TipPaths {
 struct RunLimit {
   double iterations_per_step = std::numeric_limits<double>::infinity();  // Newton's, mean
   double wall_s = std::numeric_limits<double>::infinity();
+  double own_s = std::numeric_limits<double>::infinity();  // of ThreadTimer
   /// Whether the tips so far show that the run is of no use; empty: never.
   std::function<bool(const std::vector<double>& x)> useless = {};
 };

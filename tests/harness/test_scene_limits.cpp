@@ -8,6 +8,8 @@
 
 #include "contract/input_error.h"
 #include "experiments/stability_limit/stability_limit.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/scene.h"
 
 namespace tress::test_scene_limits {
 
@@ -85,6 +87,35 @@ TEST_F(SceneLimit, OfExplicitMethodsIsThatOfTheHighestFrequency) {
   }
   // Each is known to the resolution of the search, 5 %.
   EXPECT_NEAR(std::log(rk4 / verlet), std::log(std::sqrt(2.0)), 2 * std::log(1.05));
+}
+
+/// Whether steps of `dt` keep the guard silent to `t_end`, without being divided.
+bool holds(const std::string& text, double dt, double t_end) {
+  Scene scene = parse_scene(text, "scene.toml");
+  scene.options.step = dt;
+  scene.guard = true;
+  World world(scene);
+  return world.advance(t_end) == Status::ok && world.stats().rejected == 0;
+}
+
+// A limit that is told is true for longer than the scene lasts.
+TEST_F(SceneLimit, HoldsOverFiveTimesTheScene) {
+  const SceneLimits how{{.coarsest = 1e-3, .finest = 1e-7, .depth = 3}, 1e9, 0.05, 1, 1};
+  const auto found = rows(file("springs.toml", springs), {"rk4"}, how);
+  ASSERT_EQ(found.size(), 1u);
+  const Row& row = found.front();
+  const double dt = row.number("dt_max_s"), t_end = row.number("t_end_s");
+  EXPECT_NEAR(t_end, 0.25, 1e-9);  // 5 times 0.05 s
+  EXPECT_TRUE(holds(springs, 0.9 * dt, t_end));
+  EXPECT_FALSE(holds(springs, 1.5 * dt, t_end));
+  EXPECT_TRUE(row.has("at_1_5"));
+  EXPECT_NE(row.text("at_1_5"), "stable");
+
+  const auto lines = stability_answer(found);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], HasSubstr("springs, mass_spring: rk4 (tangent exact): stable up to "));
+  EXPECT_THAT(lines[0], HasSubstr(", unstable at 1.5 times that ("));
+  EXPECT_THAT(lines[0], HasSubstr("; judged over 250 ms; "));
 }
 
 TEST_F(SceneLimit, OfAMethodThatTheModelCannotTakeIsARefusal) {
