@@ -13,7 +13,8 @@ namespace tress {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file, const std::string& problem) {
-  throw InputError("cannot read: " + problem, file, "give an existing, readable file");
+  throw InputError("cannot read: " + problem, file.empty() ? "a file without name" : file,
+                   "give an existing, readable file");
 }
 
 class Descriptor {
