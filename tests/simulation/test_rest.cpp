@@ -25,11 +25,13 @@ struct Setting {
 
 Scene scene_of(const Setting& s) {
   return parse_scene(
-      fmt::format("title = \"at rest\"\nduration_s = 10\nframes_1_s = 1\nrest = "
-                  "\"inverse\"\nunstable = \"{}\"\n{}[model]\n{}\n[integrator]\n{}\n"
-                  "[material]\nname = \"hair.asian\"\nradius_m = 40e-6\n[strand]\n{}{}\n"
-                  "[root]\nmotion = \"fixed\"\n[effects.gravity]\n{}",
-                  s.unstable, s.top, s.model, s.integrator, s.strand, s.shape, s.effects),
+      fmt::format(
+          "title = \"at rest\"\nduration_s = 10\nframes_1_s = 1\nrest = "
+          "\"inverse\"\nunstable = \"{}\"\n{}[model]\n{}\n[integrator]\n{}\n"
+          "[material]\nname = \"hair.asian\"\nradius_m = 40e-6\npoisson_ratio = 0.48\n"
+          "[strand]\n{}{}\n"
+          "[root]\nmotion = \"fixed\"\n[effects.gravity]\n{}",
+          s.unstable, s.top, s.model, s.integrator, s.strand, s.shape, s.effects),
       "rest.toml");
 }
 
