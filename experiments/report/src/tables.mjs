@@ -1,6 +1,6 @@
 const of_family_by_tolerance = {
   command:
-    'family --set study=tolerance family=hair --models super_helix,articulated_chain,der ' +
+    'family --set study=tolerance --set family=hair --models super_helix,articulated_chain,der ' +
     '--out results/family_tolerance.csv',
   program: 'family',
   optional: true,
