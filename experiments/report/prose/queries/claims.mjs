@@ -39,10 +39,10 @@ export function stable_not_accurate(tables) {
   const longest = Math.max(...rows.map((row) => row.dt_s));
   const compared = rows.filter((row) => row.dt_s === longest && row.outcome !== not_compared);
   const accurate = compared.filter((row) => row.outcome === 'stable and accurate').length;
-  must(accurate < compared.length / 2, 'at its longest step backward Euler is stable far more often than accurate');
   return (
     `At ${time(longest)}, ${accurate} of the ${compared.length} stable runs of backward Euler that have a reference are accurate ` +
-    `(${percent(accurate / compared.length)}): the method damps what it cannot follow`
+    `(${percent(accurate / compared.length)})` +
+    (accurate < compared.length / 2 ? ': the method damps what it cannot follow' : '')
   );
 }
 
