@@ -133,7 +133,9 @@ bool wanted(const Kind& kind, int strands, HeadPack pack, int threads, Acting ac
   if (pack.lanes == 1 && strands > 20000) return false;
   if (pack.number == HeadNumber::float32 && !kind.narrow) return false;
   const bool widest = pack.lanes == (pack.number == HeadNumber::float64 ? 8 : 16);
-  if (threads > 1 && pack.lanes != 8 && !(widest && threads == 2)) return false;
+  if (threads > 1 && pack.lanes != 8 && !(first(kind) && widest && threads == 2)) {
+    return false;
+  }
   if (!first(kind) && (threads > 2 || !(widest || pack.lanes == 1))) return false;
   if (acting == Acting::drag) return true;
   if (!first(kind)) return false;
