@@ -38,7 +38,7 @@ struct ChainKind {
   /// The clamp's joint is half as long as others (reduced_strand()).
   static constexpr double first_stiffness = 2;
   static constexpr double rotors_of_root = 0, rotors_of_last = 1;
-  static constexpr bool straight = true;
+  static constexpr bool straight = true, eliminates = true;
   static double unit(double /*length*/) { return 1; }
   static double moment(double length) { return 1 / length; }
   /// Halves of two links' angles; `shape`: natural or initial.
@@ -138,12 +138,80 @@ struct ChainKind {
            r * sum.la * r.transposed()};
   }
 
+  /// With the turn y = W^T x of the link by the joint, in the link's axes, as its
+  /// unknown, x = D y, K and b the joint's stiffness in S and its moment, the link, which
+  /// answers accelerations (l, a + y) with the wrench (f, m) + [ll la; la^T aa], needs
+  ///
+  ///     y = -P (m + D^T b + la^T l + aa a),    P = (aa + D^T K D)^-1
+  ///
+  /// and passes on, where I - aa P = D^T K D P,
+  ///
+  ///     aa' = aa P D^T K D       m' = D^T K D P m - aa P D^T b
+  ///     la' = la P D^T K D       f' = f - la P (m + D^T b)
+  ///     ll' = ll - la P la^T
+  ///
+  /// A joint that is soft beside the inertia of its step passes on little but its own
+  /// stiffness. As I - H H_kk^-1 H^T that is a difference of numbers larger by aa/K, in
+  /// which rounding of the links' spin, whose inertia is smaller by the square of their
+  /// slenderness, leaves no digit; here nothing cancels, however soft or stiff the joint.
+  /// Without twist y is normal to n, about which the joint is stiff without bound: with
+  /// any stiffness about n in Q = (aa + D^T K D + k n n^T)^-1, and m_n = Q n/(n.Q n),
+  ///
+  ///     P = Q - Q n m_n^T,    I - aa P = D^T K D P + n m_n^T
+  template <class Bending, class Element>
+  static Sum eliminate(const Bending& by, bool twist, const Sum& all, Element& e) {
+    const Unknowns x(e.kept.turn, twist);
+    const T first = twist ? by.tangent.x : T(0);
+    const Matrix stiffer{
+        {first * x.of[0], by.tangent.y * x.of[1], by.tangent.z * x.of[2]}};
+    const Symmetric3<T> k = upper(stiffer.transposed(), x.turned);
+    const Vec moment =
+        x.turned * Vec{twist ? by.moment.x : T(0), by.moment.y, by.moment.z};
+    const Matrix inertia = full(all.aa);
+    Symmetric3<T> p = all.aa + k;
+    if (!twist) p = p + (k.xx + k.yy + k.zz) * squared(x.normal);
+    p = inverse(p);
+    Vec about;
+    if (!twist) {
+      const Vec turned = p * x.normal;
+      about = (T(1) / dot(x.normal, turned)) * turned;
+      p = p - upper(dyad(turned, about));
+    }
+    const Matrix shift = all.la * full(p), turn = inertia * full(p);
+    e.pivot = p;
+    e.of_force = all.la.transposed();
+    e.of_moment = inertia;
+    const Vec freed = p * all.moment;
+    e.unknown = Vec{} - freed - p * moment;
+    Sum passed;
+    passed.aa = upper(turn, full(k));
+    passed.la = shift * full(k);
+    passed.ll = all.ll - upper(shift, all.la);
+    passed.moment = k * freed - turn * moment;
+    passed.force = all.force - shift * (all.moment + moment);
+    if (!twist) {
+      passed.aa = passed.aa + upper(dyad(all.aa * about, x.normal));
+      passed.la = passed.la + dyad(all.la * about, x.normal);
+      passed.moment = passed.moment + dot(about, all.moment) * x.normal;
+    }
+    return passed;
+  }
+  template <class Element>
+  static Vec follow(const Element& e, bool twist, Vec& l, Vec& a) {
+    const Vec y = e.unknown - e.pivot * (e.of_force * l + e.of_moment * a);
+    leave(e.kept, y, l, a);
+    const Unknowns x(e.kept.turn, twist);
+    const T first = twist ? dot(x.of[0], y) : T(0);
+    return {first, dot(x.of[1], y), dot(x.of[2], y)};
+  }
+
   static void arrive(const Kept& e, Vec& l, Vec& a) {
     l = e.rotation.back(l);
     a = e.rotation.back(a);
   }
-  static void leave(const Kept& e, const Vec& own, Vec& l, Vec& a) {
-    a = a + e.turn.back(own);
+  /// `turn`: of the link by its joint, in its axes.
+  static void leave(const Kept& e, const Vec& turn, Vec& l, Vec& a) {
+    a = a + turn;
     l = l + cross(a, e.position);
   }
 
@@ -195,6 +263,26 @@ struct ChainKind {
   };
 
  private:
+  /// The unknowns of a turn y, x_k = of[k].y: y = sum x_k w_k, w_k the rows of W; without
+  /// twist of the last two, and normal to `normal`.
+  struct Unknowns {
+    Unknowns(const Matrix& w, bool twist) {
+      const Vec across = cross(w.row[1], w.row[2]), first = twist ? w.row[0] : across;
+      const T by = T(1) / dot(first, across);
+      of[0] = by * across;
+      of[1] = by * cross(w.row[2], first);
+      of[2] = by * cross(first, w.row[1]);
+      turned = Matrix::columns(of[0], of[1], of[2]);
+      if (!twist) normal = square_root(by) * across;
+    }
+    Vec of[3];      // rows of D
+    Matrix turned;  // D^T
+    Vec normal;
+  };
+  static Symmetric3<T> squared(const Vec& n) {
+    return {n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z};
+  }
+
   static typename HelixElement<T>::Turn turn_of(const Vec& theta, const Vec& rate) {
     const T one(1);
     const LaneFunctions<T> functions(theta, one);

@@ -27,7 +27,7 @@ struct HelixKind {
 
   static constexpr double first_stiffness = 1;
   static constexpr double rotors_of_root = 0.5, rotors_of_last = 0.5;
-  static constexpr bool straight = false;
+  static constexpr bool straight = false, eliminates = false;
   static double unit(double length) { return length; }
   static double moment(double length) { return length; }
   /// `shape`: natural or initial.

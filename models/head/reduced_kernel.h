@@ -86,6 +86,10 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///                        Kept, Uneliminated)
 ///                                   // sum: of its tip, to its axes and with its own
 ///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
+///     eliminates                    // whether it has, in place of what all others do,
+///     eliminate(Bending, twist, sum, Scratch) // the sum without its unknowns
+///     follow(Scratch, twist, l, a)  // these; changes of acceleration from its axes to
+///                                   // its tip
 ///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
 ///     leave(Kept, own, l, a)        // its axes, and to its tip
 ///     enter(Kept, frame)            // frames: from the tip before to its axes, and to
@@ -101,8 +105,9 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///
 /// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed, as it stands; results
 /// differ from ReducedSystem's by what a relative change of the state by 1e-12, of chains
-/// by 3e-11, makes (tests/models/head/test_reduced_head.cpp). Cost: O(elements), of
-/// helices O(elements points).
+/// by 3e-11, makes (tests/models/head/test_reduced_head.cpp). Chains whose joints are
+/// soft would lose all digits in that difference (ChainKind::eliminate()). Cost:
+/// O(elements), of helices O(elements points).
 template <class Kind>
 class ReducedKernel {
  public:
@@ -229,7 +234,12 @@ class ReducedKernel {
       Scratch& e = scratch[i];
       Uneliminated all;
       carry<false>(m, inertia, w, i, rest(i), v, nullptr, hanging, loads, e, all);
-      hanging = eliminate(all, e);
+      if constexpr (Kind::eliminates) {
+        hanging =
+            Kind::eliminate(bending(m, w, i, e.q, rest(i), v[i]), twist_, all.sum, e);
+      } else {
+        hanging = eliminate(all, e);
+      }
       Kind::pass(m, inertia.acc, e.kept, hanging);
     }
   }
@@ -283,9 +293,13 @@ class ReducedKernel {
     for (int i = 0; i < elements_; ++i) {
       const Scratch& e = scratch[i];
       Kind::arrive(e.kept, l, a);
-      const Vec own = e.pivot * (e.unknown - e.of_force * l - e.of_moment * a);
-      use(i, own);
-      Kind::leave(e.kept, own, l, a);
+      if constexpr (Kind::eliminates) {
+        use(i, Kind::follow(e, twist_, l, a));
+      } else {
+        const Vec own = e.pivot * (e.unknown - e.of_force * l - e.of_moment * a);
+        use(i, own);
+        Kind::leave(e.kept, own, l, a);
+      }
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -23,11 +24,14 @@ namespace tress::models {
 /// Averaging L with L^T, or eliminating without using symmetry as for exact tangents,
 /// also prevents it.
 ///
-/// Pivots of exact tangents are not definite: contact, wind and drag may make one nearly
-/// zero although the whole matrix is far from singular, and without row exchange the
-/// corresponding digits are lost, up to five in 300 random states. solve() then applies
+/// A pivot may be nearly singular although the whole matrix is far from it: of exact
+/// tangents, which are not definite, by contact, wind and drag; of symmetric ones by a
+/// joint that is soft beside the inertia of a link and bent so far that its unknowns turn
+/// the link about its own axis. Without row exchange the corresponding digits are lost:
+/// up to five in 300 random exact states, eleven in soft chains. solve() then applies
 /// iterative refinement [Higham 2002, Accuracy and Stability of Numerical
-/// Algorithms, chapter 12], which leaves a difference of some eps cond(S).
+/// Algorithms, chapter 12], which leaves a difference of some eps cond(S). Problems side
+/// by side are refined each by its own pivots.
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
@@ -44,7 +48,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
   Status factor(const TreeTangent<Shape>& tangent) noexcept override {
     tangent_ = &tangent;
-    growth_ = 1;
+    growth_.fill(1);
     for (std::size_t i = 0; i < hanging_.size(); ++i) {
       hanging_[i].matrix = tangent.segments[i].tip;
     }
@@ -70,7 +74,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
   Status solve(In b, Out x) noexcept override {
     if constexpr (refines) {
-      if (growth_ > most_growth) {
+      if (some_above(most_growth)) {
         refine(b, x);
         return Status::ok;
       }
@@ -88,11 +92,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
  private:
   using Real = typename Shape::Real;
-  // Pivots of symmetric problems are definite; those of exact tangents may be nearly zero
-  // although the matrix is far from singular. A loss of up to two digits is accepted: it
-  // occurs in a third to two thirds of the states of hard cases, and does not affect
-  // Newton's iteration.
-  static constexpr bool refines = !Shape::symmetric;
+  // A loss of up to two digits is accepted: of exact tangents it occurs in a third to two
+  // thirds of the states of hard cases, and does not affect Newton's iteration.
+  static constexpr bool refines = !Shape::symmetric || method == TreeMethod::recursive;
   static constexpr double most_growth = 100, most_of_one_sweep = 1e6;
   static constexpr bool may_be_free = lanes<Real> == 1;
   static constexpr int states = Shape::states, wrench = Shape::wrench, n = Shape::dofs;
@@ -215,15 +217,49 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     return true;
   }
 
+  bool some_above(double most) const {
+    return std::ranges::any_of(growth_, [most](double growth) { return growth > most; });
+  }
+  static double entry(const Real& x, int lane) {
+    if constexpr (lanes<Real> == 1) {
+      return x;
+    } else {
+      return x[lane];
+    }
+  }
+  /// Sees how much larger than a pivot the terms are that it sums.
+  template <class Own, class Pivot>
+  void see_growth(const Own& own, const Pivot& pivot, const Square& inverse) {
+    for (int lane = 0; lane < lanes<Real>; ++lane) {
+      for (int k = 0; k < n; ++k) {
+        const double part = entry(own(k, k), lane),
+                     terms = std::abs(part) + std::abs(entry(pivot(k, k), lane) - part);
+        double& growth = growth_[static_cast<std::size_t>(lane)];
+        growth = std::max(growth, terms * std::abs(entry(inverse(k, k), lane)));
+      }
+    }
+  }
+
   /// Solves S x = b with one or two steps of iterative refinement.
   void refine(In b, Out x) noexcept {
     std::ranges::copy(b, b_.begin());
     sweep(b_, x);
-    const int sweeps = growth_ > most_of_one_sweep ? 2 : 1;
-    for (int i = 0; i < sweeps; ++i) {
+    for (const double most : {most_growth, most_of_one_sweep}) {
+      if (!some_above(most)) return;
       subtract_image(x);
       sweep(left_, correction_);
-      for (std::size_t k = 0; k < correction_.size(); ++k) x[k] += correction_[k];
+      for (std::size_t k = 0; k < correction_.size(); ++k) add_where(most, k, x);
+    }
+  }
+  void add_where(double most, std::size_t k, Out x) const {
+    if constexpr (lanes<Real> == 1) {
+      x[k] += correction_[k];
+    } else {
+      for (int lane = 0; lane < lanes<Real>; ++lane) {
+        if (growth_[static_cast<std::size_t>(lane)] > most) {
+          x[k].set(lane, x[k][lane] + correction_[k][lane]);
+        }
+      }
     }
   }
 
@@ -232,9 +268,11 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     const TreeTangent<Shape>& tangent = *tangent_;
     const std::size_t root = Shape::dofs * hanging_.size();
     State at_start = State::Zero();
-    if (tangent.free_root) {
-      const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
-      at_start = product(tangent.root.transfer, y);
+    if constexpr (may_be_free) {
+      if (tangent.free_root) {
+        const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
+        at_start = product(tangent.root.transfer, y);
+      }
     }
     const auto moved = [&](std::size_t i) {
       const int parent = tangent.parent[i];
@@ -258,12 +296,14 @@ class RecursiveSolver final : public TreeSolver<Shape> {
           parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load);
       for (int k = 0; k < n; ++k) left_[at(i, k)] = b_[at(i, k)] - image[wrench + k];
     }
-    if (!tangent.free_root) return;
-    const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
-    const Eigen::Matrix<double, 6, 1> image =
-        tangent.root.local * y + tangent.root.lift * at_root;
-    for (std::size_t k = 0; k < 6; ++k) {
-      left_[root + k] = b_[root + k] - image[static_cast<int>(k)];
+    if constexpr (may_be_free) {
+      if (!tangent.free_root) return;
+      const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
+      const Eigen::Matrix<double, 6, 1> image =
+          tangent.root.local * y + tangent.root.lift * at_root;
+      for (std::size_t k = 0; k < 6; ++k) {
+        left_[root + k] = b_[root + k] - image[static_cast<int>(k)];
+      }
     }
   }
 
@@ -315,9 +355,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
   }
 
-  static bool eliminate_symmetric(const SegmentTangent<Shape>& segment,
-                                  const Articulated& hanging, Eliminated& e,
-                                  Articulated& onto) {
+  bool eliminate_symmetric(const SegmentTangent<Shape>& segment,
+                           const Articulated& hanging, Eliminated& e, Articulated& onto) {
     // Transposed: [s; x] to the tip, and in local s to x and x to x.
     const auto tip_of_s = part<states, wrench>(segment.lift, 0, 0);
     const auto tip_of_x = part<n, wrench>(segment.lift, states, 0);
@@ -327,7 +366,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     Eigen::Matrix<Real, Shape::rows, n> of_x;
     copy(part<Shape::rows, n>(segment.local, 0, states), of_x);
     add_product(segment.lift, product(hanging, tip_of_x.transpose()), of_x);
-    if (!invert(part<n, n>(of_x, states, 0), e.inverse)) return false;
+    const auto pivot = part<n, n>(of_x, states, 0);
+    if (!invert(pivot, e.inverse)) return false;
+    see_growth(inner, pivot, e.inverse);
     multiply<1, false>(part<states, n>(of_x, 0, 0), e.inverse, e.response);
     copy(part(e.response).transpose(), e.z);
     // V = [I; -Z]: M V = M_s - M_x Z.
@@ -356,11 +397,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     add(part<wrench, states>(full, 0, 0), onto);
     if (!invert(pivot, e.inverse)) return false;
     if constexpr (refines) {
-      for (int k = 0; k < n; ++k) {
-        const double own = segment.local(wrench + k, states + k);
-        const double terms = std::abs(own) + std::abs(pivot(k, k) - own);
-        growth_ = std::max(growth_, terms * std::abs(e.inverse(k, k)));
-      }
+      see_growth(part<n, n>(segment.local, wrench, states), pivot, e.inverse);
     }
     if constexpr (method == TreeMethod::recursive_plain) {
       multiply<1, false>(e.inverse, w_of_x.transpose(), e.z);
@@ -387,8 +424,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Hanging> hanging_;
   Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> root_;
   std::vector<Eigen::Matrix<Real, states, 3>> reached_;  // scratch of respond()
-  double growth_ = 1;  // largest product of a pivot's inverse and the terms it sums
-  std::vector<double> b_, left_, correction_;  // scratch of refine()
+  // Largest product of a pivot's inverse and the terms that it sums, of each problem.
+  std::array<double, static_cast<std::size_t>(lanes<Real>)> growth_{};
+  std::vector<Real> b_, left_, correction_;  // scratch of refine()
 };
 
 }  // namespace tress::models
