@@ -71,8 +71,10 @@ class BuildStamp {
     add(name);
     add("=");
     add(words);
+    bool first = true;
     for (const std::size_t number : numbers) {
-      if (&number != numbers.begin()) add(",");
+      if (!first) add(",");
+      first = false;
       add(number);
     }
     add("|");
