@@ -71,10 +71,8 @@ class BuildStamp {
     add(name);
     add("=");
     add(words);
-    bool first = true;
-    for (const std::size_t number : numbers) {
-      if (!first) add(",");
-      first = false;
+    for (const std::size_t& number : numbers) {
+      if (&number != numbers.begin()) add(",");
       add(number);
     }
     add("|");

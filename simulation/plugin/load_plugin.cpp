@@ -1,10 +1,19 @@
 #include "simulation/plugin/load_plugin.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <link.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <system_error>
 
 #include "contract/input_error.h"
 #include "contract/read_file.h"
@@ -18,6 +27,7 @@ namespace {
 
 constexpr BuildStamp stamp_of_this;
 constexpr const char* page = "docs/plugins.md says how one is built";
+constexpr const char* author = "ask its author";
 
 std::vector<LoadedPlugin>& all_loaded() {
   static std::vector<LoadedPlugin> all;
@@ -56,9 +66,19 @@ void check_stamp(std::string_view bytes, const std::string& file) {
   }
 }
 
+/// The library's function of that name; null if it has none, or something else so named.
 template <class Function>
 Function symbol(void* library, const char* name) {
-  return reinterpret_cast<Function>(::dlsym(library, name));
+  void* found = ::dlsym(library, name);
+  Dl_info place{};
+  const ElfW(Sym)* entry = nullptr;
+  if (found == nullptr ||
+      ::dladdr1(found, &place, reinterpret_cast<void**>(const_cast<ElfW(Sym)**>(&entry)),
+                RTLD_DL_SYMENT) == 0 ||
+      entry == nullptr || ELF64_ST_TYPE(entry->st_info) != STT_FUNC) {
+    return nullptr;
+  }
+  return reinterpret_cast<Function>(found);
 }
 
 /// What the library brings, by its own account.
@@ -79,20 +99,20 @@ Plugin brought_by(const std::string& file) {
     throw;
   } catch (const std::exception& error) {
     throw InputError(fmt::format("the plug-in did not start: {}", error.what()), file,
-                     "ask its author");
+                     author);
+  } catch (...) {
+    throw InputError("the plug-in did not start: it threw what is no std::exception",
+                     file, author);
   }
   refuse_if(plugin.models.empty() && plugin.integrators.empty() && plugin.effects.empty(),
             "the plug-in brings nothing", file, page);
   return plugin;
 }
 
-}  // namespace
-
-void load_plugin(const std::string& file) {
-  const std::string bytes = read_file(file);
-  check_stamp(bytes, file);
+/// Adds what the library brings to the catalogues.
+LoadedPlugin added(const std::string& file, std::string sum) {
   const Plugin plugin = brought_by(file);
-  LoadedPlugin loaded{file, checksum(bytes), {}, {}, {}};
+  LoadedPlugin loaded{file, std::move(sum), {}, {}, {}};
   for (const models::ModelEntry& model : plugin.models) {
     models::add_model(model, file);
     loaded.models.emplace_back(model.id);
@@ -105,7 +125,52 @@ void load_plugin(const std::string& file) {
     models::add_effect(effect, file);
     loaded.effects.emplace_back(effect.id);
   }
-  all_loaded().push_back(std::move(loaded));
+  return loaded;
+}
+
+/// Loads the library in a process of its own first: what its code does on loading may end
+/// a process in ways that nothing here can catch. Throws InputError where it does; what
+/// it refuses, loading it here refuses again, with the reason.
+void rehearse(const std::string& file) {
+  constexpr int came_back = 17;  // an exit code by which no library ends a process
+  constexpr unsigned longest_s = 60;
+  const pid_t process = ::fork();
+  if (process < 0) {
+    throw std::system_error(errno, std::generic_category(), "fork");
+  }
+  if (process == 0) {
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
+    const rlimit no_core{};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::signal(SIGALRM, SIG_DFL);
+    ::alarm(longest_s);
+    try {
+      added(file, {});
+    } catch (const std::exception&) {
+    }
+    ::_exit(came_back);
+  }
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == came_back) return;
+  const std::string how =
+      WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
+      : WTERMSIG(status) == SIGALRM
+          ? fmt::format("no answer in {} s", longest_s)
+          : fmt::format("signal {}: {}", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  throw InputError(fmt::format("the plug-in ends the program that loads it ({})", how),
+                   file, author);
+}
+
+}  // namespace
+
+void load_plugin(const std::string& file) {
+  const std::string bytes = read_file(file);
+  check_stamp(bytes, file);
+  rehearse(file);
+  all_loaded().push_back(added(file, checksum(bytes)));
 }
 
 std::span<const LoadedPlugin> loaded_plugins() { return all_loaded(); }

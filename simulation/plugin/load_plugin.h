@@ -16,9 +16,9 @@ struct LoadedPlugin {
 
 /// Opens the shared library, for the life of the process, and adds what it brings to the
 /// catalogues. To be called before they are first read, and before other threads run.
-/// Throws InputError if the file is missing or no plug-in, if it was built for another
-/// version of tress or in another way than this program (nothing of it is run then), or
-/// if a catalogue refuses an entry.
+/// Throws InputError if the file is missing or no plug-in; if it was built for another
+/// version of tress or in another way than this program (nothing of it is run then); if
+/// it throws, exits or crashes when it is loaded; or if a catalogue refuses an entry.
 void load_plugin(const std::string& file);
 
 /// In the order in which they were loaded.
