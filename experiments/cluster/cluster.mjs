@@ -74,6 +74,18 @@ function known_experiment(name) {
 const version_of = (program) =>
   spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout.trim();
 
+/// Slurm and Snakemake each read paths in a way of their own (blanks, %, {}, $), which no
+/// quoting suits.
+function refuse_strange(folder) {
+  const strange = folder.match(/[^\p{L}\p{N}_@+=:,./-]/u);
+  if (strange)
+    throw new InputError(
+      `${JSON.stringify(folder)}: has ${JSON.stringify(strange[0])} in its path, which ` +
+        'Slurm and Snakemake may take for something else; give a --folder of letters, ' +
+        'digits and _ @ + = : , . / -',
+    );
+}
+
 /// As it is in its folder, or a new one with the pilot's estimate.
 function prepared(scheduler, { options, experiment, args }, program, folder) {
   const profile = read_profile(options['--profile']);
@@ -276,6 +288,7 @@ function answer([command, ...words]) {
     const folder = resolve(
       read.options['--folder'] ?? join(repository, 'results/cluster', read.experiment),
     );
+    refuse_strange(folder);
     const was_there = existsSync(folder);
     mkdirSync(folder, { recursive: true });
     try {

@@ -4,6 +4,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { InputError } from '../report/src/input.mjs';
 import { flags } from './slurm.mjs';
+import { quoted } from './sweep.mjs';
 
 export function write(sweep) {
   const { experiment, parts, needs } = sweep;
@@ -49,9 +50,10 @@ export function command(sweep, { cores, sbatch }) {
     `--output=${join(sweep.folder, 'logs', 'sbatch-%j.log')}`,
     '--time={resources.runtime}',
     '--mem={resources.mem_mb}M',
-    ...flags(sweep),
   ];
-  return [...all, '--jobs', String(sweep.parts), '--cluster', job.join(' ')];
+  // A shell reads this; the scheduler fills in what stands in braces.
+  const words = [...job, ...flags(sweep).map(quoted)];
+  return [...all, '--jobs', String(sweep.parts), '--cluster', words.join(' ')];
 }
 
 /// To its end; true if every part was made.

@@ -31,12 +31,15 @@ encoded() {
   printf '%s' "$out"
 }
 
+sandbox=()
+# Root has none of the namespaces that the sandbox is made of.
+(($(id -u) != 0)) || sandbox=(--no-sandbox)
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
 # Chromium writes beside its profile: --screenshot takes no name with some characters, and
 # succeeds without a file when the page cannot be read.
-"${CHROMIUM:-chromium}" --headless --no-sandbox --disable-gpu --enable-unsafe-swiftshader \
-  --disable-quic --no-first-run \
+"${CHROMIUM:-chromium}" --headless "${sandbox[@]}" --disable-gpu \
+  --enable-unsafe-swiftshader --disable-quic --no-first-run \
   --disable-background-networking --disable-component-update --disable-sync \
   --hide-scrollbars --blink-settings=preferredColorScheme="$scheme" \
   --user-data-dir="$profile" --window-size="$size" --virtual-time-budget=4000 \

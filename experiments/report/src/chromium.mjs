@@ -38,7 +38,8 @@ export class Browser {
             binary,
             args: [
               '--headless=new',
-              '--no-sandbox',
+              // Root has none of the namespaces that the sandbox is made of.
+              ...(process.getuid?.() === 0 ? ['--no-sandbox'] : []),
               '--disable-gpu',
               '--enable-unsafe-swiftshader',
               '--disable-dev-shm-usage',

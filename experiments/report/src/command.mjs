@@ -11,6 +11,7 @@ import { packed } from './packed.mjs';
 import { most_levels, page_levels } from './packing.mjs';
 import { load_scenes } from './scene_file.mjs';
 import { scene_data_html } from './scenes_page.mjs';
+import { mixed_commits } from './provenance.mjs';
 import { Warnings } from './warnings.mjs';
 
 const usage = `usage: node report.mjs RESULTS [--out FILE] [--no-figures] [--levels N]
@@ -120,6 +121,8 @@ async function report({ directory, out, figures, levels }, { template, render, s
   const count = Object.keys(tables).length;
   if (warnings.list.length > 0 && count + scenes.length === 0)
     throw new InputError(`${directory}: nothing to draw: no file in it could be used`);
+  const mixed = mixed_commits(tables);
+  if (mixed !== '') say(`report: ${mixed.replace(/\p{Cc}+/gu, ' ')}`);
   const objects = all_objects(tables);
   const html = page_html(template(), { tables, objects, scenes, levels }, warnings);
   write(out, html, 'choose another place with --out');

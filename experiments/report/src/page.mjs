@@ -32,6 +32,7 @@ import {
   swing_summary,
   validation_summary,
 } from './summaries.mjs';
+import { mixed_commits } from './provenance.mjs';
 import { is_known, known_tables } from './tables.mjs';
 
 // Each section: the question, its figure, what its findings are, its tables, and a table
@@ -247,12 +248,13 @@ function question_html({ heading, intro, sections }, contents) {
   ].join('\n');
 }
 
-function header_html({ objects, warnings }) {
+function header_html({ tables, objects, warnings }) {
   const answer = (name, make) =>
     prose_html(
       warnings.guard(`${name}.csv`, 'the answer', () => make(objects), undefined) ??
         `No answer yet: ${name}.csv is missing or holds no finished runs.`,
     );
+  const mixed = mixed_commits(tables);
   return `<h1>Constraint drift, stable steps, and the price of accuracy</h1>
 <dl class="answers">
 <dt>How far do constraints drift, and what does stopping the drift cost?</dt>
@@ -265,6 +267,7 @@ function header_html({ objects, warnings }) {
 <dd id="answer-swing">${answer('work_precision', swing_answer)}</dd>
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
+${mixed === '' ? '' : `<p class="note" id="mixed-commits">${escape_html(mixed)}</p>`}
 ${nav_html(measurements, 'Measurements')}`;
 }
 
