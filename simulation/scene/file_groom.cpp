@@ -44,7 +44,7 @@ constexpr Parameter file_keys[] = {
      .components = 3,
      .fallback = "0,0,0"},
     {.name = "every",
-     .help = "file: each so-manieth strand is taken",
+     .help = "file: take every n-th strand",
      .number = 1,
      .min = 1,
      .max = 1e9,
@@ -105,8 +105,8 @@ void refuse_beside_file(const Table& groom) {
   }
   const bool tolerance = detail_tolerance(groom) > 0 || p.number("fit_tolerance") > 0;
   if (tolerance && p.whole("guides") > 0) {
-    throw InputError("guides of several numbers of elements", groom.place("guides"),
-                     "leave out guides, or the tolerance");
+    throw InputError("all guide strands must have the same number of elements",
+                     groom.place("guides"), "leave out guides, or the tolerance");
   }
 }
 
@@ -153,7 +153,7 @@ void refuse_file_keys(const Table& groom) {
   for (const Parameter& p : groom.declared()) {
     if (!among(file_keys, p.name) && p.name != "fit_tolerance") continue;
     if (groom.values().text(p.name) == p.default_text()) continue;
-    throw InputError(fmt::format("{} does nothing without file", p.name),
+    throw InputError(fmt::format("{} has no effect without file", p.name),
                      groom.place(p.name), "leave it out, or name a file");
   }
 }

@@ -163,8 +163,8 @@ double detail(const Table& table) {
   const double tolerance = detail_tolerance(table);
   if (tolerance == 0) return 0;
   if (table.values().whole("guides") > 0) {
-    throw InputError("guides of several numbers of elements", table.place("guides"),
-                     "leave out guides, or the tolerance");
+    throw InputError("all guide strands must have the same number of elements",
+                     table.place("guides"), "leave out guides, or the tolerance");
   }
   refuse_grading(table, "a tolerance");
   return tolerance;

@@ -31,9 +31,9 @@ std::string_view kind(const toml::node& node) {
 
 [[noreturn]] void wrong_type(const Parameter& p, const toml::node& node,
                              const std::string& file) {
-  throw InputError(
-      fmt::format("{} is {} where {} belongs", p.name, kind(node), wanted(p)),
-      place_of(node.source(), file), fmt::format("give {}: {}", wanted(p), p.help));
+  throw InputError(fmt::format("{}: expected {}, got {}", p.name, wanted(p), kind(node)),
+                   place_of(node.source(), file),
+                   fmt::format("give {}: {}", wanted(p), p.help));
 }
 
 std::string number_text(const Parameter& p, const toml::node& node,
@@ -119,7 +119,7 @@ void read_key(const toml::table& table, std::string_view key, const std::string&
 const toml::table& as_table(const toml::node& node, const std::string& name,
                             const std::string& file) {
   if (const toml::table* table = node.as_table()) return *table;
-  throw InputError(fmt::format("{} is {} where a table belongs", name, kind(node)),
+  throw InputError(fmt::format("{}: expected a table, got {}", name, kind(node)),
                    place_of(node.source(), file),
                    fmt::format("write [{}] and below it key = value", name));
 }

@@ -110,7 +110,7 @@ class Reader {
                       : p.word("unstable") == "keep"  ? Unstable::keep
                                                       : Unstable::drop;
     if (scene_.rest == RestStrains::natural && top.given("unstable")) {
-      throw InputError("unstable does nothing without rest = \"inverse\"",
+      throw InputError("unstable has no effect without rest = \"inverse\"",
                        top.place("unstable"), "leave it out");
     }
     places_.rest = top.place("rest");
@@ -154,7 +154,7 @@ class Reader {
     };
     const bool least = scene_.options.min_step > 0;
     if (scene_.options.tolerance == 0) {
-      if (least) refuse("min_step_s", "does nothing without tolerance");
+      if (least) refuse("min_step_s", "has no effect without tolerance");
       return;
     }
     if (scene_.options.max_step > 0 &&
@@ -183,10 +183,11 @@ class Reader {
          {"strand", "groom", "material", "root", "effects"}) {
       const toml::node* node = root_.get(name);
       if (node == nullptr) continue;
-      throw InputError(fmt::format("[{}] is not for {}, which brings its own geometry",
+      throw InputError(fmt::format("[{}] is not allowed with model {}, which brings its "
+                                   "own geometry",
                                    name, scene_.model->id),
                        place_of(node->source(), file_),
-                       "leave the table out, [model] takes all there is");
+                       "remove the table; all parameters belong in [model]");
     }
   }
 

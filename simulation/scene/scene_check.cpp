@@ -46,9 +46,11 @@ void check_mesh(const Scene& scene, const ScenePlaces& places) {
   if (scene.mesh() == nullptr) return;
   const Parameters* interaction = scene.interaction();
   if (interaction != nullptr && interaction->word("coupling") == "monolithic") {
-    throw InputError("strands that are one system do not see each other as they were",
-                     places.integrator,
-                     "use coupling = \"lagged\", or leave out [effects.control_mesh]");
+    throw InputError(
+        "lagged coupling of [effects.control_mesh] needs strands that are systems of "
+        "their own, not one system",
+        places.integrator,
+        "use coupling = \"lagged\", or leave out [effects.control_mesh]");
   }
   if (!places.tolerance.empty()) {
     throw InputError(
@@ -63,9 +65,11 @@ void check_friction(const Scene& scene, const ScenePlaces& places) {
   if (scene.friction() == nullptr) return;
   const Parameters* interaction = scene.interaction();
   if (interaction != nullptr && interaction->word("coupling") == "monolithic") {
-    throw InputError("strands that are one system have no steps of their own",
-                     places.integrator,
-                     "use coupling = \"lagged\", or leave out [effects.strand_friction]");
+    throw InputError(
+        "per-strand steps of [effects.strand_friction] are not available with monolithic "
+        "coupling",
+        places.integrator,
+        "use coupling = \"lagged\", or leave out [effects.strand_friction]");
   }
   std::string able;
   for (const IntegratorEntry& entry : integrator_catalogue()) {
@@ -74,7 +78,7 @@ void check_friction(const Scene& scene, const ScenePlaces& places) {
     able += (able.empty() ? "" : " or ") + std::string(entry.id);
   }
   throw InputError(
-      fmt::format("{} cannot go on after the impulses of [effects.strand_friction]",
+      fmt::format("{} does not support the contact impulses of [effects.strand_friction]",
                   scene.integrator),
       places.integrator, "use " + able);
 }
@@ -104,8 +108,8 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
 NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System& system,
                                 const std::string& where) {
   if (strand.free_root) {
-    throw InputError("rest = \"inverse\" of a free root, which falls whatever its strand",
-                     where, "use another [root] motion, or leave out rest");
+    throw InputError("rest = \"inverse\" needs a clamped root", where,
+                     "use another [root] motion, or leave out rest");
   }
   if (NaturalStrains* strains = natural_strains(system)) return *strains;
   throw InputError(

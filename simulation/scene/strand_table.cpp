@@ -201,8 +201,9 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
                        direction(table, "normal"), table.place("points"));
     const bool tied = p.word("natural") == "straight";
     if (tied && p.word("initial") == "straight") {
-      throw InputError("naturally and initially straight beside points",
-                       table.place("natural"), "leave one of them out");
+      throw InputError(
+          "natural = \"straight\" and initial = \"straight\" contradict points",
+          table.place("natural"), "leave one of them out");
     }
     Strand strand =
         cut_strand(table, material, curve.length, tied ? uniform_shape({}) : curve.shape,

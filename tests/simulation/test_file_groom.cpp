@@ -314,7 +314,7 @@ TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {
       parse_scene(fmt::format("title = \"t\"\n[groom]\n{}\n", key), "s.toml");
       ADD_FAILURE() << key;
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("does nothing without file"));
+      EXPECT_THAT(error.what(), HasSubstr("has no effect without file"));
     }
   }
 }
