@@ -9,7 +9,6 @@
 #include "experiments/run/sundials_speed.h"
 #include "integrators/formulation/dynamics.h"
 #include "simulation/files/build_facts.h"
-#include "simulation/files/source_state.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments::benchmarks {
@@ -58,9 +57,8 @@ class Collector : public benchmark::ConsoleReporter {
 };
 
 void add_context() {
-  const SourceState source = source_state();
-  benchmark::AddCustomContext("git_commit", source.commit);
-  benchmark::AddCustomContext("git_dirty", source.dirty ? "yes" : "no");
+  benchmark::AddCustomContext("git_commit", std::string(build_facts().commit));
+  benchmark::AddCustomContext("git_dirty", build_facts().dirty() ? "yes" : "no");
   benchmark::AddCustomContext("compiler", std::string(build_facts().compiler));
   benchmark::AddCustomContext("flags", std::string(build_facts().flags));
   benchmark::AddCustomContext("sundials_speed_ratio",

@@ -26,7 +26,7 @@ constexpr Parameter settings_of_rows[] = {
      .help = "amplitude_m is the tip's displacement from the root, up to a constant, or "
              "half the difference of successive turning points, midway between them",
      .choices = "displacement|envelope"},
-    {.name = "axis", .help = "of the displacement; z is up", .choices = "z|x|y"},
+    {.name = "axis", .help = "axis of the displacement; z is up", .choices = "z|x|y"},
     {.name = "fit",
      .help =
          "fitted values: internal friction gamma, air drag nu, Young's modulus "
@@ -34,7 +34,7 @@ constexpr Parameter settings_of_rows[] = {
          "parameters",
      .choices = "both|gamma|nu|stiffness|stiffness_gamma|stiffness_nu|all"},
     {.name = "confidence",
-     .help = "of the intervals",
+     .help = "confidence level of the intervals",
      .number = 0.95,
      .min = 0.5,
      .max = 0.9999},
@@ -50,7 +50,7 @@ constexpr Parameter settings_of_rows[] = {
      .min = 1e-12,
      .max = 1e3},
     {.name = "noise_seed",
-     .help = "of these errors",
+     .help = "random seed of the noise",
      .number = 1,
      .min = 0,
      .max = 1e9,

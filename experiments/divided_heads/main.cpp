@@ -1,7 +1,7 @@
 // What does a head of hair cost when processes divide it, and where does that stop to
 // pay?
 #include <fmt/format.h>
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/divided_heads/cost_model.h"
+#include "experiments/divided_heads/launch.h"
 #include "experiments/divided_heads/predictions.h"
 #include "experiments/divided_heads/scene.h"
 #include "experiments/run/experiment.h"
@@ -67,42 +68,34 @@ struct Setting {
 };
 constexpr Setting settings_of_head[] = {{1, 1}, {1, 2}, {2, 1}, {4, 1}};
 
-/// A folder that is removed in the end.
-struct Folder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() /
-                               fmt::format("tress_divided_{}", ::getpid());
-  Folder() { std::filesystem::create_directory(path); }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-};
-
 struct Failed {
   std::string reason;
 };
 
 /// As a user would: simulate by mpirun, more ranks than cores if need be. The outcomes of
 /// the heads that run at the same time.
-std::vector<nlohmann::json> run(const Folder& folder, const std::string& head,
-                                const Setting& setting) {
+std::vector<nlohmann::json> run(const std::filesystem::path& folder,
+                                const std::string& head, const Setting& setting) {
   const std::filesystem::path simulate =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "simulate";
-  const auto out = [&](int i) { return folder.path / std::to_string(i); };
-  std::string commands =
-      "export OMPI_ALLOW_RUN_AS_ROOT=1 "
-      "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; pids=; ";
+  const auto out = [&](int i) { return folder / std::to_string(i); };
+  const auto log = [&](int i) { return out(i).string() + ".log"; };
+  std::vector<Launched> beside;
   for (int i = 0; i < setting.beside; ++i) {
-    commands += fmt::format(
-        "mpirun --oversubscribe --bind-to none -n {} '{}' '{}' --as head --frames none "
-        "--progress none --out '{}' >'{}' 2>&1 & pids=\"$pids $!\"; ",
-        setting.ranks, simulate.string(), (folder.path / (head + ".toml")).string(),
-        out(i).string(), out(i).string() + ".log");
+    const std::vector<std::string> words{"mpirun",     "--oversubscribe",
+                                         "--bind-to",  "none",
+                                         "-n",         std::to_string(setting.ranks),
+                                         simulate,     folder / (head + ".toml"),
+                                         "--as",       "head",
+                                         "--frames",   "none",
+                                         "--progress", "none",
+                                         "--out",      out(i)};
+    beside.emplace_back(words, log(i));
   }
-  commands += "code=0; for pid in $pids; do wait $pid || code=1; done; exit $code";
-  if (std::system(commands.c_str()) != 0) {
-    const std::string log = read_file(out(0).string() + ".log");
-    throw Failed{"mpirun failed: " + log.substr(0, log.find('\n'))};
+  for (int i = 0; i < setting.beside; ++i) {
+    if (beside[static_cast<std::size_t>(i)].succeeds()) continue;
+    const std::string text = read_file(log(i));
+    throw Failed{"mpirun failed: " + text.substr(0, text.find('\n'))};
   }
   std::vector<nlohmann::json> outcomes;
   for (int i = 0; i < setting.beside; ++i) {
@@ -141,12 +134,16 @@ std::vector<Row> measure(const Row& of_all, std::span<const int> strands, int re
     Setting setting;
     std::vector<nlohmann::json> runs;
   };
-  const Folder folder;
+  for (const char* allowed :
+       {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"}) {
+    ::setenv(allowed, "1", 1);
+  }
+  const PrivateFolder folder;
   std::vector<Row> rows;
   std::vector<Measured> all;
   for (const int count : strands) {
     const std::string head = fmt::format("head_{}", count);
-    replace_file((folder.path / (head + ".toml")).string(),
+    replace_file((folder.path() / (head + ".toml")).string(),
                  scene(of_all.text("effects") == "interaction", count));
     for (const Setting& setting : settings_of_head) {
       all.push_back({head, setting, {}});
@@ -160,7 +157,7 @@ std::vector<Row> measure(const Row& of_all, std::span<const int> strands, int re
       for (Measured& one : all) {
         // The slowest of those that run at the same time.
         one.runs.push_back(
-            std::ranges::max(run(folder, one.head, one.setting), {}, step_of));
+            std::ranges::max(run(folder.path(), one.head, one.setting), {}, step_of));
       }
     }
   } catch (const Failed& failed) {

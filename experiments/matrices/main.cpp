@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -92,6 +93,7 @@ struct Work {
   double time = 0, step = 0;
   int dense_limit = 0;
   std::string folder;  // of the files; empty: none
+  std::shared_ptr<const simulation::ReadyFolder> made;
 };
 
 /// Of the strand; 0: the model has a geometry of its own.
@@ -238,7 +240,8 @@ std::vector<Case> cases(const CommandLine& line) {
   work.dense_limit = static_cast<int>(own.whole("dense_limit"));
   if (line.out != "-") work.folder = simulation::beside(line.out, "");
   if (!work.folder.empty() && !line.dry_run) {
-    simulation::ready_folder(work.folder, "--out " + line.out);
+    work.made =
+        std::make_shared<simulation::ReadyFolder>(work.folder, "--out " + line.out);
   }
   std::vector<Case> all;
   const auto files = simulation::split(own.word("scenes"), ',', "scenes");

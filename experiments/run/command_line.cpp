@@ -54,8 +54,8 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
       ->allow_extra_args(false);
   app.add_option("--out", raw.out,
                  "result table (default results/<experiment>.csv), or -");
-  app.add_flag("--quick", line.quick, "a minute or less on two cores");
-  app.add_flag("--full", line.full, "every row of the published tables");
+  app.add_flag("--quick", line.quick, "fewest rows, those of ./tress run: minutes");
+  app.add_flag("--full", line.full, "most rows: hours for some experiments");
   app.add_option("--jobs", raw.jobs,
                  "rows run at the same time (default 1; as many as processors where "
                  "time is not what is measured)");
@@ -64,23 +64,38 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
-                 "per row: 30s, 10m, 2h (default 10m; with --quick 1m): for hangs, work "
-                 "bounds a row");
+                 "time limit per row, as in 30s, 10m, 2h (default 10m; with --quick 1m "
+                 "or more): only against hangs, as max_work bounds a row");
   app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
   app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
   app.add_flag("--retry-failed", line.retry_failed, "with --resume: redo failed rows");
   app.add_option("--seed", raw.seed, "seed of every random choice (default 1)");
   app.add_option("--progress", raw.progress, "auto, none or json (default auto)");
   app.add_flag("--dry-run", line.dry_run, "print the rows that would run");
+  app.add_flag("--check", line.check,
+               "check options, outputs and an unfinished run; run nothing");
 }
 
 std::string help_text(const CLI::App& app, std::string_view name,
-                      std::string_view example) {
+                      std::string_view example, std::span<const Parameter> keys) {
+  std::string options = app.help();
+  options.erase(options.find_last_not_of('\n') + 1);
+  const std::string own = keys.empty() ? std::string()
+                                       : fmt::format(
+                                             "\n\nKeys of --set (--list: those of models "
+                                             "and integrators) [default]:\n{}",
+                                             parameter_lines(keys));
   return fmt::format(
-      "{}\nExample:\n  {} {}\n\nExit codes: 0 done, 1 internal error, "
+      "{}{}\n\nExample:\n  {} {}\n\nExit codes: 0 done, 1 internal error, "
       "2 usage or input error, 3 rows failed or a check did not hold, "
       "130 interrupted (--resume continues)\n",
-      app.help(), name, example);
+      options, own.substr(0, own.find_last_not_of('\n') + 1), name, example);
+}
+
+std::string default_text(const Parameter& p) {
+  if (!p.choices.empty()) return std::string(p.choices);
+  const bool one_number = !p.text && !p.rows && p.components == 1;
+  return one_number ? fmt::format("{}", p.number) : p.default_text();
 }
 
 /// CLI11's messages name the offending argument but not the remedy.
@@ -225,8 +240,8 @@ void check_combinations(const CommandLine& line) {
   refuse_if(line.resume && line.out == "-",
             "standard output keeps no rows to resume from", "--resume",
             "give --out file.csv");
-  refuse_if(line.retry_failed && !line.resume, "nothing to retry", "--retry-failed",
-            "give --resume as well");
+  refuse_if(line.retry_failed && !line.resume, "--retry-failed requires --resume",
+            "--retry-failed", "give --resume as well");
   refuse_if(!line.merge.empty() && line.places.count("out") == 0, "no output named",
             "--merge", "give --out file.csv");
 }
@@ -242,13 +257,22 @@ std::string CommandLine::place(std::string_view option) const {
   return found == places.end() ? "--" + std::string(option) : found->second;
 }
 
+std::string parameter_lines(std::span<const Parameter> parameters) {
+  std::string text;
+  for (const Parameter& p : parameters) {
+    text += fmt::format("      {:<20} {} [{}]\n", p.name, p.help, default_text(p));
+  }
+  return text;
+}
+
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
                                const char* const* argv, std::span<const OwnOption> own,
-                               std::span<const Unused> unused) {
+                               std::span<const Unused> unused,
+                               std::span<const Parameter> keys) {
   CommandLine line;
   Raw raw;
-  CLI::App app{std::string(question), std::string(name)};
+  CLI::App app{fmt::format("{}: {}", name, question), std::string(name)};
   app.set_version_flag("--version", fmt::format("{} {} ({})", name, build_facts().version,
                                                 build_facts().commit));
   declare(app, line, raw, own);
@@ -256,7 +280,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    throw Answer(help_text(app, name, example));
+    throw Answer(help_text(app, name, example, keys));
   } catch (const CLI::CallForVersion& version) {
     throw Answer(std::string(version.what()) + "\n");
   } catch (const CLI::ParseError& error) {

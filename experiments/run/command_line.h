@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "contract/layers.h"
+#include "contract/parameters.h"
 
 namespace tress::experiments {
 
@@ -26,7 +27,7 @@ struct CommandLine {
   std::string out;                   // "-": standard output
   std::vector<std::string> merge;    // tables to join instead of running
   bool quick = false, full = false, resume = false, retry_failed = false;
-  bool list = false, dry_run = false;
+  bool list = false, dry_run = false, check = false;
   int jobs = 1, repeat = 3;
   int shard_index = 1, shard_count = 1;
   double timeout_s = 600;
@@ -66,11 +67,16 @@ class Answer : public std::runtime_error {
 };
 
 /// Throws InputError on anything unknown, malformed or given twice, Answer on --help and
-/// --version. `example` completes "<name> ..." in the help text.
+/// --version. `example` completes "<name> ..." in the help text, which shows `keys`, the
+/// experiment's own of --set.
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
                                const char* const* argv,
                                std::span<const OwnOption> own = {},
-                               std::span<const Unused> unused = {});
+                               std::span<const Unused> unused = {},
+                               std::span<const Parameter> keys = {});
+
+/// "name   help [default]", a line for each.
+std::string parameter_lines(std::span<const Parameter> parameters);
 
 }  // namespace tress::experiments

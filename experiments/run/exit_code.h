@@ -1,5 +1,7 @@
 #pragma once
 
+#include <signal.h>
+
 #include <functional>
 #include <string_view>
 
@@ -18,9 +20,13 @@ enum ExitCode {
 
 /// Exit code of a whole main(): the result of `run`, or the code of the exception it
 /// throws, reported in one line on standard error. An Answer is printed and yields
-/// `done`. Exceeding a file size limit is a write error, not a signal; SIGINT and SIGTERM
-/// end the program at once with `interrupted` unless something else handles them
+/// `done`. Exceeding a file size limit is a write error, not a signal; stop_signals() end
+/// the program at once with `interrupted` unless something else handles them
 /// (Interruption, sweep).
 int exit_code(std::string_view program, const std::function<int()>& run);
+
+/// Signals that ask a program to end: SIGINT, SIGTERM and, unless the program was started
+/// to outlive its terminal (nohup), SIGHUP.
+sigset_t stop_signals();
 
 }  // namespace tress::experiments

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -19,6 +18,8 @@
 #include "experiments/run/merge.h"
 #include "experiments/run/message.h"
 #include "experiments/run/progress.h"
+#include "experiments/run/row_loads.h"
+#include "experiments/run/rows.h"
 #include "experiments/run/settings.h"
 #include "experiments/run/sweep.h"
 #include "simulation/files/csv.h"
@@ -30,50 +31,6 @@ namespace tress::experiments {
 namespace {
 
 constexpr const char* standard_output = "-";
-
-/// Rows by run_id, in output order.
-class Rows {
- public:
-  void keep(Row row) {
-    const std::string id(row.text("run_id"));
-    const auto [place, fresh] = place_.emplace(id, rows_.size());
-    if (fresh) {
-      rows_.push_back(std::move(row));
-    } else {
-      rows_[place->second] = std::move(row);
-    }
-  }
-  const Row* find(const std::string& id) const {
-    const auto place = place_.find(id);
-    return place == place_.end() ? nullptr : &rows_[place->second];
-  }
-  const std::vector<Row>& all() const { return rows_; }
-
-  /// The planned rows first, in their order, then those of earlier plans.
-  std::vector<Row> ordered(const std::vector<Case>& plan) const {
-    std::vector<Row> result;
-    std::set<std::string_view> taken;
-    for (const Case& work : plan) {
-      const std::string id(work.identity.text("run_id"));
-      // The run_ids of a case's further rows append a point to its own.
-      for (auto at = place_.lower_bound(id);
-           at != place_.end() && (at->first == id || at->first.starts_with(id + '.'));
-           ++at) {
-        const Row& row = rows_[at->second];
-        result.push_back(row);
-        taken.insert(row.text("run_id"));
-      }
-    }
-    for (const Row& row : rows_) {
-      if (taken.count(row.text("run_id")) == 0) result.push_back(row);
-    }
-    return result;
-  }
-
- private:
-  std::vector<Row> rows_;
-  std::map<std::string, std::size_t> place_;
-};
 
 /// Throws InputError on a requested model, integrator or number of elements that no row
 /// has, although some rows have one: it would be ignored silently.
@@ -117,6 +74,13 @@ std::vector<Case> plan(const Experiment& experiment, const CommandLine& line) {
   return mine;
 }
 
+/// As `plan`, which may compute references first.
+std::vector<Case> planned_aloud(const Experiment& experiment, const CommandLine& line) {
+  Heartbeat heartbeat(line.progress, experiment.name);
+  heartbeat.doing("planning its rows");
+  return plan(experiment, line);
+}
+
 std::string journal_file(const CommandLine& line) { return line.out + ".journal"; }
 
 /// Includes the contents of the files that the settings name, by default or as chosen.
@@ -139,7 +103,8 @@ RunKey run_key(const Experiment& experiment, const CommandLine& line) {
   return key;
 }
 
-/// Rows of a complete table from an earlier run with the same settings.
+/// Rows of a complete table from an earlier run with the same settings, if this very
+/// program made it.
 void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
   std::error_code ignored;  // check_output has reported the problem
   if (!std::filesystem::exists(line.out, ignored)) return;
@@ -155,65 +120,12 @@ void keep_table(const Experiment& experiment, const CommandLine& line, Rows& row
                      beside(line.out, ".meta.json"),
                      "repeat them, choose another --out, or leave out --resume");
   }
+  if (manifest && !made_by_this_program(*manifest)) {
+    tell("{}: {} was made by another build: it is made again from its first row\n",
+         experiment.name, line.out);
+    return;
+  }
   for (const Row& row : table.rows) rows.keep(row);
-}
-
-std::string_view heading(Verdicts::State state) {
-  switch (state) {
-    case Verdicts::State::held:
-      return "PASS";
-    case Verdicts::State::broken:
-      return "FAIL";
-    case Verdicts::State::known_limit:
-      return "KNOWN LIMIT";
-    case Verdicts::State::changed:
-      return "CHANGED";
-    case Verdicts::State::not_judged:
-    case Verdicts::State::figure:
-      break;
-  }
-  return "FIGURE";
-}
-
-void tell_verdicts(std::string_view experiment, const Verdicts& verdicts) {
-  int not_judged = 0;
-  for (const Verdicts::Verdict& verdict : verdicts.all()) {
-    if (verdict.state == Verdicts::State::not_judged) {
-      ++not_judged;
-      continue;
-    }
-    const bool limit = verdict.state == Verdicts::State::known_limit ||
-                       verdict.state == Verdicts::State::changed;
-    tell("{}: {} {} ({:.3g}){}{}\n", experiment, heading(verdict.state), verdict.claim,
-         verdict.value, limit ? "; " : "", limit ? verdict.reason : "");
-  }
-  if (not_judged > 0) {
-    tell("{}: not judged: {} claims of rows that were not run\n", experiment, not_judged);
-  }
-}
-
-int report(const Experiment& experiment, const CommandLine& line,
-           const std::vector<Row>& rows, const Verdicts& verdicts) {
-  std::map<std::string, int> counts;
-  const Row* failed = nullptr;
-  for (const Row& row : rows) {
-    ++counts[std::string(row.status())];
-    const bool finding = experiment.finding && experiment.finding(row);
-    if (failed == nullptr && !row.ok() && !finding) failed = &row;
-  }
-  // With JSON progress they are in the manifest.
-  if (line.progress != ProgressMode::json) tell_verdicts(experiment.name, verdicts);
-  if (line.progress != ProgressMode::none || failed != nullptr) {
-    std::string text;
-    for (const auto& [status, count] : counts)
-      text += fmt::format(", {} {}", count, status);
-    if (failed != nullptr) {
-      text += fmt::format("; first: {}", printable(failed->text("reason")));
-    }
-    tell("{}: {} rows{} -> {}\n", experiment.name, rows.size(), text, line.out);
-  }
-  const bool alarm = std::ranges::any_of(verdicts.all(), &Verdicts::Verdict::alarm);
-  return alarm || failed != nullptr ? rows_failed : done;
 }
 
 /// Completes, judges and writes the table; returns the exit code.
@@ -233,7 +145,7 @@ int finish(const Experiment& experiment, const CommandLine& line, std::vector<Ro
     replace_file(line.out, csv);
   }
   if (experiment.conclude && line.shard_count == 1) experiment.conclude(line, rows);
-  return report(experiment, line, rows, verdicts);
+  return report_table(experiment, line, rows, verdicts);
 }
 
 int merge_tables(const Experiment& experiment, const CommandLine& line) {
@@ -246,23 +158,68 @@ int merge_tables(const Experiment& experiment, const CommandLine& line) {
   return merged.conflicts.empty() ? code : rows_failed;
 }
 
+bool named_output(const CommandLine& line) {
+  return line.out != standard_output && line.places.count("out") > 0;
+}
+
+/// Of the table and of what is written beside it.
+void check_outputs(const CommandLine& line) {
+  std::error_code ignored;  // check_output reports problems with the directory
+  if (!named_output(line)) std::filesystem::create_directory("results", ignored);
+  check_output(line.out);
+  check_output(beside(line.out, ".meta.json"));
+}
+
 /// Standard output can only be checked by writing to it, so it gets the header now.
 void check_place(const Experiment& experiment, const CommandLine& line) {
   if (line.out == standard_output) {
     write_all(STDOUT_FILENO, csv_line(header(experiment.columns)), "standard output");
-    return;
+  } else {
+    check_outputs(line);
   }
-  std::error_code ignored;  // check_output reports problems with the directory
-  const bool ours = line.places.count("out") == 0;
-  if (ours) std::filesystem::create_directory("results", ignored);
-  check_output(line.out);
 }
 
 std::unique_ptr<Journal> open_journal(const Experiment& experiment,
                                       const CommandLine& line) {
-  return std::make_unique<Journal>(
+  auto journal = std::make_unique<Journal>(
       journal_file(line), run_key(experiment, line),
       line.resume ? Journal::Mode::resume : Journal::Mode::fresh);
+  remove_leftovers(beside(line.out, ""));
+  return journal;
+}
+
+/// Refuses what a run would refuse before it plans its rows; the journal of an unfinished
+/// run, if there is one.
+std::unique_ptr<Journal> begin(const Experiment& experiment, const CommandLine& line,
+                               Rows& rows) {
+  check_outputs(line);
+  if (line.resume) keep_table(experiment, line, rows);
+  auto journal = open_journal(experiment, line);
+  if (!journal->rows().empty()) return journal;
+  journal->remove();
+  return nullptr;
+}
+
+/// The cases that other programs disturbed, to be timed again; none where most were, for
+/// such a machine is as busy later.
+std::vector<Case> again_without_load(const Experiment& experiment,
+                                     const std::vector<Case>& cases, RowLoads& loads) {
+  const std::set<std::string> above = loads.above();
+  std::vector<Case> again;
+  if (2 * above.size() < cases.size()) {
+    for (const Case& work : cases) {
+      if (above.count(std::string(work.identity.text("run_id"))) > 0)
+        again.push_back(work);
+    }
+  }
+  if (!above.empty()) {
+    tell(
+        "{}: {} of {} rows were timed while other programs used more than {} of a "
+        "processor: they are {}\n",
+        experiment.name, above.size(), cases.size(), most_load,
+        again.empty() ? "marked in the manifest" : "timed again");
+  }
+  return again;
 }
 
 int run_rows(const Experiment& experiment, const CommandLine& line) {
@@ -270,17 +227,9 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   std::unique_ptr<Journal> journal;
   // Problems with a named output are reported before planning, which may take seconds for
   // its references; a plan that fails leaves nothing behind.
-  const bool named = line.out != standard_output && line.places.count("out") > 0;
-  if (named) {
-    check_output(line.out);
-    if (line.resume) keep_table(experiment, line, rows);
-    journal = open_journal(experiment, line);
-    if (journal->rows().empty()) {
-      journal->remove();
-      journal.reset();
-    }
-  }
-  const std::vector<Case> planned = plan(experiment, line);
+  const bool named = named_output(line);
+  if (named) journal = begin(experiment, line, rows);
+  const std::vector<Case> planned = planned_aloud(experiment, line);
   if (planned.empty() && line.shard_count == 1) {
     throw InputError("these options leave no row to run", "command line",
                      "--list shows what there is");
@@ -297,13 +246,16 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
     if (row == nullptr || (line.retry_failed && !row->ok())) todo.push_back(work);
   }
   const std::size_t kept = planned.size() - todo.size();
-  const Manifest manifest(experiment, line);
+  Manifest manifest(experiment, line);
   const std::vector<std::string> columns = header(experiment.columns);
-  SweepEnd end = SweepEnd::complete;
-  {
-    Progress progress(line.progress, experiment.name, todo.size());
+  // Of rows that run at the same time, each would be the others' load.
+  std::optional<RowLoads> loads;
+  if (experiment.timed && line.jobs == 1) loads.emplace();
+  const auto run = [&](const std::vector<Case>& cases) {
+    Progress progress(line.progress, experiment.name, cases.size());
     const auto keep = [&](std::vector<Row> of, double seconds) {
       progress.finished(of.front(), seconds);
+      if (loads) loads->finished(std::string(of.front().text("run_id")));
       // A case's first row is stored last: if it is present, all of them are.
       for (std::size_t i = of.size(); i-- > 0;) {
         static_cast<void>(in_order(of[i], columns));  // an undeclared column: a
@@ -312,7 +264,16 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
         rows.keep(std::move(of[i]));
       }
     };
-    end = sweep(todo, line.jobs, line.timeout_s, keep);
+    return sweep(cases, line.jobs, line.timeout_s, keep,
+                 [&](const Case& work, double seconds) {
+                   progress.running(work.identity, seconds);
+                 });
+  };
+  SweepEnd end = run(todo);
+  if (loads && end == SweepEnd::complete) {
+    const std::vector<Case> again = again_without_load(experiment, todo, *loads);
+    if (!again.empty()) end = run(again);
+    manifest.set_load(*loads);
   }
   if (end == SweepEnd::interrupted) {
     const std::string remedy =
@@ -329,7 +290,14 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   return code;
 }
 
+int check(const Experiment& experiment, const CommandLine& line) {
+  Rows rows;
+  if (line.out != standard_output) begin(experiment, line, rows);
+  return done;
+}
+
 int dry_run(const Experiment& experiment, const CommandLine& line) {
+  if (named_output(line)) check_outputs(line);
   std::string text;
   for (const Case& work : plan(experiment, line)) text += describe(work.identity) + '\n';
   write_all(STDOUT_FILENO, text, "standard output");
@@ -337,9 +305,9 @@ int dry_run(const Experiment& experiment, const CommandLine& line) {
 }
 
 int answer(const Experiment& experiment, int argc, char** argv) {
-  CommandLine line =
-      parse_command_line(experiment.name, experiment.question, experiment.example, argc,
-                         argv, experiment.options, experiment.unused);
+  CommandLine line = parse_command_line(
+      experiment.name, experiment.question, experiment.example, argc, argv,
+      experiment.options, experiment.unused, experiment.settings);
   for (const std::string& plugin : line.plugins) load_plugin(plugin);
   if (!experiment.timed && line.places.count("jobs") == 0) {
     line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -359,6 +327,7 @@ int answer(const Experiment& experiment, int argc, char** argv) {
     check_place(experiment, line);
     return merge_tables(experiment, line);
   }
+  if (line.check) return check(experiment, line);
   return line.dry_run ? dry_run(experiment, line) : run_rows(experiment, line);
 }
 

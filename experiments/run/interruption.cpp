@@ -1,7 +1,6 @@
 #include "experiments/run/interruption.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <exception>
@@ -10,21 +9,9 @@
 #include "experiments/run/message.h"
 
 namespace tress::experiments {
-namespace {
-
-sigset_t both_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  return set;
-}
-
-}  // namespace
-
-Interruption::Interruption(std::string_view program) : program_(program) {
-  const sigset_t set = both_signals();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+Interruption::Interruption(std::string_view program)
+    : program_(program), signals_(stop_signals()) {
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   thread_ = std::thread([this] { wait(); });
 }
 
@@ -32,17 +19,15 @@ Interruption::~Interruption() {
   over_ = true;
   pthread_kill(thread_.native_handle(), SIGINT);
   thread_.join();
-  const sigset_t set = both_signals();
-  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
 }
 
 void Interruption::wait() {
-  const sigset_t set = both_signals();
   int signal = 0;
-  sigwait(&set, &signal);
+  sigwait(&signals_, &signal);
   if (over_) return;
   // A second signal is not waited for: exit_code()'s handler ends the program.
-  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
   const auto held = hold();
   if (silent_ && silent_()) ::_exit(interrupted);
   try {

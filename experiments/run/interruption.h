@@ -1,5 +1,7 @@
 #pragma once
 
+#include <signal.h>
+
 #include <atomic>
 #include <functional>
 #include <mutex>
@@ -12,8 +14,8 @@
 
 namespace tress::experiments {
 
-/// Handles SIGINT and SIGTERM whatever the other threads are doing: a dedicated thread
-/// waits for them, calls the registered `save`, prints that --resume continues the run,
+/// Handles stop_signals() whatever the other threads are doing: a dedicated thread waits
+/// for them, calls the registered `save`, prints that --resume continues the run,
 /// and exits with code 130. A second signal ends the program at once.
 ///
 /// Construct before any other thread: later threads inherit the blocked signals.
@@ -67,6 +69,7 @@ class Interruption {
   void wait();
 
   std::string program_;
+  sigset_t signals_;
   std::mutex mutex_;
   std::function<void()> save_;
   std::function<bool()> silent_;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "experiments/run/command_line.h"
 #include "integrators/integrator_options.h"
 #include "models/strand/strand_parameters.h"
 
@@ -61,20 +62,6 @@ class Footnotes {
  private:
   std::vector<std::string> reasons_;
 };
-
-std::string default_text(const Parameter& p) {
-  if (!p.choices.empty()) return std::string(p.choices);
-  const bool one_number = !p.text && !p.rows && p.components == 1;
-  return one_number ? fmt::format("{}", p.number) : p.default_text();
-}
-
-std::string parameter_lines(std::span<const Parameter> parameters) {
-  std::string text;
-  for (const Parameter& p : parameters) {
-    text += fmt::format("      {:<20} {} [{}]\n", p.name, p.help, default_text(p));
-  }
-  return text;
-}
 
 /// "pab 2,3": formulations that work, then the numbers of the notes on the others.
 std::string cell(const IntegratorEntry& integrator, System& system, Footnotes& notes) {

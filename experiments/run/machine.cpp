@@ -64,6 +64,19 @@ std::string widest_simd() {
   return {};
 }
 
+/// What all processors have worked since the system started, s; 0: it does not say.
+double busy_processors_s() {
+  std::ifstream stream("/proc/stat");
+  std::string cpu;
+  stream >> cpu;
+  double busy = 0, ticks = 0;
+  // user, nice, system, idle, iowait, irq, softirq, steal
+  for (int i = 0; i < 8 && stream >> ticks; ++i) {
+    if (i != 3 && i != 4) busy += ticks;
+  }
+  return busy / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
 }  // namespace
 
 Machine machine() {
@@ -106,6 +119,23 @@ Spent spent_so_far() {
         std::max(all.largest_mb, static_cast<double>(used.ru_maxrss) * 1024e-6);
   }
   return all;
+}
+
+OtherLoad::OtherLoad()
+    : begin_(Clock::now()),
+      busy_s_(busy_processors_s()),
+      own_s_(spent_so_far().processor_s) {}
+
+double OtherLoad::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - begin_).count();
+}
+
+double OtherLoad::processors() {
+  const OtherLoad now;
+  const double passed = std::chrono::duration<double>(now.begin_ - begin_).count();
+  const double others = now.busy_s_ - busy_s_ - (now.own_s_ - own_s_);
+  *this = now;
+  return passed > 0 ? std::max(0.0, others / passed) : 0;
 }
 
 Versions library_versions() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,6 +35,22 @@ struct Spent {
   double largest_mb = 0;  // memory of the largest of them (MB)
 };
 Spent spent_so_far();
+
+/// Processors that other programs use.
+class OtherLoad {
+ public:
+  OtherLoad();
+  /// Since the last call of processors(), or since this was made.
+  double seconds() const;
+  /// On average over that time, after which the next begins; 0 where the system does not
+  /// say. Children of this process count as others until they were waited for.
+  double processors();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_;
+  double busy_s_, own_s_;  // of all programs, and of this one, at the beginning
+};
 
 using Versions = std::vector<std::pair<std::string, std::string>>;
 Versions library_versions();

@@ -77,7 +77,6 @@ std::string settings_text(const CommandLine& line) {
 Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
     : experiment_(experiment),
       line_(line),
-      source_(source_state()),
       load_(load_average()),
       sundials_ratio_(sundials_speed_ratio()),
       start_(utc_now()) {
@@ -86,6 +85,13 @@ Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
         "{}: warning: slow SUNDIALS build ({:.1f} x our own loop): its timings mean "
         "nothing; './tress setup' builds a Release one\n",
         experiment.name, sundials_ratio_);
+  }
+  const std::string here = checked_out(build_facts().source_tree);
+  if (!here.empty() && here != build_facts().commit) {
+    tell(
+        "{}: warning: this program was built from commit {:.10}, and the source tree has "
+        "{:.10} checked out: build it again, or the table is not of that commit\n",
+        experiment.name, build_facts().commit, here);
   }
   const int cpus = machine().cpus;
   if (load_[0] > cpus) {
@@ -96,6 +102,11 @@ Manifest::Manifest(const Experiment& experiment, const CommandLine& line)
 
 void Manifest::add_input(std::string file, std::string text) {
   inputs_.emplace_back(std::move(file), std::move(text));
+}
+
+void Manifest::set_load(RowLoads& loads) {
+  load_during_ = {
+      {"limit", most_load}, {"rows_above", loads.above()}, {"largest", loads.largest()}};
 }
 
 std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& verdicts,
@@ -151,11 +162,15 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"start", start_},
       {"end", utc_now()},
       {"checks", checks_of(verdicts)},
-      {"git", {{"commit", source_.commit}, {"dirty", source_.dirty}}},
+      {"git",
+       {{"commit", build_facts().commit},
+        {"dirty", build_facts().dirty()},
+        {"changes", build_facts().changes}}},
       {"build",
        {{"compiler", build_facts().compiler},
         {"flags", build_facts().flags},
-        {"type", build_facts().type}}},
+        {"type", build_facts().type},
+        {"executable_fnv1a_64", executable_checksum()}}},
       {"machine",
        {{"cpu", here.cpu},
         {"cpus", here.cpus},
@@ -164,6 +179,7 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
         {"kernels", here.kernels},
         {"kernel", here.kernel},
         {"load_before", load_},
+        {"load_of_others_during", load_during_},
         {"load_after", load_average()}}},
       {"libraries", libraries},
       {"sundials_speed_ratio", sundials_ratio_},
@@ -175,6 +191,13 @@ std::string Manifest::finished(const std::vector<Row>& rows, const Verdicts& ver
       {"glossary", glossary}};
   if (outcome_) manifest["outcome"] = outcome_of(*outcome_);
   return manifest.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+bool made_by_this_program(const nlohmann::json& manifest) {
+  if (!manifest.is_object() || !manifest.contains("build")) return false;
+  const nlohmann::json& build = manifest.at("build");
+  return build.is_object() &&
+         build.value("executable_fnv1a_64", nlohmann::json()) == executable_checksum();
 }
 
 std::optional<nlohmann::json> manifest_of(const std::string& table) {

@@ -8,15 +8,16 @@
 
 #include "experiments/run/experiment.h"
 #include "experiments/run/machine.h"
-#include "simulation/files/source_state.h"
+#include "experiments/run/row_loads.h"
 
 namespace tress::experiments {
 
 /// Provenance of a table, written next to it as <table>.meta.json.
 class Manifest {
  public:
-  /// Records machine, source tree and SUNDIALS before the work starts; warns on standard
-  /// error when SUNDIALS is a slow build or the machine is busy.
+  /// Records machine and SUNDIALS before the work starts. Warns on standard error when
+  /// SUNDIALS is a slow build, the machine is busy, or the source tree has another commit
+  /// checked out than the one that this program was built from.
   Manifest(const Experiment& experiment, const CommandLine& line);
 
   /// A file that the work depends on, stored with its text and checksum.
@@ -25,6 +26,9 @@ class Manifest {
   /// Of a program without a table: the cells of its one row, by column.
   void set_outcome(Row row) { outcome_ = std::move(row); }
 
+  /// What other programs did to the timings.
+  void set_load(RowLoads& loads);
+
   /// The JSON text, with end time, load and the counts of `rows`.
   std::string finished(const std::vector<Row>& rows, const Verdicts& verdicts,
                        std::size_t kept_from_before) const;
@@ -32,16 +36,19 @@ class Manifest {
  private:
   const Experiment& experiment_;
   const CommandLine& line_;
-  SourceState source_;
   std::array<double, 3> load_;
   double sundials_ratio_;
   std::string start_;
   std::vector<std::pair<std::string, std::string>> inputs_;  // names and texts
   std::optional<Row> outcome_;
+  nlohmann::ordered_json load_during_;  // null: not measured
 };
 
 /// Beside a table, if it is there; `discarded` if it is no JSON.
 std::optional<nlohmann::json> manifest_of(const std::string& table);
+
+/// Whether the executable that runs now made that table.
+bool made_by_this_program(const nlohmann::json& manifest);
 
 /// Names and checksums of the plug-ins that are loaded, a blank before each; empty
 /// without.

@@ -8,6 +8,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/run/manifest.h"
+#include "simulation/files/build_facts.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
 
@@ -18,7 +19,7 @@ namespace {
 struct Part {
   std::string file;  // the table
   int index, count;
-  std::string commit, settings;
+  std::string commit, build, settings;
 };
 
 /// Nothing for a whole table, or one without a manifest.
@@ -30,8 +31,20 @@ std::optional<Part> part_of(const std::string& file) {
     const auto [index, count] =
         parse_shard(manifest->at("shard").get<std::string>(), meta);
     if (count == 1) return {};
-    return Part{file, index, count, manifest->at("git").at("commit").get<std::string>(),
-                manifest->at("settings").get<std::string>()};
+    const auto& git = manifest->at("git");
+    const auto& build = manifest->at("build");
+    const auto text = [](const nlohmann::json& of, const char* key) {
+      return of.at(key).get<std::string>();
+    };
+    std::string commit = text(git, "commit");
+    if (git.value("dirty", false)) commit += " with changes " + git.value("changes", "");
+    return Part{file,
+                index,
+                count,
+                commit,
+                text(build, "type") + ", " + text(build, "compiler") + ", " +
+                    text(build, "flags"),
+                text(*manifest, "settings")};
   } catch (const nlohmann::json::exception&) {
     throw InputError("not a manifest of tress", meta,
                      "write the part again, or move the file away");
@@ -64,6 +77,14 @@ std::vector<Part> parts_of(std::span<const std::string> files,
     refuse_if(part.commit != first.commit,
               fmt::format("made by commit {}, part {} by {}", part.commit, first.index,
                           first.commit),
+              part, "run one of them again");
+    refuse_if(part.commit != build_facts().code(),
+              fmt::format("made by commit {}, and this program is of {}", part.commit,
+                          build_facts().code()),
+              part, "merge by the program that made the parts");
+    refuse_if(part.build != first.build,
+              fmt::format("made by a build with {}, part {} by one with {}", part.build,
+                          first.index, first.build),
               part, "run one of them again");
     refuse_if(
         part.settings != settings,

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "experiments/run/message.h"
 
@@ -14,7 +15,7 @@ namespace tress::experiments {
 namespace {
 
 constexpr std::chrono::milliseconds between_bars{100};
-constexpr std::chrono::seconds between_lines{5};
+constexpr std::chrono::seconds between_running_bars{1};
 constexpr int bar_width = 30;
 
 }  // namespace
@@ -57,6 +58,7 @@ void Progress::finished(const Row& row, double seconds) {
                                {"eta_s", left_s},        {"seconds", seconds},
                                {"status", row.status()}, {"run_id", row.text("run_id")}};
     tell("{}\n", event.dump());
+    last_ = now;
     return;
   }
   const bool due =
@@ -71,6 +73,24 @@ void Progress::finished(const Row& row, double seconds) {
   }
 }
 
+void Progress::running(const Row& identity, double seconds) {
+  const auto now = Clock::now();
+  if (style_ == Style::none) return;
+  if (now - last_ < (style_ == Style::bar ? between_running_bars : between_lines)) return;
+  last_ = now;
+  if (style_ == Style::bar) {
+    print_bar(NAN);
+  } else if (style_ == Style::json) {
+    const nlohmann::json event{
+        {"event", "running"}, {"experiment", name_},       {"done", done_},
+        {"total", rows_},     {"row", describe(identity)}, {"seconds", seconds}};
+    tell("{}\n", event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    tell("{}: {}/{} rows, {} failed; for {} at {}\n", name_, done_, rows_, failed_,
+         readable_duration(seconds), describe(identity));
+  }
+}
+
 void Progress::print_bar(double left_s) const {
   const int full = rows_ == 0 ? bar_width : static_cast<int>(bar_width * done_ / rows_);
   const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
@@ -82,6 +102,59 @@ void Progress::print_bar(double left_s) const {
        failed_ > 0 ? fmt::format(", {} failed", failed_) : "", red ? "\033[0m" : "",
        left);
   std::fflush(stderr);
+}
+
+Heartbeat::Heartbeat(ProgressMode mode, std::string_view program)
+    : mode_(mode),
+      terminal_(mode == ProgressMode::automatic && ::isatty(STDERR_FILENO) != 0),
+      program_(program) {
+  if (mode_ != ProgressMode::none) thread_ = std::thread([this] { run(); });
+}
+
+Heartbeat::~Heartbeat() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+  if (terminal_) tell_text("\r\033[K");
+}
+
+void Heartbeat::doing(std::string what) {
+  const std::lock_guard lock(mutex_);
+  doing_ = std::move(what);
+  begun_ = Clock::now();
+}
+
+void Heartbeat::told() {
+  const std::lock_guard lock(mutex_);
+  told_ = Clock::now();
+}
+
+void Heartbeat::run() {
+  std::unique_lock lock(mutex_);
+  while (!over_) {
+    changed_.wait_until(lock, told_ + between_lines);
+    const auto now = Clock::now();
+    if (over_ || now < told_ + between_lines) continue;
+    told_ = now;
+    if (!doing_.empty()) tell_text(line(now));
+  }
+}
+
+std::string Heartbeat::line(Clock::time_point now) const {
+  const double seconds = std::chrono::duration<double>(now - begun_).count();
+  if (mode_ == ProgressMode::json) {
+    const nlohmann::json event{{"event", "working"},
+                               {"program", program_},
+                               {"on", doing_},
+                               {"seconds", seconds}};
+    return event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  }
+  return fmt::format("{}{}: {}, for {}{}", terminal_ ? "\r" : "", program_, doing_,
+                     readable_duration(seconds), terminal_ ? "\033[K" : "\n");
 }
 
 }  // namespace tress::experiments

@@ -1,16 +1,23 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "experiments/run/command_line.h"
 #include "simulation/files/row.h"
 
 namespace tress::experiments {
 
+/// A program that works tells something at least that often.
+inline constexpr std::chrono::seconds between_lines{5};
+
 /// Progress of a sweep on standard error: a bar with the remaining time on a terminal,
-/// else occasional plain lines; one JSON object per row with `json`, nothing with `none`.
+/// else a plain line every five seconds; with `json` one object per row, and every five
+/// seconds without one; nothing with `none`.
 class Progress {
  public:
   Progress(ProgressMode mode, std::string_view name, std::size_t rows);
@@ -20,6 +27,8 @@ class Progress {
 
   /// A row that took `seconds`.
   void finished(const Row& row, double seconds);
+  /// No row has ended; that of `identity` has run for so many seconds.
+  void running(const Row& identity, double seconds);
 
  private:
   enum class Style { bar, lines, json, none };
@@ -31,6 +40,36 @@ class Progress {
   std::string name_;
   std::size_t rows_, done_ = 0, failed_ = 0;
   Clock::time_point start_, last_;
+};
+
+/// Tells on standard error what a program is doing, whenever it has told nothing for
+/// five seconds.
+class Heartbeat {
+ public:
+  Heartbeat(ProgressMode mode, std::string_view program);
+  ~Heartbeat();  // clears its line of a terminal
+  Heartbeat(const Heartbeat&) = delete;
+  Heartbeat& operator=(const Heartbeat&) = delete;
+
+  /// What is done from now on.
+  void doing(std::string what);
+  /// Something was told: the five seconds begin again.
+  void told();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void run();
+  std::string line(Clock::time_point now) const;
+
+  ProgressMode mode_;
+  bool terminal_;
+  std::string program_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool over_ = false;
+  std::string doing_;
+  Clock::time_point begun_ = Clock::now(), told_ = begun_;
+  std::thread thread_;  // last: it uses all of the above
 };
 
 /// Formats as 42 s, 3 min 20 s, 2 h 05 min.

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "experiments/run/exit_code.h"
 #include "experiments/run/worker.h"
 
 namespace tress::experiments {
@@ -19,14 +20,11 @@ constexpr int longest_wait_ms = 200;
 /// A process whose pipe is closed ends within microseconds; poll again soon.
 constexpr int ending_wait_ms = 1;
 
-/// Converts SIGINT and SIGTERM to an event that poll() sees, during its lifetime.
+/// Converts stop_signals() to an event that poll() sees, during its lifetime.
 class Interrupts {
  public:
   Interrupts() {
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
+    const sigset_t set = stop_signals();
     sigprocmask(SIG_BLOCK, &set, &before_);
     descriptor_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
     if (descriptor_ < 0) {
@@ -68,7 +66,8 @@ void wait_for_news(const std::vector<Worker>& workers, int interrupts) {
 }  // namespace
 
 SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
-               const std::function<void(std::vector<Row>, double seconds)>& finished) {
+               const std::function<void(std::vector<Row>, double seconds)>& finished,
+               const std::function<void(const Case&, double seconds)>& running) {
   const Interrupts interrupts;
   std::vector<Worker> workers;
   std::size_t next = 0;
@@ -79,15 +78,16 @@ SweepEnd sweep(const std::vector<Case>& cases, int jobs, double timeout_s,
     }
     wait_for_news(workers, interrupts.descriptor());
     if (interrupts.happened()) return SweepEnd::interrupted;
-    std::vector<Worker> running;
+    std::vector<Worker> left;
     for (Worker& worker : workers) {
       if (std::optional<std::vector<Row>> rows = worker.poll()) {
         finished(std::move(*rows), worker.seconds());
       } else {
-        running.push_back(std::move(worker));
+        left.push_back(std::move(worker));
       }
     }
-    workers.swap(running);
+    workers.swap(left);
+    if (!workers.empty()) running(workers.front().work(), workers.front().seconds());
   }
   return SweepEnd::complete;
 }

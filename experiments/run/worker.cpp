@@ -11,9 +11,11 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
+#include "experiments/run/exit_code.h"
 #include "experiments/run/journal.h"
 #include "simulation/files/files.h"
 
@@ -25,7 +27,10 @@ namespace {
 double grace_s(double timeout_s) { return std::clamp(0.1 * timeout_s, 0.05, 2.0); }
 
 void reset_signals() {
-  for (const int stop : {SIGINT, SIGTERM}) ::signal(stop, SIG_DFL);
+  const sigset_t stops = stop_signals();
+  for (const int stop : {SIGINT, SIGTERM, SIGHUP}) {
+    if (sigismember(&stops, stop) != 0) ::signal(stop, SIG_DFL);
+  }
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -46,6 +51,8 @@ std::vector<Row> measured(const Case& work, const Deadline& deadline) {
     }
     if (rows.empty()) throw std::logic_error("a case without rows");
     return rows;
+  } catch (const std::bad_alloc&) {
+    row.failed("exception", "not enough memory");
   } catch (const std::exception& error) {
     row.failed("exception", error.what());
   } catch (...) {

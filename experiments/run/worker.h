@@ -23,6 +23,7 @@ class Worker {
   Worker(Worker&& other) noexcept;
   Worker& operator=(Worker&&) = delete;
 
+  const Case& work() const { return *work_; }
   double seconds() const;             // since the start
   int pipe() const { return pipe_; }  // -1 once the far end is closed
   Clock::time_point killed_at() const { return kill_at_; }

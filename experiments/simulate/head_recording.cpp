@@ -50,6 +50,7 @@ HeadRecording::HeadRecording(std::string stem, RunKey key, const Scene& scene,
 }
 
 void HeadRecording::open(const Scene& scene, StoredFrames stored, bool resume) {
+  remove_leftovers(stem_);
   const std::string state = stem_ + ".state";
   std::error_code error;
   if (resume && std::filesystem::exists(state, error)) {

@@ -79,6 +79,7 @@ class HeadSceneRun {
       if (losses_ > 0) made.end = SceneRun::End::failed;
       return;
     }
+    options_.heartbeat->doing(scene_.name + ": writing its pictures");
     write_head_pictures(outline_, recording_->frames(), reading_->shown(), options_);
     const auto whole = interruption_.hold();
     recording_->close();
@@ -180,7 +181,8 @@ class HeadSceneRun {
     } at_the_end{stop};
     const auto between_saves =
         static_cast<std::size_t>(std::round(scene_.checkpoint * scene_.frame_rate));
-    TimeBar bar(options_.progress, scene_, frames_ > 0 ? scene_.time_of(frames_ - 1) : 0);
+    TimeBar bar(options_.progress, scene_, frames_ > 0 ? scene_.time_of(frames_ - 1) : 0,
+                *options_.heartbeat);
     SaveClock clock(options_.save_every);
     if (frames_ == 0) add_frame(0, outcome);
     std::size_t step = step_;

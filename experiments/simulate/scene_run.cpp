@@ -74,7 +74,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
 
   SceneRun run{SceneRun::End::complete, {}, 0, 0, 0, 0};
   const std::size_t last = scene.last_frame();
-  TimeBar bar(options.progress, scene, world->time());
+  TimeBar bar(options.progress, scene, world->time(), *options.heartbeat);
   while (recording.frames().size() <= last) {
     const std::size_t frame = recording.frames().size();
     if (world->advance(scene.time_of(frame)) != Status::ok) {
@@ -105,6 +105,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   }
   run.simulated_s = world->time();
   run.wall_s = seconds_since(begin);
+  options.heartbeat->doing(scene.name + ": writing its pictures");
   pictures.write(recording.frames(), options.further && run.end == SceneRun::End::complete
                                          ? options.further()
                                          : std::vector<FurtherChannel>{});

@@ -7,6 +7,7 @@
 
 #include "experiments/run/command_line.h"
 #include "experiments/run/interruption.h"
+#include "experiments/run/progress.h"
 #include "models/head/head.h"
 #include "simulation/files/run_key.h"
 #include "simulation/head/head_device.h"
@@ -34,6 +35,7 @@ struct SceneRunOptions {
   bool hair = false;       // <stem>_hair/: .hair for every frame
   bool gltf = false;       // <stem>.glb
   ProgressMode progress = ProgressMode::automatic;
+  Heartbeat* heartbeat = nullptr;
   /// Asked once the run has come to its end, before pictures are written.
   std::function<std::vector<FurtherChannel>()> further;
   // Of a head.

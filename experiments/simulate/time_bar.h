@@ -17,11 +17,15 @@ namespace tress::experiments::scene_runs {
 class TimeBar {
  public:
   /// From the simulated time on at which the run goes on.
-  TimeBar(ProgressMode mode, const simulation::Scene& scene, double from)
+  TimeBar(ProgressMode mode, const simulation::Scene& scene, double from,
+          Heartbeat& heartbeat)
       : mode_(mode),
+        heartbeat_(heartbeat),
         terminal_(::isatty(STDERR_FILENO) != 0),
         scene_(scene),
-        from_(from) {}
+        from_(from) {
+    at(from);
+  }
   TimeBar(const TimeBar&) = delete;
   TimeBar& operator=(const TimeBar&) = delete;
   ~TimeBar() {
@@ -29,9 +33,11 @@ class TimeBar {
   }
 
   void show(double t) {
+    at(t);
     const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
     if (mode_ == ProgressMode::none || wall - last_ < (terminal_ ? 0.1 : 5.0)) return;
     last_ = wall;
+    heartbeat_.told();
     const double left = wall * (scene_.duration - t) / (t - from_);
     if (mode_ == ProgressMode::json) {
       const nlohmann::json event{
@@ -49,7 +55,13 @@ class TimeBar {
 
  private:
   using Clock = std::chrono::steady_clock;
+  void at(double t) {
+    heartbeat_.doing(fmt::format("{}: at {:.4g} of {:.4g} s simulated", scene_.name, t,
+                                 scene_.duration));
+  }
+
   ProgressMode mode_;
+  Heartbeat& heartbeat_;
   bool terminal_;
   const simulation::Scene& scene_;
   double from_;  // s

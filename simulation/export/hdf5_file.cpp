@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "simulation/files/files.h"
 
 namespace tress::simulation {
 namespace {
@@ -25,6 +26,12 @@ std::string reason() {
         return 1;  // the first is enough
       },
       &text);
+  // "file write failed: time = ..., errno = 28, error message = 'No space left ...', ..."
+  constexpr std::string_view of_system = "error message = '";
+  if (const std::size_t at = text.find(of_system); at != std::string::npos) {
+    const std::size_t begin = at + of_system.size();
+    return text.substr(begin, text.find('\'', begin) - begin);
+  }
   return text;
 }
 
@@ -58,8 +65,11 @@ std::int64_t opened(const std::string& file, Hdf5File::Mode mode) {
   cache.flash_incr_mode = H5C_flash_incr__off;
   cache.decr_mode = H5C_decr__off;
   if (H5Pset_mdc_config(access.id(), &cache) < 0) failed(file, "open");
+  if (mode != Hdf5File::Mode::read) refuse_link(file);
   if (mode == Hdf5File::Mode::create) {
-    return made(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), file,
+    // A new file, not the old one emptied: it may have another name elsewhere.
+    ::unlink(file.c_str());
+    return made(H5Fcreate(file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.id()), file,
                 "create");
   }
   return made(
@@ -135,6 +145,8 @@ void Hdf5File::create(const std::string& dataset, const Shape& shape) {
   checked(H5Pset_chunk(layout.id(), rank, chunk.data()), "write");
   checked(H5Pset_shuffle(layout.id()), "write");
   checked(H5Pset_deflate(layout.id(), static_cast<unsigned>(shape.level)), "write");
+  // Otherwise no two files would be the same bytes.
+  checked(H5Pset_obj_track_times(layout.id(), false), "write");
   const Hdf5Handle groups(checked(H5Pcreate(H5P_LINK_CREATE), "write"), H5Pclose);
   checked(H5Pset_create_intermediate_group(groups.id(), 1), "write");
   const Hdf5Handle made(

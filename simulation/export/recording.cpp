@@ -119,6 +119,7 @@ Recording::Recording(std::string stem, const RunKey& key, const Readout& readout
       columns_(readout.series()),
       points_(readout.points()),
       channels_(readout.channels().size()) {
+  remove_leftovers(stem_);
   const std::string state = stem_ + ".state";
   std::error_code error;
   if (resume && std::filesystem::exists(state, error)) {

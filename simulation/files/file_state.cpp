@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "contract/input_error.h"
+#include "simulation/files/files.h"
 
 namespace tress::simulation {
 
@@ -33,6 +34,7 @@ FileState state_of(const std::string& file, std::vector<FileRange> unchanging) {
 }
 
 void restore(const std::string& file, const FileState& state) {
+  refuse_link(file);
   std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
   const char* from = state.bytes.data();
   for (const auto& [begin, size] : state.ranges) {

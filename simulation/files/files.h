@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "contract/layers.h"
 #include "contract/read_file.h"
@@ -51,12 +52,31 @@ class Replacement {
 void replace_file(const std::string& file, std::string_view text);
 
 /// Refuses, before any work, an output that could not be written at the end: a directory,
-/// a device, a missing or unwritable parent.
+/// a link, a device, a missing or unwritable parent.
 void check_output(const std::string& file);
 
-/// Makes the folder, with those above it, if it is not there. Throws InputError naming
-/// `place`, where it was asked for, when that is not possible.
-void ready_folder(const std::string& folder, const std::string& place);
+/// Refuses an output that is a symbolic link: what it leads to may be anybody's file.
+void refuse_link(const std::string& file);
+
+/// Removes what Replacements of killed processes have left of files <stem>.* and of those
+/// in folders <stem>_*. To be called by the only process that writes them.
+void remove_leftovers(const std::string& stem);
+
+/// A folder for results: made, with those above it, if it is not there. What was made and
+/// is empty in the end is removed again.
+class ReadyFolder {
+ public:
+  /// Throws InputError naming `place`, where it was asked for, when it cannot be made.
+  ReadyFolder(const std::string& folder, const std::string& place);
+  ~ReadyFolder();
+  ReadyFolder(const ReadyFolder&) = delete;
+  ReadyFolder& operator=(const ReadyFolder&) = delete;
+
+ private:
+  void remove_empty() const;
+
+  std::vector<std::string> made_;  // innermost first
+};
 
 /// `file` without a final ".csv", followed by `ending`.
 std::string beside(const std::string& file, std::string_view ending);

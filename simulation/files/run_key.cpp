@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "contract/input_error.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/checksum.h"
 #include "simulation/files/files.h"
-#include "simulation/files/source_state.h"
+#include "simulation/files/toml_text.h"
 
 namespace tress::simulation {
 namespace {
@@ -24,30 +25,41 @@ bool is_file(const std::string& file) {
   return fs::is_regular_file(file, ignored);
 }
 
-void add_file(const std::string& file, Checksum& sum) {
-  // The separator marks the boundary between files.
-  sum.add(is_file(file) ? read_file(file) : "").add("\x1f");
+/// Calls `use` with every text of a TOML value, escapes resolved.
+void for_each_text(const toml::node& node,
+                   const std::function<void(const std::string&)>& use) {
+  if (const auto* text = node.as_string()) {
+    use(text->get());
+  } else if (const auto* table = node.as_table()) {
+    for (const auto& [key, value] : *table) for_each_text(value, use);
+  } else if (const auto* list = node.as_array()) {
+    for (const toml::node& entry : *list) for_each_text(entry, use);
+  }
 }
 
-/// Texts between two quotes of the same kind on one line.
-std::vector<std::string> quoted_texts(const std::string& text) {
-  std::vector<std::string> found;
-  for (std::size_t at = text.find_first_of("\"'"); at != std::string::npos;
-       at = text.find_first_of("\"'", at + 1)) {
-    const std::size_t end = text.find_first_of(std::string{text[at], '\n'}, at + 1);
-    if (end == std::string::npos || text[end] == '\n') continue;
-    found.push_back(text.substr(at + 1, end - at - 1));
-    at = end;
+/// The files that a scene names, in any way that TOML writes a text. Nothing for a file
+/// that is no TOML; reading it reports the error.
+std::vector<std::string> files_named(const std::string& text, const std::string& file) {
+  std::vector<std::string> files;
+  try {
+    for_each_text(parse_toml(text, file), [&](const std::string& name) {
+      if (name.find('\0') != std::string::npos) return;
+      const std::string named = (fs::path(file).parent_path() / name).string();
+      if (is_file(named)) files.push_back(named);
+    });
+  } catch (const InputError&) {
   }
-  return found;
+  return files;
 }
 
 }  // namespace
 
 RunKey::RunKey() {
-  const SourceState source = source_state();
-  add("version", std::string(build_facts().version));
-  add("commit", source.commit + (source.dirty ? " with changes" : ""));
+  const BuildFacts& built = build_facts();
+  add("version", std::string(built.version));
+  add("commit", built.code());
+  add("build", fmt::format("{}, {}, {}", built.type, built.compiler, built.flags));
+  add("executable", executable_checksum());
 }
 
 RunKey& RunKey::add(std::string name, std::string value) {
@@ -81,14 +93,14 @@ void RunKey::check(std::string_view found, const std::string& file) const {
 
 std::string contents_checksum(const std::vector<std::string>& files) {
   Checksum sum;
+  const auto add = [&](const std::string& text) {
+    sum.add(text).add("\x1f");  // marks the boundary between files
+  };
   for (const std::string& file : files) {
-    add_file(file, sum);
-    if (!file.ends_with(".toml") || !is_file(file)) continue;
-    const fs::path folder = fs::path(file).parent_path();
-    for (const std::string& name : quoted_texts(read_file(file))) {
-      const std::string named = (folder / name).string();
-      if (is_file(named)) add_file(named, sum);
-    }
+    const std::string text = is_file(file) ? read_file(file) : "";
+    add(text);
+    if (text.size() > most_toml_bytes) continue;
+    for (const std::string& named : files_named(text, file)) add(read_file(named));
   }
   return sum.text();
 }

@@ -13,7 +13,8 @@ namespace tress::simulation {
 /// it. One line of a file, as JSON.
 class RunKey {
  public:
-  /// Contains version and commit of this program.
+  /// Contains version, commit, build and checksum of this program: no two builds continue
+  /// each other's runs.
   RunKey();
   RunKey& add(std::string name, std::string value);
   std::string line() const;  // without newline
@@ -26,9 +27,9 @@ class RunKey {
   std::vector<std::pair<std::string, std::string>> parts_;
 };
 
-/// Checksum of these files and of those named by a scene among them: every quoted text of
-/// a .toml file that is a file name relative to its folder. Missing files count as empty;
-/// reading them reports the error.
+/// Checksum of these files and of those named by a scene among them: every text of a TOML
+/// file, escapes resolved, that is a file name relative to its folder. Missing files
+/// count as empty; reading them reports the error.
 std::string contents_checksum(const std::vector<std::string>& files);
 
 }  // namespace tress::simulation

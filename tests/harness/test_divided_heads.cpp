@@ -1,13 +1,19 @@
 // The model of what a divided head costs: its regions' borders beside those that a head
 // is divided into, its numbers found again in what it says, and what it predicts.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <system_error>
 #include <vector>
 
+#include "contract/read_file.h"
 #include "experiments/divided_heads/cost_model.h"
+#include "experiments/divided_heads/launch.h"
 #include "experiments/divided_heads/predictions.h"
 #include "experiments/divided_heads/scene.h"
 #include "simulation/head/head_division.h"
@@ -265,6 +271,35 @@ TEST(DividedScene, IsAsDenseWhateverItsNumberOfHairs) {
     EXPECT_NEAR(strands / area, hair_density,
                 8 * eps * hair_density * (4 * std::numbers::pi * 0.01 / area));
   }
+}
+
+TEST(DividedRuns, HaveAFolderThatNobodyElseCanReadOrForesee) {
+  std::filesystem::path first;
+  {
+    const PrivateFolder one, other;
+    first = one.path();
+    EXPECT_NE(first, other.path());
+    struct stat status {};
+    ASSERT_EQ(::stat(first.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0700U);
+  }
+  EXPECT_FALSE(std::filesystem::exists(first));
+}
+
+TEST(DividedRuns, TakeEveryWordAsItIs) {
+  const PrivateFolder folder;
+  const std::string log = folder.path() / "log";
+  const std::vector<std::string> words{"printf", "%s\n", "it's", "$(touch x)",
+                                       "a b; exit"};
+  EXPECT_TRUE(Launched(words, log).succeeds());
+  EXPECT_EQ(read_file(log), "it's\n$(touch x)\na b; exit\n");
+  EXPECT_FALSE(Launched({"false"}, log).succeeds());
+  EXPECT_THROW(Launched({"no such program"}, log), std::system_error);
+  // Somebody else's link in its place is not followed.
+  const std::string victim = folder.path() / "victim", link = folder.path() / "link";
+  std::filesystem::create_symlink(victim, link);
+  EXPECT_THROW(Launched({"true"}, link), std::system_error);
+  EXPECT_FALSE(std::filesystem::exists(victim));
 }
 
 }  // namespace tress::test_divided_heads

@@ -230,12 +230,12 @@ TEST(Sweep, AJournalInWhichOneDigitHasChangedIsRefused) {
   EXPECT_THAT(error, HasSubstr("checksum"));
 }
 
-TEST(Sweep, AJournalOfAnotherCommitOrVersionIsRefused) {
-  for (const std::string part : {"commit", "version"}) {
+TEST(Sweep, AJournalOfAnotherBuildIsRefused) {
+  for (const std::string part : {"commit", "version", "build", "executable"}) {
     const std::string error = message_after([&](const std::string& journal) {
       const std::size_t end = journal.find('\n');
       std::string key(unsealed(journal.substr(0, end)));
-      key.insert(key.find(part) + part.size() + 3, "0");
+      key.insert(key.find('"' + part + '"') + part.size() + 4, "0");
       return sealed(key) + journal.substr(end);
     });
     EXPECT_THAT(error, HasSubstr("it had other " + part)) << error;
@@ -264,6 +264,20 @@ TEST(Sweep, ResumeOfACompleteTableRunsNothingAndRetryOnlyWhatFailed) {
   EXPECT_EQ(toy.executed().size(), 4u);
   EXPECT_EQ(toy.run(command + " --resume --retry-failed").code, 3);
   EXPECT_THAT(toy.executed(), ElementsAre(0, 1, 2, 3, 2));
+}
+
+TEST(Sweep, ATableOfAnotherBuildIsMadeAgain) {
+  Toy toy;
+  ASSERT_EQ(toy.run("--out toy.csv").code, 0);
+  std::string meta = toy.read("toy.meta.json");
+  const std::string key = "\"executable_fnv1a_64\": \"";
+  const std::size_t at = meta.find(key);
+  ASSERT_NE(at, std::string::npos);
+  toy.write("toy.meta.json", meta.replace(at + key.size(), 4, "0000"));
+  const Toy::Result result = toy.run("--out toy.csv --resume");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.err, HasSubstr("toy.csv was made by another build"));
+  EXPECT_THAT(toy.executed(), ElementsAre(0, 1, 2, 3, 0, 1, 2, 3));
 }
 
 TEST(Sweep, ASecondRunOnTheSameTableIsRefusedWhileTheFirstRuns) {

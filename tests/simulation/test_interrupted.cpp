@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -55,7 +56,7 @@ void await_lines(const Toy& toy, std::size_t count) {
 }
 
 TEST(Interrupted, InsideAFrameThatWouldTakeAQuarterOfAnHour) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Toy toy;
     toy.write("scene.toml", endless());
     const pid_t process = toy.start(run);
@@ -191,10 +192,119 @@ TEST(RunKey, HoldsTheContentsOfTheFilesThatASceneNames) {
   const auto sum = [&] {
     return contents_checksum({(std::filesystem::path(toy.path("work")) / "scene.toml")});
   };
-  const std::string before = sum();
-  EXPECT_EQ(sum(), before);
-  toy.write("ball.txt", "2");
-  EXPECT_NE(sum(), before);
+  // As TOML may write the name.
+  for (const std::string name :
+       {R"("ball.txt")", R"("b\u0061ll.txt")", "'ball.txt'", "'''ball.txt'''",
+        "'''\nball.txt'''", "\"\"\"ball.\\\n   txt\"\"\"", R"(["x", "ball.txt"])"}) {
+    toy.write("scene.toml", "[effects.body]\nsdf_file = " + name + "\n");
+    toy.write("ball.txt", "1");
+    const std::string before = sum();
+    EXPECT_EQ(sum(), before);
+    toy.write("ball.txt", "2");
+    EXPECT_NE(sum(), before) << name;
+  }
+}
+
+TEST(Interrupted, AGuardedRunIsNotContinuedWithoutItsGuard) {
+  Toy toy;
+  toy.write("scene.toml", endless());
+  const pid_t process = toy.start(run);
+  await_lines(toy, 2);
+  kill(process, SIGTERM);
+  EXPECT_EQ(toy.wait(process).code, 130);
+  const Toy::Result result = toy.run(std::string(run) + " --resume --no-guard");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("it had other guard ('on', now 'off')"));
+}
+
+/// A head of four hairs, two frames.
+constexpr const char* small_head =
+    "title = \"four\"\nduration_s = 0.02\nframes_1_s = 100\n[integrator]\n"
+    "id = \"semi_implicit_euler\"\ndt_s = 1e-3\n[model]\nid = \"super_helix\"\n"
+    "tangent = \"stiff\"\n[material]\nname = \"hair.caucasian\"\n[groom]\n"
+    "count = 4\nlength_m = 0.1\nelements = 2\n[root]\nmotion = \"fixed\"\n"
+    "[effects.gravity]\n";
+
+TEST(Simulate, TwoRunsOfAHeadWriteTheSameBytes) {
+  Toy toy;
+  toy.write("scene.toml", small_head);
+  ASSERT_EQ(toy.run("scene.toml --as head --out a --progress none").code, 0);
+  // HDF5 counts the time of changes in whole seconds.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  ASSERT_EQ(toy.run("scene.toml --as head --out b --progress none").code, 0);
+  EXPECT_TRUE(toy.read("a/scene.h5") == toy.read("b/scene.h5"));
+}
+
+TEST(Simulate, AnOutputThatCannotBeWrittenIsRefusedBeforeAnyWork) {
+  for (const std::string name : {"scene.h5", "scene.meta.json", "scene.xdmf"}) {
+    for (const bool link : {true, false}) {
+      Toy toy;
+      toy.write("scene.toml", small_head);
+      toy.write("victim", "precious");
+      std::filesystem::create_directory(toy.path("work") + "/out");
+      const std::string at = toy.path("work") + "/out/" + name;
+      if (link) {
+        std::filesystem::create_symlink("../victim", at);
+      } else {
+        std::filesystem::create_directory(at);
+      }
+      const Toy::Result result =
+          toy.run("scene.toml --as head --out out --progress none");
+      EXPECT_EQ(result.code, 2);
+      EXPECT_THAT(result.err, HasSubstr(link ? "is a link" : "is a directory"));
+      EXPECT_EQ(toy.read("victim"), "precious");
+      // Nothing else was written.
+      const std::filesystem::directory_iterator out(toy.path("work") + "/out");
+      EXPECT_EQ(std::distance(begin(out), end(out)), 1);
+    }
+  }
+}
+
+TEST(Simulate, ARefusalLeavesNoFolder) {
+  Toy toy;
+  toy.write("scene.toml", swinging("4", "duration_s = 0.02\nframes_1_s = 50\n"));
+  const Toy::Result result = toy.run("scene.toml --hairs 3 --out new/folder");
+  EXPECT_EQ(result.code, 2) << result.err;
+  EXPECT_THAT(toy.files(), testing::ElementsAre("scene.toml"));
+}
+
+TEST(Simulate, OfAFullDiskAHeadSaysItInOneShortLine) {
+  Toy toy;
+  toy.write("scene.toml", small_head);
+  const Toy::Result result =
+      toy.run("scene.toml --as head --out out --progress none", "ulimit -f 4; ");
+  EXPECT_EQ(result.code, 2);
+  const std::size_t begin = result.err.find("simulate: error: ");
+  ASSERT_NE(begin, std::string::npos) << result.err;
+  const std::string last = result.err.substr(begin);
+  EXPECT_THAT(last, HasSubstr("cannot write: File too large (out/scene.h5): "));
+  EXPECT_EQ(std::ranges::count(last, '\n'), 1);
+  EXPECT_LT(last.size(), 200U);
+}
+
+TEST(Simulate, WhatAKilledRunLeftIsRemoved) {
+  Toy toy;
+  toy.write("scene.toml", swinging("4", "duration_s = 0.02\nframes_1_s = 50\n"));
+  std::filesystem::create_directories(toy.path("work") + "/out/scene_vtk");
+  for (const std::string name : {"scene.state", "scene.xdmf", "scene_vtk/scene_0.vtp"}) {
+    toy.write("out/" + name + ".tmp999999999", "");
+  }
+  ASSERT_EQ(toy.run(run).code, 0);
+  for (const std::string& file : toy.files()) {
+    EXPECT_THAT(file, testing::Not(HasSubstr(".tmp")));
+  }
+}
+
+/// With messages into a pipe that nobody reads any more.
+TEST(Interrupted, NobodyNeedListenToItsProgress) {
+  Toy toy;
+  toy.write("scene.toml", swinging("4", "duration_s = 0.4\nframes_1_s = 50\n"));
+  const std::string shell = fmt::format(
+      "cd '{}' && {{ '{}' scene.toml --out out --progress json; echo $? >code; }} 2>&1 | "
+      "true",
+      toy.path("work"), TOY_EXPERIMENT);
+  ASSERT_EQ(std::system(shell.c_str()), 0);
+  EXPECT_EQ(toy.read("code"), "0\n");
 }
 
 TEST(Simulate, ASecondRunOfASceneIntoOneFolderIsRefusedWhileTheFirstRuns) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "experiments/run/machine.h"
+
+namespace tress::experiments {
+
+/// Of a processor, used by other programs: timings above are repeated or marked.
+inline constexpr double most_load = 0.5;
+
+/// What other programs used of the processors while rows ran, one row at a time.
+class RowLoads {
+ public:
+  /// The row that ran since the last call, or since this was made, has ended.
+  void finished(std::string run_id);
+  /// Rows that ran above most_load, and did not run again below it.
+  std::set<std::string> above();
+  /// Processors that others used, at most.
+  double largest() const { return largest_; }
+
+ private:
+  void measure();
+
+  OtherLoad others_;
+  std::vector<std::string> pending_;  // that ran since others_ was asked
+  std::set<std::string> above_;
+  double largest_ = 0;
+};
+
+}  // namespace tress::experiments

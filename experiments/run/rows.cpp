@@ -1,0 +1,76 @@
+#include "experiments/run/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "experiments/run/exit_code.h"
+#include "experiments/run/message.h"
+#include "simulation/files/parse.h"
+
+namespace tress::experiments {
+namespace {
+
+std::string_view heading(Verdicts::State state) {
+  switch (state) {
+    case Verdicts::State::held:
+      return "PASS";
+    case Verdicts::State::broken:
+      return "FAIL";
+    case Verdicts::State::known_limit:
+      return "KNOWN LIMIT";
+    case Verdicts::State::changed:
+      return "CHANGED";
+    case Verdicts::State::not_judged:
+    case Verdicts::State::figure:
+      break;
+  }
+  return "FIGURE";
+}
+
+void tell_verdicts(std::string_view experiment, const Verdicts& verdicts) {
+  int not_judged = 0;
+  for (const Verdicts::Verdict& verdict : verdicts.all()) {
+    if (verdict.state == Verdicts::State::not_judged) {
+      ++not_judged;
+      continue;
+    }
+    const bool limit = verdict.state == Verdicts::State::known_limit ||
+                       verdict.state == Verdicts::State::changed;
+    tell("{}: {} {} ({:.3g}){}{}\n", experiment, heading(verdict.state), verdict.claim,
+         verdict.value, limit ? "; " : "", limit ? verdict.reason : "");
+  }
+  if (not_judged > 0) {
+    tell("{}: not judged: {} claims of rows that were not run\n", experiment, not_judged);
+  }
+}
+
+}  // namespace
+
+int report_table(const Experiment& experiment, const CommandLine& line,
+                 const std::vector<Row>& rows, const Verdicts& verdicts) {
+  std::map<std::string, int> counts;
+  const Row* failed = nullptr;
+  for (const Row& row : rows) {
+    ++counts[std::string(row.status())];
+    const bool finding = experiment.finding && experiment.finding(row);
+    if (failed == nullptr && !row.ok() && !finding) failed = &row;
+  }
+  // With JSON progress they are in the manifest.
+  if (line.progress != ProgressMode::json) tell_verdicts(experiment.name, verdicts);
+  if (line.progress != ProgressMode::none || failed != nullptr) {
+    std::string text;
+    for (const auto& [status, count] : counts)
+      text += fmt::format(", {} {}", count, status);
+    if (failed != nullptr) {
+      text += fmt::format("; first: {}", printable(failed->text("reason")));
+    }
+    tell("{}: {} rows{} -> {}\n", experiment.name, rows.size(), text, line.out);
+  }
+  const bool alarm = std::ranges::any_of(verdicts.all(), &Verdicts::Verdict::alarm);
+  return alarm || failed != nullptr ? rows_failed : done;
+}
+
+}  // namespace tress::experiments

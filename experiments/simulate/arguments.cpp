@@ -1,0 +1,151 @@
+#include "experiments/simulate/arguments.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "contract/input_error.h"
+#include "simulation/files/files.h"
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+constexpr const char* help_end =
+    "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
+    "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
+    "the\nreport page), with --error-bars .errors.csv (errors over time); of a "
+    "scene with rest = \"inverse\" .rest.csv\n(how each strand is held); of a head .h5 "
+    "and .xdmf\n(all frames, for ParaView and others) and .lost.csv (strands that could "
+    "not be computed).\nExit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
+    "a "
+    "scene did not run to\nits end, or lost strands, 130 interrupted (--resume "
+    "continues)\n\nmpirun -n 4 simulate ... --as head: four processes share the "
+    "head; the results are the same\n";
+
+/// Endings of the files that a run writes in its folder, or may write.
+std::vector<std::string> endings(bool head, const SceneRunOptions& options) {
+  std::vector<std::string> all{".csv", ".meta.json", ".json", ".state"};
+  if (head) {
+    all.insert(all.end(), {".h5", ".xdmf", ".lost.csv"});
+  } else {
+    all.insert(all.end(), {".errors.csv", ".rest.csv", ".fit.csv"});
+  }
+  if (options.usd) all.push_back(".usda");
+  if (options.gltf) all.push_back(".glb");
+  return all;
+}
+
+}  // namespace
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("scenes", a.scenes, "scene files; none: all of scenes/");
+  app.add_option("--out", a.out, "folder for the results (default results/scenes)");
+  app.add_option("--plugin", a.plugins,
+                 "shared library of further models, integrators, effects "
+                 "(docs/plugins.md); again for another")
+      ->allow_extra_args(false);
+  app.add_option("--threads", a.threads, "threads that share the strands (default 1)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--hairs", a.hairs,
+                 "hairs drawn between the strands of a groom (default 0)")
+      ->check(CLI::Range(0, 100'000));
+  app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
+  app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
+  app.add_flag("--hair", a.hair, "also .hair files, one a frame, for renderers");
+  app.add_option("--export", a.exports,
+                 "the same by name, or gltf, a .glb file for viewers: vtk,usd,hair,gltf")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
+  app.add_option("--as", a.as,
+                 "strands: one by one; head: all side by side, up to a million; auto: a "
+                 "head, where the scene can be one and has 1000 strands (default auto)")
+      ->check(CLI::IsMember({"auto", "strands", "head"}));
+  app.add_option("--bits", a.bits,
+                 "floating-point precision of a head: 64 or 32 bits (default 64)")
+      ->check(CLI::IsMember({64, 32}));
+  app.add_option("--lanes", a.lanes,
+                 "strands per SIMD pack of a head: 1, 4 or 8 with 64 bits, 8 or 16 with "
+                 "32 (default 8, 16); results are bitwise identical")
+      ->check(CLI::IsMember({1, 4, 8, 16}));
+  app.add_option("--device", a.device,
+                 "device for the time steps of a head: cpu, gpu or auto: gpu if there is "
+                 "one and the scene has gravity and drag only (default cpu)")
+      ->check(CLI::IsMember({"cpu", "gpu", "auto"}));
+  app.add_option("--frames", a.frames,
+                 "bits of a coordinate in a head's .h5: 32, 64, or none (default 32)")
+      ->check(CLI::IsMember({"32", "64", "none"}));
+  app.add_flag("--resume", a.resume, "continue an interrupted run");
+  app.add_option(
+         "--save-every", a.save_every,
+         "seconds of the clock after which a scene without checkpoint_s saves its "
+         "state (default 60)")
+      ->check(CLI::Range(0.0, 86400.0));
+  app.add_flag("--no-guard", a.no_guard,
+               "continue after the guard reports an unphysical state (as guard = false)");
+  app.add_flag("--error-bars", a.error_bars,
+               "estimate time and space errors from runs with finer steps and twice the "
+               "elements");
+  app.add_flag("--verify", a.verify, "with a tolerance: the error in time alone");
+  app.add_option("--progress", a.progress, "auto, none or json (default auto)")
+      ->check(CLI::IsMember({"auto", "none", "json"}));
+  app.add_flag("--print-defaults", a.print_defaults,
+               "print a short scene to start from (scenes/README.md: every key)");
+  app.add_flag("--print-schema", a.print_schema, "print the page scenes/README.md");
+  app.add_flag("--check", a.check, "check scenes and outputs; run nothing");
+  for (auto& [option, flag] : {std::pair<const char*, bool*>{"--quick", &a.quick},
+                               std::pair<const char*, bool*>{"--full", &a.full}}) {
+    app.add_flag(option, *flag, "accepted for ./tress run, without effect")->group("");
+  }
+}
+
+std::string help_text(const CLI::App& app) {
+  std::string help = app.help();
+  help.erase(help.find_last_not_of('\n') + 1);
+  return help + '\n' + help_end;
+}
+
+models::HeadPack pack_of(const Arguments& a) {
+  const bool wide = a.bits == 64;
+  return {wide ? models::HeadNumber::float64 : models::HeadNumber::float32, a.lanes != 0
+                                                                                ? a.lanes
+                                                                            : wide ? 8
+                                                                                   : 16};
+}
+
+SceneRunOptions options_of(const std::string& scene, const Arguments& a) {
+  SceneRunOptions options;
+  options.stem = a.out + "/" + scene;
+  options.threads = a.threads;
+  options.resume = a.resume;
+  options.save_every = a.save_every;
+  options.hairs = a.hairs;
+  const auto exports = [&a](bool flag, std::string_view name) {
+    return flag || std::ranges::count(a.exports, name) > 0;
+  };
+  options.vtk = exports(a.vtk, "vtk");
+  options.usd = exports(a.usd, "usd");
+  options.hair = exports(a.hair, "hair");
+  options.gltf = exports(false, "gltf");
+  options.pack = pack_of(a);
+  options.device = device_choice(a.device);
+  options.frame_bits = a.frames == "none" ? 0 : std::stoi(a.frames);
+  return options;
+}
+
+void check_outputs(const std::string& scene, bool head, const Arguments& a) {
+  const SceneRunOptions options = options_of(scene, a);
+  for (const std::string& ending : endings(head, options)) {
+    check_output(options.stem + ending);
+  }
+  for (const auto& [wanted, ending] :
+       {std::pair{options.vtk, "_vtk"}, std::pair{options.hair, "_hair"}}) {
+    const std::string folder = options.stem + ending;
+    std::error_code ignored;
+    refuse_if(wanted && std::filesystem::exists(folder, ignored) &&
+                  !std::filesystem::is_directory(folder, ignored),
+              "the output is not a folder", "--out " + folder,
+              "move it away, or give another --out");
+  }
+}
+
+}  // namespace tress::experiments::scene_runs
