@@ -60,7 +60,25 @@ usage() {
     env TRESS_CACHE="$work/cache" "$repository/tress" setup
 
   sources
+  clusters
   left_out
+  refusals
+  asks
+}
+
+# Schedulers read paths in ways of their own: one that they could take for something else is
+# refused, and no folder is left.
+clusters() {
+  local folder
+  mkdir "$work/programs"
+  echo heads >"$work/programs/list.txt"
+  # shellcheck disable=SC2016  # names, not commands
+  for folder in 'a b' '$(touch x)' 'a%b' 'a{b}' $'a\nb'; do
+    expect 2 "in its path, which Slurm and Snakemake may take for something else" \
+      env "TRESS_PROGRAMS=$work/programs" node "$repository/experiments/cluster/cluster.mjs" \
+      slurm --folder "$work/sweeps/$folder" heads
+  done
+  [[ ! -e $work/sweeps ]] || { echo "a refused sweep left its folder"; exit 1; }
 }
 
 # An experiment that cannot run does not keep one from running whose name ends its own.
@@ -81,6 +99,60 @@ left_out() {
   expect 0 'heads ran' "$house/tress" run heads
   expect 2 'divided_heads cannot run here' "$house/tress" run divided_heads
   expect 2 "no experiment '.*_heads'" "$house/tress" run '.*_heads'
+}
+
+# study NAME BODY: an experiment of the house that left_out made.
+study() { echo "$2" | program_at "$work/house/build/release/experiments/$1"; }
+
+# What can refuse does so before anything runs; what is not done is said at the end.
+refusals() {
+  local house="$work/house"
+  printf 'heads\nfull\nrubs\n' >"$house/build/release/experiments/list.txt"
+  # shellcheck disable=SC2016  # the study expands it
+  study heads '[[ " $* " == *" --check "* ]] || echo heads ran'
+  # shellcheck disable=SC2016
+  study full '[[ " $* " == *" --check "* ]] || { echo no space; exit 2; }'
+  study rubs 'echo an earlier run did not finish; exit 2'
+  expect 2 'nothing was run.*--resume heads full rubs' "$house/tress" run
+  grep -q 'did not finish' "$work/out" || { cat "$work/out"; exit 1; }
+  ! grep -q 'heads ran' "$work/out" || { echo "one ran before another refused"; exit 1; }
+  # shellcheck disable=SC2016
+  study rubs '[[ " $* " == *" --check "* ]] || exit 3'
+  expect 2 'NOT DONE, its table is that of an earlier run: full \(exit code 2\)' \
+    "$house/tress" run
+  expect 2 'to go on: ./tress run --resume --full full$' "$house/tress" run --full
+  grep -q 'heads ran' "$work/out" || { echo "heads did not run"; exit 1; }
+  tail -n6 "$work/out" | grep -q 'left out.*divided_heads: no MPI' ||
+    { echo "what is left out is not said at the end"; exit 1; }
+  # shellcheck disable=SC2016
+  study full '[[ " $* " == *" --check "* ]] || exit 130'
+  expect 130 'interrupted in full; not finished: full rubs; to go on: ./tress run --resume' \
+    "$house/tress" run
+}
+
+# Each scene has a folder of its own, whatever it is called, and none is another's.
+asks() {
+  local house="$work/house" name
+  printf 'x\n' >"$house/results/hard_cases.csv"
+  for name in stability_limit hard_cases effect_audit cost_of_accuracy; do
+    # shellcheck disable=SC2016
+    study "$name" 'while [[ $1 != --out ]]; do [[ $1 != references=* ]] || mkdir -p "${1#*=}"
+      shift; done; echo table >"$2"'
+  done
+  mkdir -p "$work/own/a" "$work/own/b"
+  # shellcheck disable=SC2016  # a name, not a command
+  for name in ...toml .toml a/s.toml b/s.toml 'a/$(touch x).toml' 'a/x y.toml'; do
+    touch "$work/own/$name"
+    expect 0 'the answers: ' "$house/tress" ask "$work/own/$name"
+  done
+  [[ $(ls "$house/results") == $'ask\nhard_cases.csv' && $(<"$house/results/hard_cases.csv") == x ]] ||
+    { echo "ask wrote into results/:"; ls "$house/results"; exit 1; }
+  [[ $(find "$house/results/ask" -name hard_cases.csv | wc -l) == 6 ]] ||
+    { echo "scenes share a folder:"; ls "$house/results/ask"; exit 1; }
+  [[ $(find "$house/results/ask" -type d -name reference | wc -l) == 6 ]] ||
+    { echo "scenes share references:"; find "$house/results/ask"; exit 1; }
+  touch "$work/own/a,b.toml"
+  expect 2 'has a comma' "$house/tress" ask "$work/own/a,b.toml"
 }
 
 # Source-package entries come from the distribution's own suites only.
