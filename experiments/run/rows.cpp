@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
+#include "contract/printable.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/message.h"
-#include "simulation/files/parse.h"
 
 namespace tress::experiments {
 namespace {
