@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "contract/moving_history.h"
 #include "integrators/bdf2_formula.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
@@ -23,6 +26,13 @@ class Bdf2 final : public FixedStep {
   Status reset(double /*t*/) override {
     h_previous_ = 0;
     return Status::ok;
+  }
+
+  Status go_on_changed(double t) override {
+    std::ranges::fill(v_bar_, 0.0);  // the formula has no accelerations
+    const bool carried =
+        carry(dynamics_.system(), t - h_previous_, q_previous_, v_previous_, v_bar_);
+    return carried ? Status::ok : reset(t);
   }
 
   Status step(double t, double h) override {

@@ -72,7 +72,7 @@ Status FixedStep::finish_step(double t) {
     if (s != Status::ok) return fail(s, t, "projection onto the constraints failed");
   }
   if (dynamics_.system().accept(t, q_, v_)) {
-    const Status s = reset(t);
+    const Status s = go_on_changed(t);
     if (s != Status::ok) return fail(s, t, "restart after an event failed");
   }
   return Status::ok;

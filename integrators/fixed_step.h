@@ -29,6 +29,9 @@ class FixedStep : public Integrator {
  protected:
   /// Forgets history; the state is q_, v_ at time t.
   virtual Status reset(double /*t*/) { return Status::ok; }
+  /// After System::accept has changed coordinates or equations at time t. A method with
+  /// memory carries it into the new coordinates (MovingHistory) where it can.
+  virtual Status go_on_changed(double t) { return reset(t); }
   /// Moves q_, v_ from t to t + h.
   virtual Status step(double t, double h) = 0;
 

@@ -1,3 +1,4 @@
+#include "contract/moving_history.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/stage.h"
@@ -47,6 +48,15 @@ class GeneralizedAlpha final : public FixedStep {
     const Status s = dynamics_.accelerate(t, q_, v_, u_, lambda_);
     a_ = u_;
     return s;
+  }
+
+  Status go_on_changed(double t) override {
+    for (std::vector<double>* of : {&u_, &a_}) {
+      q_bar_.assign(stage_.q().begin(), stage_.q().end());
+      v_bar_.assign(stage_.v().begin(), stage_.v().end());
+      if (!carry(dynamics_.system(), t, q_bar_, v_bar_, *of)) return reset(t);
+    }
+    return Status::ok;
   }
 
   Status step(double t, double h) override {

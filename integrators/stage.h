@@ -50,7 +50,7 @@ class Stage {
     /// of the stage before [as Hairer, Wanner 1996, Solving ODEs II, IV.8, allow]. That
     /// rate is one direction's, and the errors that it did not see made steps shorter and
     /// added up over them: 40 tolerances at 1e-5 where 7 are left without
-    /// (tests/integrators/test_tolerance_family.cpp).
+    /// (tests/control/test_tolerance_family.cpp).
     bool learns = false;
     /// A correction of this size (System::scale), if it is the first one or has a new
     /// matrix, leaves the matrix out of date, whatever its rate.

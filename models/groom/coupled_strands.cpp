@@ -214,6 +214,23 @@ bool CoupledStrands::accept(double t, InOut q, InOut v) {
   return true;
 }
 
+bool CoupledStrands::carry(double t, InOut q, InOut v, InOut a) const {
+  bool carried = true;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    if (strand(k).history() == nullptr) continue;
+    carried = tress::carry(strand(k), t, part(q, k), part(v, k), part(a, k)) && carried;
+  }
+  return carried;
+}
+
+std::string CoupledStrands::not_smooth() const {
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const std::string why = tress::not_smooth(strand(k));
+    if (!why.empty()) return "strand " + std::to_string(k) + ": " + why;
+  }
+  return {};
+}
+
 void CoupledStrands::reset() {
   for (std::size_t k = 0; k < strands(); ++k) strand(k).reset();
   place_at_start();

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "contract/moving_history.h"
 #include "contract/parameters.h"
 #include "contract/system.h"
 #include "models/effects/coupled_solver.h"
@@ -26,7 +27,7 @@ namespace tress::models {
 /// more than an eighth of the law's reach within one step may be missed in that step.
 /// Before a start from a state other than the initial one, accept() it.
 class CoupledStrands final : public StrandBlock,
-                             private History,
+                             private MovingHistory,
                              private ContactForm,
                              private StressForm {
  public:
@@ -51,6 +52,8 @@ class CoupledStrands final : public StrandBlock,
 
  private:
   bool accept(double t, InOut q, InOut v) override;
+  bool carry(double t, InOut q, InOut v, InOut a) const override;
+  std::string not_smooth() const override;
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;

@@ -345,15 +345,28 @@ bool DerElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
   // The forces of the step have placed its joints near enough to count turns.
   if (!placed_) place({root, z, rate});
   for (std::size_t j = 0; j < joints_.size(); ++j) twist_[j] = joints_[j].strain.value.x;
-  bool moved = false;
+  replaced_.clear();
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
     const Vec e = load3(&z[3 * i + 3]) - load3(&z[3 * i]);
     const Vec de = load3(&rate[3 * i + 3]) - load3(&rate[3 * i]);
-    moved |= renew_reference(edge_data_[i].reference, e, de, z[angles_ + i],
-                             rate[angles_ + i]);
+    const Frame before = edge_data_[i].reference;
+    if (renew_reference(edge_data_[i].reference, e, de, z[angles_ + i],
+                        rate[angles_ + i])) {
+      replaced_.push_back({i, before});
+    }
   }
-  placed_ = placed_ && !moved;
-  return moved;
+  placed_ = placed_ && replaced_.empty();
+  return !replaced_.empty();
+}
+
+void DerElasticity::carry(InOut z, InOut rate, InOut second) const {
+  const auto edge = [](In x, std::size_t i) {
+    return load3(&x[3 * i + 3]) - load3(&x[3 * i]);
+  };
+  for (const auto& [i, before] : replaced_) {
+    refer(before, edge_data_[i].reference, edge(z, i), edge(rate, i), edge(second, i),
+          z[angles_ + i], rate[angles_ + i], second[angles_ + i]);
+  }
 }
 
 std::vector<double> DerElasticity::memory() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "math/pack.h"
+#include "models/maximal/edge_reference.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/rod_edge.h"
@@ -30,6 +31,7 @@ class DerElasticity final : public Elasticity, private NaturalStrains {
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
+  void carry(InOut z, InOut rate, InOut second) const override;
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
@@ -89,6 +91,7 @@ class DerElasticity final : public Elasticity, private NaturalStrains {
                         Pack (&h)[4]) const noexcept;
 
   std::vector<EdgeData> edges_at_start_, edge_data_;
+  std::vector<Replaced> replaced_;
   std::vector<RodJoint> joint_data_;
   std::vector<double> twist_;  // per joint, after the last accepted step: see wound()
   bool walled_;

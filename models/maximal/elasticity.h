@@ -81,6 +81,14 @@ class Elasticity {
   virtual bool rebase(const RootPose& /*root*/, InOut /*z*/, InOut /*rate*/) {
     return false;
   }
+  /// As MovingHistory::carry(), of all coordinates.
+  virtual void carry(InOut /*z*/, InOut /*rate*/, InOut /*second*/) const {}
+  /// Jumps of forces that rebase() has seen since reset().
+  struct Jumps {
+    long count = 0;
+    std::size_t joint = 0;  // of the first; joint k begins edge k
+  };
+  virtual Jumps jumps() const { return {}; }
   virtual void reset() {}                                    // undoes every rebase()
   virtual std::vector<double> memory() const { return {}; }  // as History::memory()
   virtual void recall(In /*memory*/) {}

@@ -276,9 +276,37 @@ Status MaximalSystem::solve(In b, Out x) noexcept {
 
 bool MaximalSystem::accept(double t, InOut q, InOut v) {
   place(t, q, v);
-  if (!strand_.elasticity->rebase(pose_, z_, rate_)) return false;
+  const bool smooth = strand_.elasticity->jumps().count == 0;
+  const bool moved = strand_.elasticity->rebase(pose_, z_, rate_);
+  if (smooth && strand_.elasticity->jumps().count > 0) jumped_at_ = t;
+  if (!moved) return false;
   std::ranges::copy(In(z_).subspan(held()), q.begin());
   std::ranges::copy(In(rate_).subspan(held()), v.begin());
+  return true;
+}
+
+std::string MaximalSystem::not_smooth() const {
+  const Elasticity::Jumps jumps = strand_.elasticity->jumps();
+  if (jumps.count == 0) return {};
+  return "forces at joints jumped " + std::to_string(jumps.count) +
+         " times, first at joint " + std::to_string(jumps.joint) +
+         " at t = " + std::to_string(jumped_at_) +
+         " s, where an angle lost its direction";
+}
+
+bool MaximalSystem::carry(double t, InOut q, InOut v, InOut a) const {
+  std::array<std::vector<double>, 3> all;
+  const RootPose root = strand_.root.at(t);
+  const std::array of_root{root.x, root.v, root.a};
+  const std::array motion{q, v, a};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (strand_.clamped) all[k] = {of_root[k].x, of_root[k].y, of_root[k].z};
+    all[k].insert(all[k].end(), motion[k].begin(), motion[k].end());
+  }
+  strand_.elasticity->carry(all[0], all[1], all[2]);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    std::ranges::copy(In(all[k]).subspan(held()), motion[k].begin());
+  }
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "contract/moving_history.h"
 #include "linear/kkt.h"
 #include "linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
@@ -62,7 +63,7 @@ class MaximalSystem final : public System,
                             private StressForm,
                             private Energetics,
                             private MaterialPoints,
-                            private History {
+                            private MovingHistory {
  public:
   explicit MaximalSystem(MaximalStrand strand);
 
@@ -104,6 +105,8 @@ class MaximalSystem final : public System,
 
  private:
   bool accept(double t, InOut q, InOut v) override;
+  bool carry(double t, InOut q, InOut v, InOut a) const override;
+  std::string not_smooth() const override;
   void reset() override { strand_.elasticity->reset(); }
   std::vector<double> memory() const override { return strand_.elasticity->memory(); }
   void recall(In memory) override { strand_.elasticity->recall(memory); }
@@ -165,6 +168,7 @@ class MaximalSystem final : public System,
   double pose_time_ = std::numeric_limits<double>::quiet_NaN();
   StressOrigin origin_;                   // of the last take_stresses()
   bool displaced_ = false;                // the next tangent has its stresses from there
+  double jumped_at_ = 0;                  // s, first of Elasticity::jumps()
   std::vector<double> z_, rate_, force_;  // all coordinates
   std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // per mass point
   std::vector<double> blocks_;                                  // (9 mass points)

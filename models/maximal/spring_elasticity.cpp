@@ -1,7 +1,10 @@
 #include "models/maximal/spring_elasticity.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
+#include <type_traits>
 
 namespace tress::models {
 namespace {
@@ -17,6 +20,14 @@ template <class Strain>
 constexpr bool is_length = false;
 template <int n>
 constexpr bool is_length<Chord<n>> = true;
+/// Angles whose slope turns over where the joint is straight.
+template <class Strain>
+constexpr bool is_bend =
+    std::is_same_v<Strain, Hinge> || std::is_same_v<Strain, BendAngle>;
+/// Angles that change by a half or a whole turn in one point.
+template <class Strain>
+constexpr bool is_dihedral =
+    std::is_same_v<Strain, Dihedral> || std::is_same_v<Strain, WallDihedral>;
 template <class Strain>
 constexpr bool has_metric = requires(const Strain s, const Vec* e,
                                      EdgeMatrix<Strain::edges>& m) {
@@ -222,6 +233,29 @@ double SpringElasticity::power(const Placement& p) noexcept {
     }
   });
   return sum;
+}
+
+bool SpringElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
+  // Half of what the angle changes by where an edge turns over.
+  constexpr double turned = std::numbers::pi / 2;
+  const bool known = !angles_.empty();
+  std::size_t seen = 0;
+  for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
+    if constexpr (is_bend<Strain> || is_dihedral<Strain>) {
+      if (is_bend<Strain> && spring.rest == 0) return;  // smooth
+      const Stretched<Strain> now(spring, {root, z, rate});
+      if (!known) {
+        angles_.push_back({now.value, now.slope[0]});
+        return;
+      }
+      Angle& last = angles_[seen++];
+      const bool jumped = is_bend<Strain> ? dot(now.slope[0], last.slope) < 0
+                                          : std::abs(now.value - last.value) > turned;
+      last = {now.value, now.slope[0]};
+      if (jumped && jumps_.count++ == 0) jumps_.joint = spring.first + 1;
+    }
+  });
+  return false;
 }
 
 std::vector<ComplianceForm::Block> SpringElasticity::strain_blocks() const {

@@ -47,6 +47,16 @@ class SpringElasticity final : public Elasticity, private StrainForm {
                    GroupSum& s) noexcept override;
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
+  /// Moves no frames, but compares angles with those of the last call. The force of a
+  /// joint that is bent at rest has no limit where the joint is straight, and that of a
+  /// dihedral angle none where the angle is half a turn from rest: both jump there.
+  bool rebase(const RootPose& root, InOut z, InOut rate) override;
+  Jumps jumps() const override { return jumps_; }
+  void reset() override {
+    angles_.clear();
+    jumps_ = {};
+  }
+  void recall(In /*memory*/) override { angles_.clear(); }
   StrainForm* strain_form() override { return this; }
   bool takes_stresses() const override {
     return tangent_ == SpringTangent::exact &&
@@ -62,6 +72,13 @@ class SpringElasticity final : public Elasticity, private StrainForm {
 
   Springs springs_;
   SpringTangent tangent_;
+  /// A strain that can jump, at the last rebase().
+  struct Angle {
+    double value;
+    Vec slope;  // over its first edge
+  };
+  std::vector<Angle> angles_;  // of those springs, in order; empty: not known
+  Jumps jumps_;
   std::vector<std::size_t> along_;  // indices of all springs, from root to tip
 };
 

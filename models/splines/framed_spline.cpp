@@ -251,12 +251,23 @@ bool FramedSpline::rebase(const RootPose& root, InOut z, InOut rate) {
     spans_[i].twist.strain(local.x, &twist);
     spans_[i].twist.near = twist;
   }
-  bool moved = false;
+  replaced_.clear();
   for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {
-    moved |= renew_reference(references_[knot], direction(z, knot), direction(rate, knot),
-                             z[angle(knot)], rate[angle(knot)]);
+    const Frame before = references_[knot];
+    if (renew_reference(references_[knot], direction(z, knot), direction(rate, knot),
+                        z[angle(knot)], rate[angle(knot)])) {
+      replaced_.push_back({knot, before});
+    }
   }
-  return moved;
+  return !replaced_.empty();
+}
+
+void FramedSpline::carry(InOut z, InOut rate, InOut second) const {
+  for (const auto& [knot, before] : replaced_) {
+    refer(before, references_[knot], direction(z, knot), direction(rate, knot),
+          direction(second, knot), z[angle(knot)], rate[angle(knot)],
+          second[angle(knot)]);
+  }
 }
 
 std::vector<double> FramedSpline::memory() const {

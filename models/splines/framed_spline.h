@@ -1,5 +1,6 @@
 #pragma once
 
+#include "models/maximal/edge_reference.h"
 #include "models/splines/spline_elasticity.h"
 #include "models/splines/spline_strain.h"
 
@@ -41,6 +42,7 @@ class FramedSpline final : public Elasticity, private NaturalStrains {
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
+  void carry(InOut z, InOut rate, InOut second) const override;
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
@@ -92,6 +94,7 @@ class FramedSpline final : public Elasticity, private NaturalStrains {
   std::vector<Span> spans_;
   SplineElasticity stretching_;
   std::vector<Frame> references_at_start_, references_;  // per knot; held: the clamp's
+  std::vector<Replaced> replaced_;                       // by knot
   bool clamped_;
 };
 
