@@ -49,8 +49,7 @@ class UsdCurves {
     // Curves whose count does not suit the basis, and the first of them.
     std::size_t unfit = 0, number = 0, count = 0;
     int line = 0;
-    double lost =
-        0;  // largest share of a curve before its first point and after its last
+    double lost = 0;  // largest share of a curve that its ends leave out
   };
   std::size_t end_point(std::size_t set) const;
   std::size_t end_strand(std::size_t set) const;
