@@ -23,8 +23,11 @@ if (!folder || ![count, first, seconds].every((x) => x > 0)) {
 const target = 0.01, strands = 3, grace = 1.2;
 const work = fs.mkdtempSync(path.join(os.tmpdir(), 'tress_advice_'));
 
-const run = (program, args) =>
-  spawnSync(path.join(folder, program), args, { cwd: work, encoding: 'utf8', maxBuffer: 1 << 26 });
+const judgeMs = 200_000;
+
+const run = (program, args, timeout = 0) =>
+  spawnSync(path.join(folder, program), args,
+    { cwd: work, encoding: 'utf8', maxBuffer: 1 << 26, timeout });
 
 /// Whether the advised file has the elements and the step or tolerance of the text.
 function same(line, file) {
@@ -53,8 +56,10 @@ function judged(seed) {
   if (!line.startsWith('take ')) return made;
   const file = `${name}_${seed}.advised.toml`;
   made.files = same(line, fs.readFileSync(path.join(work, file), 'utf8'));
-  const judge = run('tests/advice_judge', [scene, file, String(strands)]);
-  if (judge.status !== 0) return { ...made, verdict: `not judged: ${judge.stderr.trim()}` };
+  const judge = run('tests/advice_judge', [scene, file, String(strands)], judgeMs);
+  if (judge.status !== 0) {
+    return { ...made, verdict: `not judged: ${judge.stderr.trim() || 'takes too long'}` };
+  }
   const [error, doubt] = judge.stdout.split(' ').map(Number);
   made.line = `${(100 * error).toPrecision(2)} % (doubt ${(100 * doubt).toPrecision(1)} %): ${line}`;
   if (error <= target) return { ...made, verdict: 'kept' };
