@@ -307,7 +307,8 @@ TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {
   EXPECT_THAT(refusal("shape = \"wavy\""), HasSubstr("shape beside file"));
   EXPECT_THAT(refusal("unit = \"m\"\nunit_m = 2"), HasSubstr("unit_m beside unit"));
   EXPECT_THAT(refusal("count = 10"), HasSubstr("10 of the 9 strands"));
-  EXPECT_THAT(refusal("guides = 2\nfit_tolerance = 0.1"), HasSubstr("guides of several"));
+  EXPECT_THAT(refusal("guides = 2\nfit_tolerance = 0.1"),
+              HasSubstr("all guide strands must have the same number"));
   for (const char* key :
        {"unit = \"m\"", "every = 2", "cuts = \"equal\"", "fit_tolerance = 1"}) {
     try {
