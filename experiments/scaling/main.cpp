@@ -171,24 +171,24 @@ constexpr OwnOption command_options[] = {
      "strand)"},
 };
 
-/// The cost of a step at the largest size of each series, and how it grows.
+/// The cost of a step at the largest size of each series of a scene, and how it grows.
 void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  const auto size = [](const Row& row) {
+    return row.number("elements") * row.number("strands");
+  };
   std::map<std::string, const Row*> largest;
   for (const Row& row : rows) {
     if (!row.ok()) continue;
-    const std::string series =
-        fmt::format("{}: {} ({}), {}", row.text("structure"), row.text("model"),
-                    row.text("solver"), row.text("grows"));
+    const std::string series = fmt::format("{}, {}, more {}", row.text("structure"),
+                                           row.text("model"), row.text("grows"));
     const Row*& so_far = largest[series];
-    if (so_far == nullptr || row.number("unknowns") > so_far->number("unknowns")) {
-      so_far = &row;
-    }
+    if (so_far == nullptr || size(row) > size(*so_far)) so_far = &row;
   }
   std::vector<std::string> lines;
   for (const auto& [series, row] : largest) {
     lines.push_back(fmt::format(
-        "{}: a step of {} unknowns takes {:.3g} us{}", series, row->text("unknowns"),
-        1e6 * row->number("cost_per_step_s"),
+        "{}: a step of {} strands of {} elements takes {:.3g} us{}", series,
+        row->text("strands"), row->text("elements"), 1e6 * row->number("cost_per_step_s"),
         row->has("exponent")
             ? fmt::format(", and grows with the power {:.2f}", row->number("exponent"))
             : ""));
