@@ -484,6 +484,8 @@ TEST(HeadOfHair, OfSpringsMovesAsTheWorldOfTheSceneDoes) {
                     .top = "duration_s = 0.05\nframes_1_s = 20\n",
                     .model = "id = \"mass_spring\"\ntangent = \"filtered\"\n",
                     .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.001\n",
+                    .groom = "[groom.material]\nyoungs_modulus_pa = 3.89e9\n"
+                             "density_kg_m3 = 1300\n",
                     .more = "[effects.gravity]\n[effects.linear_drag]\n" + body}));
     return read_scene(path(toy, "head.toml"));
   };
