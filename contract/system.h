@@ -236,18 +236,23 @@ class Complementarity {
 /// solving the equations and improving the multipliers in turn (augmented Lagrangian).
 /// The law is that of the state at which the equations are solved: methods use it at
 /// states that are ends of steps or stages.
+///
+/// Friction acts against the slide U = X', where X are the places of points in the frames
+/// of the bodies. A method integrates X as it integrates q: its stage has X = x0 + tau U
+/// with x0 of its own formula, so that what sticks stays where it is, however the body
+/// turns.
 class ContactForm {
  public:
   virtual ~ContactForm() = default;
   /// Before the equations of a state that lies `tau` (s) ahead are solved: q = q0 + tau
-  /// v, where q0 and v0 are the state from which the motion goes on.
-  virtual void begin(double t, double tau, In q0, In v0) noexcept = 0;
+  /// v, where q0 and v0 are the state from which the motion goes on, and X = x0 + tau U.
+  virtual void begin(double t, double tau, In q0, In v0, In x0) noexcept = 0;
   /// After they are solved, at the solution: takes the forces found as the multipliers.
   /// The largest speed (m/s) by which the solution violates the law.
   virtual double improve(double t, In q, In v) noexcept = 0;
-  /// In which case of the laws every contact is (open, sticks or slides), as a checksum:
-  /// while it stays the same the equations are smooth.
-  virtual std::size_t cases(double t, In q, In v) noexcept = 0;
+  /// The largest T.U/(mu N) of the forces and slides that improve() took, m/s: friction
+  /// does work on a slide where it is positive.
+  virtual double drive() const noexcept = 0;
   /// Before they are solved again: multipliers farther along the way that improvements
   /// have taken.
   virtual void extrapolate() noexcept = 0;
@@ -263,6 +268,12 @@ class ContactForm {
   /// The multipliers, of fixed number; 0 at first.
   virtual std::vector<double> multipliers() const = 0;
   virtual void set_multipliers(In values) = 0;
+  /// Returns the number of coordinates X; fixed for life.
+  virtual std::size_t tracked() const = 0;
+  /// X, m.
+  virtual void places(double t, In q, In v, Out x) noexcept = 0;
+  /// U of the last solution where it has closed contacts, that of v elsewhere; m/s.
+  virtual void slides(double t, In q, In v, Out u) noexcept = 0;
 };
 
 /// One mechanical system. `residual` is pure; `linearize` prepares `solve`; nothing

@@ -22,6 +22,7 @@ class BackwardEuler final : public FixedStep, public Impulsive {
   Status step(double t, double h) override {
     shifted(q_bar_, q_, h, v_);
     stage_.leave(t, q_);
+    stage_.places(t, q_, v_, stage_.place_bar());
     const Status s = stage_.solve(t + h, q_bar_, v_, {1, h, h * h}, a_, lambda_);
     take(stage_.q(), stage_.v());
     return s;

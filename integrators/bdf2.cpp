@@ -20,7 +20,9 @@ class Bdf2 final : public FixedStep {
         q_bar_(vector_n()),
         v_bar_(vector_n()),
         q_previous_(vector_n()),
-        v_previous_(vector_n()) {}
+        v_previous_(vector_n()),
+        place_(stage_.place_bar().size()),
+        place_previous_(place_) {}
 
  private:
   Status reset(double /*t*/) override {
@@ -42,6 +44,11 @@ class Bdf2 final : public FixedStep {
       q_bar_[i] = c0 * q_[i] - c1 * q_previous_[i] + bh * v_bar_[i];
     }
     stage_.leave(t, q_);
+    stage_.places(t, q_, v_, place_);
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      stage_.place_bar()[i] = c0 * place_[i] - c1 * place_previous_[i];
+    }
+    place_previous_ = place_;
     const Status s = stage_.solve(t + h, q_bar_, v_bar_, {1, bh, bh * bh}, a_, lambda_);
     q_previous_ = q_;
     v_previous_ = v_;
@@ -53,6 +60,7 @@ class Bdf2 final : public FixedStep {
   Stage stage_;
   double h_previous_ = 0;
   std::vector<double> q_bar_, v_bar_, q_previous_, v_previous_;
+  std::vector<double> place_, place_previous_;  // along bodies
 };
 
 }  // namespace

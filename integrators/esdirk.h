@@ -37,7 +37,8 @@ struct EsdirkTable {
 ///                                                         + h gamma v_bar
 ///
 /// so that every stage hands the same weights (1, h gamma, (h gamma)^2) to Stage, and one
-/// matrix serves all of them (Refresh::every_step: one a step).
+/// matrix serves all of them (Refresh::every_step: one a step). So it is along bodies
+/// (ContactForm): X_i = X + h sum_{j<=i} a_ij U_j.
 ///
 /// A step in which a rigid contact stops points (ContactForm) is one of backward Euler:
 /// velocities jump, whose impulse the stages of a method of higher order would weigh with
@@ -78,10 +79,12 @@ class EsdirkStages {
   Stage stage_;
   std::vector<std::vector<double>> v_, a_;  // of the stages
   std::vector<double> q_bar_, v_bar_, lambda_;
-  double t_ = 0, h_ = 0;          // of the last step, h_ = 0: none
-  double h_before_ = 0;           // of the step before, 0: none
-  std::vector<double> a_before_;  // at its start
-  bool impact_ = false;           // the last step was that of an impact
+  std::vector<std::vector<double>> slides_;  // of the stages, along bodies
+  std::vector<double> place_;                // of the step's start
+  double t_ = 0, h_ = 0;                     // of the last step, h_ = 0: none
+  double h_before_ = 0;                      // of the step before, 0: none
+  std::vector<double> a_before_;             // at its start
+  bool impact_ = false;                      // the last step was that of an impact
 };
 
 /// The method with a fixed step, or with Options::tolerance. `table` must outlive it.

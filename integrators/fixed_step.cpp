@@ -12,12 +12,21 @@ bool finite(In x) {
                      [](double entry) { return std::isfinite(entry); });
 }
 
-std::string no_solution_beyond(double h) {
-  char text[96];
-  std::snprintf(text, sizeof text,
-                "no solution for the step: it turns back at %.3g s, so a shorter step is "
-                "needed",
-                h);
+std::string no_solution(const Dynamics& dynamics, double h) {
+  char text[160];
+  if (dynamics.reached > 0) {
+    std::snprintf(text, sizeof text,
+                  "no solution for the step: it turns back at %.3g s, so a shorter step "
+                  "is needed",
+                  dynamics.reached * h);
+  } else if (dynamics.driven > 0) {
+    std::snprintf(text, sizeof text,
+                  "no solution for the step: exact friction would drive a contact at "
+                  "%.3g m/s; give a shorter step or more contact_iterations",
+                  dynamics.driven);
+  } else {
+    return "no solution for the step";
+  }
   return text;
 }
 
@@ -99,9 +108,7 @@ Status FixedStep::advance(double t_end, const Observer& each_step) {
   for (long i = 0; i < steps; ++i) {
     const double t = t_begin + static_cast<double>(i) * h;
     if (const Status s = step(t, h); s != Status::ok) {
-      return fail(s, t,
-                  dynamics_.reached > 0 ? no_solution_beyond(dynamics_.reached * h)
-                                        : "no solution for the step");
+      return fail(s, t, no_solution(dynamics_, h));
     }
     t_ = i + 1 == steps ? t_end : t + h;
     if (const Status s = finish_step(t_); s != Status::ok) return s;

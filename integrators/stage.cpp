@@ -51,6 +51,7 @@ Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
       lambda_step_(c_.size()),
       a_held_(q_.size()),
       lambda_held_(c_.size()),
+      place_bar_(contacts_ == nullptr ? 0 : contacts_->tracked()),
       r_free_(q_.size()),
       q_next_(q_.size()),
       v_next_(q_.size()),
@@ -197,7 +198,6 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
     double correction = 0;
     if (linearize) take_stresses(t, i == 0);
     const bool foreseen = linearize && squared_ > 0;
-    const std::size_t cases = foreseen ? contacts_->cases(t, q_, v_) : 0;
     const Status s = correct(t, q_bar, v_bar, w, linearize, a, lambda, correction);
     if (s != Status::ok) return s;
     rate = rate_ = correction / previous;
@@ -215,15 +215,14 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
       squared_ = std::max(i > 1 ? squared_ : 0.0, rate / previous);
     }
     if (correction <= tolerance_) return Status::ok;
-    if (error_left <= remaining_ && (!foreseen || contacts_->cases(t, q_, v_) == cases)) {
-      return Status::ok;
-    }
+    const bool near = error_left <= remaining_;
+    if (near && contacts_ == nullptr) return Status::ok;
     if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
     const bool slow = i > 0 && (rate >= 1 || std::log(remaining_ / correction) <
                                                  most_to_come * std::log(rate));
-    linearize = refresh == Refresh::every_iteration || slow ||
-                ((i == 0 || linearize) && correction > turned_);
+    linearize = !near && (refresh == Refresh::every_iteration || slow ||
+                          ((i == 0 || linearize) && correction > turned_));
     if (slow) shares_ = false;
     previous = correction;
   }

@@ -39,7 +39,9 @@ namespace tress::integrators {
 /// Options: newton_tolerance bounds the last correction of q and v over System::scale,
 /// newton_iterations, refresh. The iteration also ends where the error that its rate lets
 /// expect is below Ending::remaining times newton_tolerance, and where corrections of the
-/// size of rounding errors stop shrinking.
+/// size of rounding errors stop shrinking. With exact contact, whose forces may change
+/// their side in the last iteration, such an error is measured before it is believed, by
+/// a correction with the same matrix.
 class Stage {
  public:
   struct Ending {
@@ -68,9 +70,21 @@ class Stage {
   /// With exact contact (ContactForm): repeats solution and improvement of its
   /// multipliers until the law holds within Options::contact_tolerance; where a later
   /// solution fails, or after Options::contact_iterations, the one before stands, and
-  /// stats tell by how much the law is violated.
+  /// stats tell by how much the law is violated. `retry` where friction would do work on
+  /// a slide (ContactForm::drive() above 100 times that tolerance).
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                Matrix matrix = Matrix::own, Effort effort = Effort::whole) noexcept;
+
+  /// Where solve() goes on from along the bodies that points may touch (ContactForm): x0
+  /// in X = x0 + tau U. Empty without exact contact.
+  InOut place_bar() { return place_bar_; }
+  /// X, or U, at a state, in vectors of that size.
+  void places(double t, In q, In v, Out x) noexcept {
+    if (contacts_ != nullptr) contacts_->places(t, q, v, x);
+  }
+  void slides(double t, In q, In v, Out u) noexcept {
+    if (contacts_ != nullptr) contacts_->slides(t, q, v, u);
+  }
 
   /// The state from which the next solution goes on, to be told of every step: its
   /// stresses are near those of the solution, where those of a guess need not be.
@@ -111,9 +125,10 @@ class Stage {
   /// How the contacts' velocities respond to forces, by the matrix of now.
   Status find_compliance(double t, Weights w, In a, In lambda,
                          std::size_t count) noexcept;
-  /// From q_, v_ and the forces of now to those with which the step obeys the laws.
+  /// From q_, v_ and the forces of now to those with which the step obeys the laws, up
+  /// to `violation` (m/s).
   Status balanced_step(double t, Weights w, In a, In lambda, Out a_step, Out lambda_step,
-                       double& size) noexcept;
+                       double& size, double& violation) noexcept;
   /// Takes the step a_step_, lambda_step_ and that of the forces, or the largest halving
   /// of it after which the next one, by the same matrix, is smaller.
   Status halve_with_forces(double t, In q_bar, In v_bar, Weights w, double size, InOut a,
@@ -181,7 +196,7 @@ class Stage {
   std::optional<SecantUpdates> updates_;  // of that matrix
   // Of newton() with matrices of its own, since the start of solve(): a correction over
   // the square of the one before, 0: unknown. It tells the next one before contacts are
-  // solved again, unless some contact has come into another case of its laws.
+  // solved again.
   double squared_ = 0;
   bool shares_ = true;  // the last matrix of this step served all stages so far
   long matrix_ = -1;    // its Dynamics::matrix(); other callers may have factored since
@@ -191,7 +206,7 @@ class Stage {
   std::vector<double> q_, v_, r_, c_;
   std::vector<double> a_guess_, lambda_guess_;
   std::vector<double> a_kept_, lambda_kept_, a_step_, lambda_step_;  // of damped steps
-  std::vector<double> a_held_, lambda_held_;                         // of contacts
+  std::vector<double> a_held_, lambda_held_, place_bar_;             // of contacts
   // Forces of contacts and velocities that they cause, and the matrix between both.
   std::vector<double> force_, force_kept_, force_step_, velocity_, change_, compliance_;
   std::vector<double> r_free_, q_next_, v_next_;

@@ -18,6 +18,9 @@ constexpr double most_velocities = 2;
 // An iteration with forces ends where corrections have grown by this, and where halving
 // one so far does not help.
 constexpr double most_growing = 2, least_part = 1e-3;
+// Over the tolerance: a strand with more contacts than unknowns may stall above it, at
+// what does not matter in its motion; beyond this a step is refused.
+constexpr double most_driven = 100;
 // What the forces of an iteration leave of the laws, over what contacts may leave.
 constexpr double left = 0.01;
 
@@ -31,9 +34,10 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
   squared_ = 0;
   Status s = first_contact(t, q_bar, v_bar, w, a, lambda, matrix, effort);
   if (s != Status::ok) return s;
-  double violation = 0;
+  double violation = 0, drive = 0;
   for (int i = 1;; ++i) {
     violation = contacts_->improve(t, q_, v_);
+    drive = contacts_->drive();
     ++dynamics_.stats.contact_iterations;
     if (violation <= contact_tolerance_ || i == contact_iterations_) break;
     contacts_->extrapolate();
@@ -46,6 +50,10 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
     break;
   }
   if (violation <= contact_tolerance_) return Status::ok;
+  if (drive > most_driven * contact_tolerance_) {
+    dynamics_.driven = drive;
+    return Status::retry;
+  }
   ++dynamics_.stats.contact_unfinished;
   double& worst = dynamics_.stats.contact_violation;
   worst = std::max(worst, violation);
@@ -65,7 +73,7 @@ Status Stage::first_contact(double t, In q_bar, In v_bar, Weights w, InOut a,
   const auto with_next_penalty = [&] {
     const double tau = w.pos / w.vel;
     shifted(q_start_, q_bar, -tau, v_bar);
-    contacts_->begin(t, tau, q_start_, v_bar);
+    contacts_->begin(t, tau, q_start_, v_bar, place_bar_);
     start_again(1);
     return by_newton(t, q_bar, v_bar, w, a, lambda, matrix);
   };
@@ -118,7 +126,7 @@ Status Stage::iterate_with_forces(double t, In q_bar, In v_bar, Weights w, InOut
   Complementarity* const law = contacts_->complementarity();
   double first = 0, before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < iterations_; ++i) {
-    double size = 0;
+    double size = 0, violation = 0;
     Status s = newton_step(t, w, a, lambda, a_step_, lambda_step_, size);
     if (s != Status::ok) return s;
     shifted(q_next_, q_, -w.pos, a_step_);
@@ -130,7 +138,7 @@ Status Stage::iterate_with_forces(double t, In q_bar, In v_bar, Weights w, InOut
     if (!touched || too_many) return Status::retry;
     s = find_compliance(t, w, a, lambda, count);
     if (s == Status::ok) {
-      s = balanced_step(t, w, a, lambda, a_step_, lambda_step_, size);
+      s = balanced_step(t, w, a, lambda, a_step_, lambda_step_, size, violation);
     }
     if (s != Status::ok) return s;
     if (i == 0) first = size;
@@ -140,6 +148,7 @@ Status Stage::iterate_with_forces(double t, In q_bar, In v_bar, Weights w, InOut
     std::ranges::copy(lambda, lambda_kept_.begin());
     const bool rounding = size <= rounding_ && size >= before / 2;
     if (size <= tolerance_ || rounding) {
+      if (violation > contact_tolerance_) return Status::retry;
       go(q_bar, v_bar, w, 1, a, lambda);
       return Status::ok;
     }
@@ -178,7 +187,7 @@ Status Stage::find_compliance(double t, Weights w, In a, In lambda,
 }
 
 Status Stage::balanced_step(double t, Weights w, In a, In lambda, Out a_step,
-                            Out lambda_step, double& size) noexcept {
+                            Out lambda_step, double& size, double& violation) noexcept {
   Complementarity* const law = contacts_->complementarity();
   const auto step = [&] {
     const Status s = dynamics_.residual(t, q_, v_, a, lambda, a_step, lambda_step);
@@ -190,7 +199,7 @@ Status Stage::balanced_step(double t, Weights w, In a, In lambda, Out a_step,
   law->velocities(t, q_, v_, velocity_);
   law->responses(v_next_, change_);
   add(velocity_, 1, change_);
-  law->balance(compliance_, velocity_, left * contact_tolerance_, force_);
+  violation = law->balance(compliance_, velocity_, left * contact_tolerance_, force_);
   law->set_forces(force_);
   s = step();
   if (s != Status::ok) return s;
@@ -211,8 +220,8 @@ Status Stage::halve_with_forces(double t, In q_bar, In v_bar, Weights w, double 
                                 InOut a, InOut lambda) noexcept {
   for (double part = 1; part >= least_part; part /= 2) {
     go(q_bar, v_bar, w, part, a, lambda);
-    double next = 0;
-    const Status s = balanced_step(t, w, a, lambda, r_, c_, next);
+    double next = 0, violation = 0;
+    const Status s = balanced_step(t, w, a, lambda, r_, c_, next, violation);
     if (s == Status::fatal) return s;
     if (s == Status::ok && next <= (1 - part / 4) * size) {
       go(q_bar, v_bar, w, part, a, lambda);

@@ -68,10 +68,13 @@ class Dynamics {
   /// To be called after a successful step; the only cost while all is finite.
   void forget() {
     lost_ = Lost::nowhere;
-    reached = 0;
+    reached = driven = 0;
   }
   /// The part of the step that failed at which its solution turned back; 0: not known.
   double reached = 0;
+  /// The speed (m/s) at which exact friction did work on a slide where the best solution
+  /// of the step that failed left its law violated; 0: that was not the reason.
+  double driven = 0;
 
   /// To be called before a run: resets the counts and all memory of the previous run.
   void begin() {

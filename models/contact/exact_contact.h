@@ -19,21 +19,25 @@ struct HeldContact {
   double rest_gap = 0;
   double gap = 0;     // of the last solution, m
   double leaves = 0;  // part of its error that an improvement leaves, 0: unknown
+  Vec slide;          // U of the last solution, m/s
 
   bool some() const { return normal > 0 || dot(tangential, tangential) > 0; }
 };
 
 /// Contact force on a point of a strand by the laws of Signorini and Coulomb:
 ///
-///     f = N n + T,   |T| <= mu N,   u_t = 0 if |T| < mu N, else u_t = -|u_t| T/|T|
+///     f = N n + T,   |T| <= mu N,   U_t = 0 if |T| < mu N, else U_t = -|U_t| T/|T|
 ///
 /// as an augmented Lagrangian [Alart & Curnier 1991] with multipliers
 /// lambda and a penalty rho (kg/s), P the projection onto the disc of radius mu N:
 ///
-///     T = P(lambda_t - rho u_t),   lambda_t and u_t in the tangent plane
+///     T = P(lambda_t - rho U_t),   lambda_t and U_t in the tangent plane
 ///     N = l k d |g| h(1 - c u_n)          compliant: NormalContact on the length l
 ///     N = max(0, lambda_n - rho w)        rigid
 ///
+/// U = (X - x0)/tau is the slide of the place X in the frame of the body, by the formula
+/// of the method (ContactForm): 0 where the place stays, which the velocity u relative to
+/// the surface at the end of a step is not on a body that turns.
 /// w is the gap less rest_gap over tau, the time in which velocities move the point, or
 /// the excess u_n + e u_0 of the speed at which a point rebounds that came at u_0 < 0.
 /// The law holds where the multipliers are the forces. Without a penalty a rigid
@@ -50,6 +54,7 @@ struct ExactContact {
     double rho = 0;                 // kg/s
     double tau = 0;                 // s
     std::optional<double> rebound;  // -e u_0, m/s
+    Vec from;                       // x0, m
   };
 
   /// Distance from the surface (m) from which on the force is 0.
@@ -65,7 +70,7 @@ struct ExactContact {
   class State {
    public:
     State(const ExactContact& law, const HeldContact& held, const Penalty& penalty,
-          const Distance& to, const Vec& u)
+          const Distance& to, const Vec& x, const Vec& u)
         : law_(law),
           held_(held),
           penalty_(penalty),
@@ -75,14 +80,16 @@ struct ExactContact {
           gap_rate_(law.gap_rate(held, penalty, normal_)),
           load_(law.rigid ? std::max(0.0, held.normal - penalty.rho * gap_rate_)
                           : penalty.length * normal_.load),
-          slide_(normal_.slide(u)),
+          along_(penalty.tau > 0 ? (1 / penalty.tau) * (x - penalty.from) : u),
+          slide_(in_plane(along_)),
           pull_(in_plane(held.tangential) - penalty.rho * slide_),
           slips_(!law.constant(penalty) && norm(pull_) > law.friction * load_) {
       tangential_ = slips_ ? (law.friction * load_ / norm(pull_)) * pull_ : pull_;
     }
     double gap() const { return -normal_.depth; }  // m
     const Vec& outwards() const { return normal_.n; }
-    /// What the laws of a rigid contact are about: w n + u_t, m/s.
+    const Vec& along() const { return along_; }  // U, m/s
+    /// What the laws of a rigid contact are about: w n + U_t, m/s.
     Vec excess() const {
       return law_.excess(held_, penalty_, normal_) * normal_.n + slide_;
     }
@@ -91,7 +98,7 @@ struct ExactContact {
     bool slips() const { return slips_; }
     Vec load() const { return load_ * normal_.n + tangential_; }
 
-    /// The largest speed by which u and the force violate the law, m/s.
+    /// The largest speed by which the motion and the force violate the law, m/s.
     double violation() const {
       double worst = 0;
       if (law_.rigid) worst = load_ > 0 ? std::abs(gap_rate_) : std::max(0.0, -gap_rate_);
@@ -105,7 +112,7 @@ struct ExactContact {
     ContactSlopes slopes(const Mat3& curvature) const {
       if (normal_.steepness == 0 || load_ == 0) return {};
       const Mat3 across = normal_.across(), n_by_x = normal_.n_by_x(curvature);
-      const double rho = penalty_.rho;
+      const double rho = penalty_.rho, per_time = rho > 0 ? 1 / penalty_.tau : 0;
       Vec load_by_x;
       double by_speed = 0;
       if (!law_.rigid) {
@@ -116,12 +123,13 @@ struct ExactContact {
         load_by_x = -rho * (u_ * n_by_x);
         by_speed = -rho;
       } else {
-        load_by_x = (-rho / penalty_.tau) * to_.gradient;
+        load_by_x = (-rho * per_time) * to_.gradient;
       }
       const Vec& held = held_.tangential;
       const Mat3 pull_by_x =
           (-1.0) * (outer(normal_.n, held * n_by_x) + dot(normal_.n, held) * n_by_x) -
-          rho * normal_.slide_by_x(u_, n_by_x);
+          rho * (per_time * across - outer(normal_.n, along_ * n_by_x) -
+                 dot(normal_.n, along_) * n_by_x);
       // T = R d, d = s/|s|: dT = d dR + (R/|s|) (1 - d d^T) ds.
       Vec w = normal_.n;
       Mat3 turn = identity();
@@ -132,7 +140,7 @@ struct ExactContact {
         turn = (law_.friction * load_ / size) * (identity() - outer(d, d));
       }
       return {outer(w, load_by_x) + load_ * n_by_x + turn * pull_by_x,
-              outer(w, by_speed * normal_.n) - rho * (turn * across)};
+              outer(w, by_speed * normal_.n)};
     }
 
    private:
@@ -146,8 +154,9 @@ struct ExactContact {
     NormalContact::State normal_;
     double gap_rate_;  // w
     double load_;      // N
-    Vec slide_;        // u_t
-    Vec pull_;         // lambda_t - rho u_t
+    Vec along_;        // U
+    Vec slide_;        // U_t
+    Vec pull_;         // lambda_t - rho U_t
     bool slips_;
     Vec tangential_;
   };

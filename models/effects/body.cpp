@@ -67,7 +67,8 @@ constexpr Parameter parameters_of_body[] = {
      .max = 1e3},
     {.name = "friction_law",
      .help =
-         "regularised: what sticks creeps below slip_speed_m_s; exact: it stays "
+         "regularised: sticking contacts creep below slip_speed_m_s; exact: they keep "
+         "their place on the body, moving or not, to the contact tolerance "
          "(Signorini-Coulomb), for methods that solve at the end of a step; rigid and "
          "beside [effects.strand_friction] it is solved with the contact of strands",
      .choices = "regularised|exact"},

@@ -90,9 +90,12 @@ class Multipliers {
   virtual void set_force(double t, std::size_t point, double normal,
                          const Vec& tangential) noexcept = 0;
   virtual void give_back(const Points& p) noexcept = 0;
-  virtual void begin(double t, double tau, const Points& p) noexcept = 0;
+  virtual std::size_t tracked() const noexcept = 0;  // three numbers for every point
+  virtual void places(double t, const Points& p, Out x) const noexcept = 0;
+  virtual void slides(double t, const Points& p, Out u) const noexcept = 0;
+  virtual void begin(double t, double tau, const Points& p, In x0) noexcept = 0;
   virtual double improve(double t, const Points& p) noexcept = 0;
-  virtual std::size_t cases(double t, const Points& p) const noexcept = 0;
+  virtual double drive() const noexcept = 0;
   virtual void extrapolate() noexcept = 0;
   virtual double approach(double t, const Points& p) noexcept = 0;
   virtual void release() noexcept = 0;

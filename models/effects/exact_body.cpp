@@ -19,7 +19,7 @@ constexpr double first_penalty = 100;
 // up to a factor at which rounding errors of the gap still leave 1e-9 of a force.
 constexpr double rise = 10, largest_rise = 1e5;
 
-constexpr std::size_t per_point = 7;
+constexpr std::size_t per_point = 10;
 
 // The law's solution does not depend on the penalty, but whether Newton's method finds
 // one does, without a rule: where it has failed, these are tried in turn, over the first
@@ -95,7 +95,7 @@ double ExactBody::reach(const Points& p, std::size_t point) const {
 HeldContact ExactBody::held(std::size_t point) const {
   if (values_.empty()) return {};
   const double* at = &values_[header + per_point * point];
-  return {at[0], load3(at + 1), at[4], at[5], at[6]};
+  return {at[0], load3(at + 1), at[4], at[5], at[6], load3(at + 7)};
 }
 
 void ExactBody::hold(std::size_t point, const HeldContact& contact) {
@@ -105,6 +105,7 @@ void ExactBody::hold(std::size_t point, const HeldContact& contact) {
   at[4] = contact.rest_gap;
   at[5] = contact.gap;
   at[6] = contact.leaves;
+  store3(contact.slide, at + 7);
 }
 
 /// After a failure: the next one that is not the one of now.
@@ -124,7 +125,28 @@ void ExactBody::set_penalties(const Points& p) noexcept {
   }
 }
 
-void ExactBody::begin(double t, double tau, const Points& p) noexcept {
+Vec ExactBody::place(const BodyPose& now, const Points& p, std::size_t point) {
+  return now.frame.back(load3(&p.x[3 * point]) - now.x);
+}
+
+void ExactBody::places(double t, const Points& p, Out x) const noexcept {
+  const BodyPose now = body_->pose(t);
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    store3(place(now, p, i), &x[3 * i]);
+  }
+}
+
+void ExactBody::slides(double t, const Points& p, Out u) const noexcept {
+  const BodyPose now = body_->pose(t);
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    const Vec surface = now.surface_velocity(load3(&p.x[3 * i]));
+    const Vec along = now.frame.back(load3(&p.v[3 * i]) - surface);
+    const HeldContact contact = held(i);
+    store3(contact.normal > 0 ? contact.slide : along, &u[3 * i]);
+  }
+}
+
+void ExactBody::begin(double t, double tau, const Points& p, In x0) noexcept {
   const double state = std::exchange(values_[phase], unsettled);
   const double improvements = std::exchange(values_[improved], 0.0);
   if (state == not_begun) {
@@ -144,6 +166,7 @@ void ExactBody::begin(double t, double tau, const Points& p) noexcept {
     rest_gaps_[i] = held(i).rest_gap;
     penalties_[i] = {};
     penalties_[i].tau = tau;
+    penalties_[i].from = load3(&x0[3 * i]);
   }
   set_penalties(p);
   if (!law_.rigid) return;
@@ -184,18 +207,22 @@ double ExactBody::improve(double t, const Points& p) noexcept {
     change_[point] = {found.normal - was.normal, found.tangential - was.tangential};
     hold(point, found);
   };
+  const BodyPose now = body_->pose(t);
+  const auto slide = [&](std::size_t point) {
+    const ExactContact::Penalty& from = penalties_[point];
+    return (1 / from.tau) * (place(now, p, point) - from.from);
+  };
   const auto open_until = [&](std::size_t point) {  // what is out of reach holds nothing
     for (; next < point; ++next)
-      take(next, {0, {}, std::min(0.0, held(next).rest_gap), 0, 0});
+      take(next, {0, {}, std::min(0.0, held(next).rest_gap), 0, 0, slide(next)});
   };
   for_touching<RigidBody::With::velocity>(
-      body_->pose(t), p,
-      [&](const RigidBody::Near& at, const ExactContact::State& state) {
+      now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
         open_until(at.point);
         next = at.point + 1;
         violation_ = std::max(violation_, state.violation());
         take(at.point, {state.normal(), state.tangential(), held(at.point).rest_gap,
-                        state.gap(), held(at.point).leaves});
+                        state.gap(), held(at.point).leaves, state.along()});
       });
   open_until(penalties_.size());
   if (violation_ <= settled_below) values_[phase] = settled;
@@ -208,16 +235,15 @@ double ExactBody::improve(double t, const Points& p) noexcept {
   return violation_;
 }
 
-std::size_t ExactBody::cases(double t, const Points& p) const noexcept {
-  constexpr std::size_t prime = 1099511628211;  // of FNV-1a
-  std::size_t sum = 0;
-  for_touching<RigidBody::With::velocity>(
-      body_->pose(t), p,
-      [&](const RigidBody::Near& at, const ExactContact::State& state) {
-        if (state.normal() == 0) return;
-        sum = (sum ^ (2 * at.point + (state.slips() ? 1 : 0) + 1)) * prime;
-      });
-  return sum;
+double ExactBody::drive() const noexcept {
+  double fastest = 0;
+  for (std::size_t i = 0; i < penalties_.size(); ++i) {
+    const HeldContact contact = held(i);
+    const double most = law_.friction * contact.normal;
+    if (!(most > 0)) continue;
+    fastest = std::max(fastest, dot(contact.tangential, contact.slide) / most);
+  }
+  return fastest;
 }
 
 /// An improvement leaves a part r of the error of a contact's multipliers, by how stiffly
@@ -290,7 +316,7 @@ void ExactBody::touches(double t, const Points& p,
       [&](const RigidBody::Near& at) {
         const HeldContact contact = held(at.point);
         const ExactContact::Penalty penalty = this->penalty(p, at.point);
-        const ExactContact::State state(law_, contact, penalty, at.to, at.u);
+        const ExactContact::State state(law_, contact, penalty, at.to, at.x, at.u);
         to.push_back({at.point, now.frame * state.outwards(), now.frame * state.excess(),
                       now.frame * state.load(), law_.friction});
       });
@@ -316,7 +342,7 @@ void ExactBody::for_touching(const BodyPose& now, const Points& p, See see) cons
       [&](const RigidBody::Near& at) {
         const HeldContact contact = held(at.point);
         const ExactContact::Penalty penalty = this->penalty(p, at.point);
-        see(at, ExactContact::State(law_, contact, penalty, at.to, at.u));
+        see(at, ExactContact::State(law_, contact, penalty, at.to, at.x, at.u));
       });
 }
 

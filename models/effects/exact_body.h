@@ -46,15 +46,19 @@ class ExactBody final : public Effect, private Multipliers {
   void set_force(double t, std::size_t point, double normal,
                  const Vec& tangential) noexcept override;
   void give_back(const Points& p) noexcept override;
-  void begin(double t, double tau, const Points& p) noexcept override;
+  std::size_t tracked() const noexcept override { return 3 * penalties_.size(); }
+  void places(double t, const Points& p, Out x) const noexcept override;
+  void slides(double t, const Points& p, Out u) const noexcept override;
+  void begin(double t, double tau, const Points& p, In x0) noexcept override;
   double improve(double t, const Points& p) noexcept override;
-  std::size_t cases(double t, const Points& p) const noexcept override;
+  double drive() const noexcept override;
   void extrapolate() noexcept override;
   double approach(double t, const Points& p) noexcept override;
   void release() noexcept override;
   bool rebounds() const override { return law_.restitution > 0; }
   InOut values() noexcept override { return values_; }
 
+  static Vec place(const BodyPose& now, const Points& p, std::size_t point);
   static bool touchable(const Points& p, std::size_t point);
   double reach(const Points& p, std::size_t point) const;
   ExactContact::Penalty penalty(const Points& p, std::size_t point) const;

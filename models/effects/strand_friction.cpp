@@ -328,12 +328,13 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
   contact.friction =
       on_obstacle ? obstacles_[code_obstacle(known.second)]->friction() : law_.friction;
   const OnPoints on = on_points(known);
-  Vec u, x;
+  Vec u, x, from;
   for (std::size_t end = 0; end < on.count; ++end) {
     const std::size_t k = strand_of(end < 2 ? known.first : known.second);
     const std::size_t point = on.point[end];
     u = u + on.weight[end] * load3(&u_[3 * point]);
     x = x + on.weight[end] * load3(&search_.to()[3 * point]);
+    from = from + on.weight[end] * load3(&search_.from()[3 * point]);
     contact.ends[end] = {strands_[k].body,
                          strands_[k].place[point - search_.first_point(k)],
                          on.weight[end]};
@@ -345,7 +346,7 @@ ContactProblem::Contact StrandFriction::contact(const Known& known) const {
   if (on_obstacle) {
     gap = known.plane.gap(x);
     before = known.plane.gap_before;
-    u = u - known.plane.velocity;
+    u = (1 / h_) * (x - from) - known.plane.velocity;
   } else {
     gap = dot(normal, x) - search_.thickness(known.first, known.second);
     before = search_.gap_before(known);
@@ -447,6 +448,23 @@ std::vector<double> StrandFriction::friction_used() const {
     }
   }
   return used;
+}
+
+/// The forces x and velocities y of contact_violation() are within e = violation/(2 -
+/// sqrt 2) of some x', y' that obey the laws [Tseng 1996], so that x_t.y_t <= e (|x_t'| +
+/// |y_t'| + e) - |x_t'| |y_t'| where it slides: positive for forces beyond 3 e only at
+/// |y_t'| < 1.5 e.
+double StrandFriction::drive() const {
+  const double least =
+      3 * std::max(law_.tolerance, outcome_.violation) / (2 - std::sqrt(2));
+  double fastest = 0;
+  for (const ContactProblem::Contact& contact : problem_.contacts()) {
+    const double most = contact.friction * contact.force.x;
+    if (!(most * trace(contact.local) / 3 > least)) continue;
+    const Vec u = problem_.velocity(contact), &f = contact.force;
+    fastest = std::max(fastest, (f.y * u.y + f.z * u.z) / most);
+  }
+  return fastest;
 }
 
 std::vector<StrandFriction::Touch> StrandFriction::touches() const {

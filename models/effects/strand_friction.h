@@ -92,6 +92,11 @@ class StrandFriction {
   };
   std::vector<Touch> touches() const;
 
+  /// The largest T.u/(mu N) of the step's contacts, m/s: friction does work on a slide
+  /// where it is positive. Of contacts that the tolerance does not let open. Where the
+  /// law holds within the tolerance it is below five times that.
+  double drive() const;
+
   /// Pairs of segments that touched in the step.
   std::size_t contacts() const { return known_.all.size(); }
 

@@ -158,10 +158,28 @@ void CoupledStrands::take_stresses(double t, In q, Stresses stresses) noexcept {
   }
 }
 
-void CoupledStrands::begin(double t, double tau, In q0, In v0) noexcept {
-  for (const std::size_t k : held_contacts_) {
-    strand(k).contact_form()->begin(t, tau, part(q0, k), part(v0, k));
-  }
+std::size_t CoupledStrands::tracked() const {
+  std::size_t all = 0;
+  for (const std::size_t k : held_contacts_) all += strand(k).contact_form()->tracked();
+  return all;
+}
+
+void CoupledStrands::places(double t, In q, In v, Out x) noexcept {
+  each_tracked(x, [&](std::size_t k, ContactForm& of, Out own) {
+    of.places(t, part(q, k), part(v, k), own);
+  });
+}
+
+void CoupledStrands::slides(double t, In q, In v, Out u) noexcept {
+  each_tracked(u, [&](std::size_t k, ContactForm& of, Out own) {
+    of.slides(t, part(q, k), part(v, k), own);
+  });
+}
+
+void CoupledStrands::begin(double t, double tau, In q0, In v0, In x0) noexcept {
+  each_tracked(x0, [&](std::size_t k, ContactForm& of, In own) {
+    of.begin(t, tau, part(q0, k), part(v0, k), own);
+  });
 }
 
 double CoupledStrands::improve(double t, In q, In v) noexcept {
@@ -172,12 +190,12 @@ double CoupledStrands::improve(double t, In q, In v) noexcept {
   return worst;
 }
 
-std::size_t CoupledStrands::cases(double t, In q, In v) noexcept {
-  std::size_t sum = 0;
+double CoupledStrands::drive() const noexcept {
+  double fastest = 0;
   for (const std::size_t k : held_contacts_) {
-    sum = 31 * sum + strand(k).contact_form()->cases(t, part(q, k), part(v, k));
+    fastest = std::max(fastest, strand(k).contact_form()->drive());
   }
-  return sum;
+  return fastest;
 }
 
 void CoupledStrands::extrapolate() noexcept {

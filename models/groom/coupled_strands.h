@@ -57,9 +57,12 @@ class CoupledStrands final : public StrandBlock,
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
-  void begin(double t, double tau, In q0, In v0) noexcept override;
+  std::size_t tracked() const override;
+  void places(double t, In q, In v, Out x) noexcept override;
+  void slides(double t, In q, In v, Out u) noexcept override;
+  void begin(double t, double tau, In q0, In v0, In x0) noexcept override;
   double improve(double t, In q, In v) noexcept override;
-  std::size_t cases(double t, In q, In v) noexcept override;
+  double drive() const noexcept override;
   void extrapolate() noexcept override;
   double approach(double t, In q, In v) noexcept override;
   void release() noexcept override;
@@ -71,6 +74,15 @@ class CoupledStrands final : public StrandBlock,
   double power(double t, In q, In v) override;
   std::optional<Mean> mean(int point) override;
 
+  /// Calls act(k, its contacts, their part of `all`) of every strand with contacts.
+  template <class Values, class Act>
+  void each_tracked(Values all, Act act) {
+    for (const std::size_t k : held_contacts_) {
+      ContactForm& own = *strand(k).contact_form();
+      act(k, own, all.first(own.tracked()));
+      all = all.subspan(own.tracked());
+    }
+  }
   void check_and_join(std::size_t k);
   void place(double t, In q, In v) noexcept;
   void place_at_start();

@@ -14,9 +14,25 @@ HeldContacts::HeldContacts(Effects& effects, std::size_t points, PointsAt points
   }
 }
 
-void HeldContacts::begin(double t, double tau, In q0, In v0) noexcept {
+std::size_t HeldContacts::tracked() const {
+  std::size_t all = 0;
+  for (const auto& effect : held_) all += effect->multipliers()->tracked();
+  return all;
+}
+
+void HeldContacts::places(double t, In q, In v, Out x) noexcept {
+  const Points p = points_at_(t, q, v);
+  each(x, [&](const Multipliers& of, Out own) { of.places(t, p, own); });
+}
+
+void HeldContacts::slides(double t, In q, In v, Out u) noexcept {
+  const Points p = points_at_(t, q, v);
+  each(u, [&](const Multipliers& of, Out own) { of.slides(t, p, own); });
+}
+
+void HeldContacts::begin(double t, double tau, In q0, In v0, In x0) noexcept {
   const Points p = points_at_(t - tau, q0, v0);
-  for (const auto& effect : held_) effect->multipliers()->begin(t, tau, p);
+  each(x0, [&](Multipliers& of, In own) { of.begin(t, tau, p, own); });
 }
 
 double HeldContacts::improve(double t, In q, In v) noexcept {
@@ -28,11 +44,12 @@ double HeldContacts::improve(double t, In q, In v) noexcept {
   return worst;
 }
 
-std::size_t HeldContacts::cases(double t, In q, In v) noexcept {
-  const Points p = points_at_(t, q, v);
-  std::size_t sum = 0;
-  for (const auto& effect : held_) sum = 31 * sum + effect->multipliers()->cases(t, p);
-  return sum;
+double HeldContacts::drive() const noexcept {
+  double fastest = 0;
+  for (const auto& effect : held_) {
+    fastest = std::max(fastest, effect->multipliers()->drive());
+  }
+  return fastest;
 }
 
 void HeldContacts::extrapolate() noexcept {

@@ -20,9 +20,12 @@ class HeldContacts final : private ContactForm {
   ContactForm* form() { return held_.empty() ? nullptr : this; }
 
  private:
-  void begin(double t, double tau, In q0, In v0) noexcept override;
+  std::size_t tracked() const override;
+  void places(double t, In q, In v, Out x) noexcept override;
+  void slides(double t, In q, In v, Out u) noexcept override;
+  void begin(double t, double tau, In q0, In v0, In x0) noexcept override;
   double improve(double t, In q, In v) noexcept override;
-  std::size_t cases(double t, In q, In v) noexcept override;
+  double drive() const noexcept override;
   void extrapolate() noexcept override;
   double approach(double t, In q, In v) noexcept override;
   void release() noexcept override;
@@ -30,6 +33,16 @@ class HeldContacts final : private ContactForm {
   Complementarity* complementarity() override;
   std::vector<double> multipliers() const override;
   void set_multipliers(In values) override;
+
+  /// Calls act(multipliers, their values) of every effect.
+  template <class Values, class Act>
+  void each(Values all, Act act) const {
+    for (const auto& effect : held_) {
+      Multipliers& own = *effect->multipliers();
+      act(own, all.first(own.tracked()));
+      all = all.subspan(own.tracked());
+    }
+  }
 
   std::vector<std::shared_ptr<Effect>> held_;
   PointsAt points_at_;

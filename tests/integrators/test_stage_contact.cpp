@@ -29,15 +29,16 @@ class ByPenalties final : public testing_support::BareSystem, private ContactFor
   ContactForm* contact_form() override { return this; }
 
  private:
-  void begin(double t, double tau, In q0, In v0) noexcept override {
-    form_.begin(t, tau, q0, v0);
+  std::size_t tracked() const override { return form_.tracked(); }
+  void places(double t, In q, In v, Out x) noexcept override { form_.places(t, q, v, x); }
+  void slides(double t, In q, In v, Out u) noexcept override { form_.slides(t, q, v, u); }
+  void begin(double t, double tau, In q0, In v0, In x0) noexcept override {
+    form_.begin(t, tau, q0, v0, x0);
   }
   double improve(double t, In q, In v) noexcept override {
     return form_.improve(t, q, v);
   }
-  std::size_t cases(double t, In q, In v) noexcept override {
-    return form_.cases(t, q, v);
-  }
+  double drive() const noexcept override { return form_.drive(); }
   void extrapolate() noexcept override { form_.extrapolate(); }
   double approach(double t, In q, In v) noexcept override {
     return form_.approach(t, q, v);

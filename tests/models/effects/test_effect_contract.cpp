@@ -130,8 +130,14 @@ class EffectContract : public testing::TestWithParam<Case> {
     if (own == nullptr) return;
     Cloud away = cloud;  // no overlap at first
     for (std::size_t i = 0; i < away.x.size(); i += 3) away.x[i] -= 10;
-    own->multipliers()->begin(now, 0.01, away.points());
-    own->multipliers()->improve(now, cloud.points());
+    constexpr double tau = 1;  // differences of places are then no jumps of slides
+    Cloud before = cloud;
+    for (std::size_t i = 0; i < before.x.size(); ++i) before.x[i] -= tau * before.v[i];
+    Multipliers& held = *own->multipliers();
+    std::vector<double> start(held.tracked());
+    held.places(now - tau, before.points(), start);
+    held.begin(now, tau, away.points(), start);
+    held.improve(now, cloud.points());
     effect = std::move(own);
   }
 

@@ -36,23 +36,27 @@ class ExactLaw : public testing::TestWithParam<LawCase> {
   /// Deep enough for either normal force; pulled within the cone, or well out of it.
   HeldContact held() const {
     const double pull = GetParam().slips ? 4e-4 : 1e-5;
-    return {1.5e-4, {pull, -pull, pull / 2}, -1e-5, 0};
+    return {1.5e-4, {pull, -pull, pull / 2}, -1e-5, 0, 0, {}};
   }
   ExactContact::Penalty penalty() const {
-    ExactContact::Penalty own{.length = 2e-3, .rho = 1e-4, .tau = 0.01, .rebound = {}};
+    ExactContact::Penalty own{.length = 2e-3,
+                              .rho = 1e-4,
+                              .tau = 0.01,
+                              .rebound = {},
+                              .from = x_ - 0.01 * along_};
     if (GetParam().rebounds) own.rebound = 0.3;
     return own;
   }
   ExactContact::State at(const Vec& x, const Vec& u) const {
-    return {law_, held_, penalty_, sphere_.distance(x), u};
+    return {law_, held_, penalty_, sphere_.distance(x), x, u};
   }
 
   const Sphere sphere_{0.02};
+  const Vec x_ = (0.0205 / std::sqrt(3.0)) * Vec{1, 1, 1};
+  const Vec u_{0.02, -0.05, 0.01}, along_{0.03, -0.06, 0.02};
   const ExactContact law_ = law();
   const HeldContact held_ = held();
   const ExactContact::Penalty penalty_ = penalty();
-  const Vec x_ = (0.0205 / std::sqrt(3.0)) * Vec{1, 1, 1};
-  const Vec u_{0.02, -0.05, 0.01};
 };
 
 TEST_P(ExactLaw, SlopesAreThoseOfTheLoad) {
@@ -93,11 +97,15 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ExactLaw,
 TEST(ExactContactLaw, ViolationVanishesWhereTheMultipliersAreTheForce) {
   const ExactContact law{{.offset = 0}, true, 0.5};
   const Plane plane;
-  const ExactContact::Penalty penalty{.length = 1, .rho = 1, .tau = 1, .rebound = {}};
+  const ExactContact::Penalty penalty{
+      .length = 1, .rho = 1, .tau = 1, .rebound = {}, .from = {}};
   // Sticks: no motion. Slides: |T| = mu N against the motion. Open: no force.
-  const HeldContact sticks{1, {0.3, 0, 0}, 0, 0}, slides{1, {0.5, 0, 0}, 0, 0}, open{};
+  HeldContact sticks, slides, open;
+  sticks.normal = slides.normal = 1;
+  sticks.tangential = {0.3, 0, 0};
+  slides.tangential = {0.5, 0, 0};
   const auto violation = [&](const HeldContact& held, double gap, const Vec& u) {
-    return ExactContact::State(law, held, penalty, plane.distance({0, 0, gap}), u)
+    return ExactContact::State(law, held, penalty, plane.distance({0, 0, gap}), u, u)
         .violation();
   };
   EXPECT_EQ(violation(sticks, 0, {}), 0);

@@ -211,7 +211,10 @@ TEST(CoupledStrands, GiveAndTakeTheContactForcesOfTheirStrands) {
   System &system = *first, &other = *second;
   States s(system);
   ContactForm& contacts = *system.contact_form();
-  contacts.begin(t0, 1e-3, s.q, s.v);
+  std::vector<double> start(contacts.tracked());
+  EXPECT_EQ(start.size(), 2 * 3 * 6U);  // of six points on two strands
+  contacts.places(t0 - 1e-3, s.q, s.v, start);
+  contacts.begin(t0, 1e-3, s.q, s.v, start);
   (void)contacts.improve(t0, s.q, s.v);
   const std::vector<double> held = contacts.multipliers(), memory = system.memory();
   EXPECT_GT(largest(held), 0);
