@@ -6,7 +6,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/run/experiment.h"
-#include "experiments/run/heartbeat.h"
+#include "experiments/run/progress.h"
 
 namespace tress::experiments::cost_of_accuracy {
 

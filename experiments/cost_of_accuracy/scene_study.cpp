@@ -17,7 +17,7 @@
 #include "experiments/cost_of_accuracy/study_rows.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/numerics/tip_track.h"
-#include "experiments/run/heartbeat.h"
+#include "experiments/run/progress.h"
 #include "simulation/scene/scene_tables.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -345,7 +345,8 @@ std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
   const bool own = plan.advise && plan.answer_s > 0;
   const Deadline deadline(own ? std::min(plan.answer_s, of_row.remaining_s())
                               : of_row.remaining_s());
-  Heartbeat heartbeat(std::string(identity.text("scene")), plan.report);
+  Heartbeat heartbeat(plan.report ? ProgressMode::automatic : ProgressMode::none,
+                      identity.text("scene"));
   std::optional<Study> study;
   try {
     study.emplace(ready(file, plan, identity, deadline, heartbeat));
