@@ -195,6 +195,22 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   return lines;
 }
 
+std::vector<std::string> answers(const std::vector<Row>& rows) {
+  std::vector<std::string> lines;
+  for (const Row& row : rows) {
+    const bool budget = row.text("kind") == "budget";
+    if (!budget && row.text("kind") != "winner") continue;
+    const std::string wanted =
+        budget ? fmt::format("{:.3g} ms a frame", row.number("budget_ms"))
+               : fmt::format("{:.3g} %", 1e2 * row.number("target_error_rel"));
+    lines.push_back(fmt::format("{}, within {}: {}", row.text("scene"), wanted,
+                                row.ok()
+                                    ? configuration_and_price(row) + ", " + validity(row)
+                                    : fmt::format("no answer: {}", row.text("reason"))));
+  }
+  return lines;
+}
+
 std::string configuration_and_price(const Row& row) {
   return fmt::format("{}: {}", what(row), price(row));
 }

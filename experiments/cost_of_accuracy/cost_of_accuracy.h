@@ -114,6 +114,9 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 /// the second has the best run known. If nothing is known the only line says why.
 std::vector<std::string> advice(const std::vector<Row>& rows);
 
+/// The cheapest run for each target, and the best within the budget, a line each.
+std::vector<std::string> answers(const std::vector<Row>& rows);
+
 /// "super_helix (modes=bend), 9 elements, implicit_midpoint, dt 8.3 ms: 0.82 % of the
 /// length in 3.2 ms per simulated second (0.053 ms a frame)"
 std::string configuration_and_price(const Row& row);

@@ -262,23 +262,6 @@ bool finding(const Row& row) {
          row.status() == "not_met" || row.status() == "diverged";
 }
 
-/// The cheapest run for each target, and the best within the budget.
-std::vector<std::string> answers(const std::vector<Row>& rows) {
-  std::vector<std::string> lines;
-  for (const Row& row : rows) {
-    const bool budget = row.text("kind") == "budget";
-    if (!budget && row.text("kind") != "winner") continue;
-    const std::string wanted =
-        budget ? fmt::format("{:.3g} ms a frame", row.number("budget_ms"))
-               : fmt::format("{:.3g} %", 1e2 * row.number("target_error_rel"));
-    lines.push_back(fmt::format("{}, within {}: {}", row.text("scene"), wanted,
-                                row.ok()
-                                    ? configuration_and_price(row) + ", " + validity(row)
-                                    : fmt::format("no answer: {}", row.text("reason"))));
-  }
-  return lines;
-}
-
 void advise(const CommandLine& line, const std::vector<Row>& rows) {
   const Settings settings(line, own_settings);
   const Parameters& own = settings.experiment();

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/finalists.h"
 #include "experiments/cost_of_accuracy/scene_measure.h"
+#include "experiments/run/progress.h"
 
 namespace tress::experiments::cost_of_accuracy {
 
@@ -29,6 +31,11 @@ struct Study {
   double trusted() const { return plan.advise ? believed_in_advice : believed; }
   double floor() const { return trusted() * gap(); }
 };
+
+/// The scene with its methods and its references: those that are kept, or, for advice,
+/// one that decides. Throws std::runtime_error where there is none.
+Study ready(const std::string& file, const StudyPlan& plan, const Row& identity,
+            const Deadline& deadline, Heartbeat& heartbeat);
 
 /// A row with the columns common to the study; the second with those of a run.
 Row begin(const Study& study, std::string_view kind);

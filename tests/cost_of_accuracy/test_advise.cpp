@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "experiments/run/heartbeat.h"
+#include "experiments/run/progress.h"
 #include "simulation/files/csv.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
@@ -116,8 +116,7 @@ root_tangent = [1, 0, 0]
   EXPECT_EQ(result.code, 3) << result.err;
   const std::string first = result.out.substr(0, result.out.find('\n'));
   EXPECT_TRUE(first.starts_with("valid for the first ") ||
-              first.starts_with("no answer: ") ||
-              first.starts_with("no run within "))
+              first.starts_with("no answer: ") || first.starts_with("no run within "))
       << first;
   EXPECT_THAT(first, testing::Not(testing::StartsWith("take ")));
 }
@@ -185,19 +184,6 @@ TEST(Advise, SaysThatTimeIsOver) {
   EXPECT_THAT(result.out, HasSubstr("out of time"));
   EXPECT_THAT(result.out, HasSubstr("--timeout"));
   EXPECT_THAT(result.out, testing::Not(HasSubstr("nothing")));
-}
-
-TEST(Heartbeat, SaysWhatIsBeingDone) {
-  testing::internal::CaptureStderr();
-  {
-    experiments::Heartbeat heartbeat("scene", true, std::chrono::milliseconds(5));
-    heartbeat.doing("counting");
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  }
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("scene: counting (0 s)"));
-  testing::internal::CaptureStderr();
-  { experiments::Heartbeat silent("scene", false, std::chrono::milliseconds(1)); }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(Advise, BudgetTakesTheBestInTheTimeThereIs) {

@@ -113,7 +113,8 @@ TEST_F(SceneLimit, HoldsOverFiveTimesTheScene) {
 
   const auto lines = stability_answer(found);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], HasSubstr("springs, mass_spring: rk4 (tangent exact): stable up to "));
+  EXPECT_THAT(lines[0],
+              HasSubstr("springs, mass_spring: rk4 (tangent exact): stable up to "));
   EXPECT_THAT(lines[0], HasSubstr(", unstable at 1.5 times that ("));
   EXPECT_THAT(lines[0], HasSubstr("; judged over 250 ms; "));
 }
