@@ -84,7 +84,7 @@ void declare(CLI::App& app, Arguments& a) {
                "continue after the guard reports an unphysical state (as guard = false)");
   app.add_flag("--error-bars", a.error_bars,
                "estimate time and space errors from runs with finer steps and twice the "
-               "elements");
+               "elements, with bounds that hold in 90 % of runs");
   app.add_flag("--verify", a.verify, "with a tolerance: the error in time alone");
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));

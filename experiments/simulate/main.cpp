@@ -20,6 +20,7 @@
 #include "experiments/simulate/outcome.h"
 #include "experiments/simulate/rank_failures.h"
 #include "experiments/simulate/scene_run.h"
+#include "experiments/simulate/warnings.h"
 #include "integrators/error_indicator.h"
 #include "simulation/errors/error_bars.h"
 #include "simulation/files/files.h"
@@ -230,6 +231,9 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
        scene.name, run.frames, run.simulated_s, run.wall_s, control_in_words(scene, run),
        came_to_its_end ? "" : "; ", run.reason, options.stem);
+  for (const std::string& warning : warnings(scene, run)) {
+    tell("simulate: warning: {}: {}\n", scene.name, warning);
+  }
   if (run.indicator > unresolved) {
     tell(
         "simulate: warning: {}: {} did not resolve the motion (one step was wrong by "

@@ -83,6 +83,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
       break;
     }
     add_frame();
+    if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
     run.indicator = std::max(run.indicator, world->error_indicator());
     bar.show(world->time());
     if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
@@ -104,6 +105,8 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     run.rejected += static_cast<long>(frame.series.back());
   }
   run.simulated_s = world->time();
+  run.account = world->account();
+  if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
   run.wall_s = seconds_since(begin);
   options.heartbeat->doing(scene.name + ": writing its pictures");
   pictures.write(recording.frames(), options.further && run.end == SceneRun::End::complete

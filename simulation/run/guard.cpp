@@ -90,7 +90,9 @@ void Guard::start(double t, In q, In v) {
   steps_ = 0;
   record_ = {.t = t, .seen = t};
   if (energetics_ == nullptr) return;
-  const Measure begin = measure(t, q, v);
+  const Energy energy = energetics_->energy(t, q, v);
+  const Measure begin = measure(t, q, v, energy);
+  meter_.start(energy, energetics_->power(t, q, v));
   record_.energy = begin.kinetic + begin.potential;
   record_.slack = slack(t, q, v, begin);
   record_.power = begin.power;
@@ -128,13 +130,14 @@ bool Guard::judge(double t, In q, In v) {
   }
   if (stretched(t, q)) return false;
   if (energetics_ == nullptr) return true;
-  const Measure now = measure(t, q, v);
+  const Energy energy = energetics_->energy(t, q, v);
+  const Measure now = measure(t, q, v, energy);
+  meter_.gather(t - record_.seen, energy, energetics_->power(t, q, v));
   gather(t, now);
   return !gained(t, now) && !too_fast(t);
 }
 
-Guard::Measure Guard::measure(double t, In q, In v) {
-  const Energy energy = energetics_->energy(t, q, v);
+Guard::Measure Guard::measure(double t, In q, In v, const Energy& energy) {
   Measure now{.kinetic = energy.kinetic, .potential = energy.potential};
   if (points_ != nullptr) {
     points_->positions(t, q, x_);
@@ -225,12 +228,12 @@ bool Guard::gained(double t, const Measure& now) {
   const double gain = now.kinetic + now.potential - record_.energy;
   const double allowed = record_.slack + record_.work + record_.frame;
   if (gain <= allowed) return false;
-  broken(
-      Breach::Kind::energy,
-      fmt::format("unstable: {:.3g} J more energy than at the start, of which {:.3g} J "
-                  "can be",
-                  gain, allowed),
-      fastest(), t);
+  broken(Breach::Kind::energy,
+         fmt::format(
+             "unstable: {:.3g} J more energy than at the start, at most {:.3g} J are "
+             "allowed (m g L, a tenth of the initial energy, work done)",
+             gain, allowed),
+         fastest(), t);
   return true;
 }
 
@@ -278,12 +281,15 @@ bool Guard::broken(Breach::Kind kind, std::string what, std::string where, doubl
 
 Guard::Memory Guard::memory() const {
   const Record& r = record_;
-  return {r.t, r.energy, r.slack, r.seen, r.power, r.work, r.frame, r.lowest};
+  Memory all{r.t, r.energy, r.slack, r.seen, r.power, r.work, r.frame, r.lowest};
+  std::ranges::copy(meter_.memory(), all.end() - EnergyMeter::remembered);
+  return all;
 }
 
 void Guard::recall(In memory) {
   record_ = {memory[0], memory[1], memory[2], memory[3],
              memory[4], memory[5], memory[6], memory[7]};
+  meter_.recall(memory.subspan(remembered - EnergyMeter::remembered));
   steps_ = 0;
   breach_.reset();
 }

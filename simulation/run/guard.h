@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "simulation/run/energy_account.h"
 #include "simulation/run/guarded_strand.h"
 #include "simulation/run/simulation.h"
 
@@ -55,8 +56,12 @@ std::string remedy(std::string_view integrator, const Options& options,
 /// the strand has all of it and turns about its own start, its tip moves at sqrt(30)
 /// times the root mean square speed.
 ///
+/// An error of the energy up to m g L ends no run: coarse but sound steps may have one
+/// while the strand falls. EnergyAccount, which is exact up to the trapezoidal rule,
+/// shows it.
+///
 /// Checks every fourth step, all steps longer than 2 ms, and the last; each check costs
-/// about one evaluation of the loads.
+/// about two evaluations of the loads.
 class Guard {
  public:
   /// `strands`: the strands of the system in order, empty for a mechanism; `first`: the
@@ -70,10 +75,12 @@ class Guard {
   /// Checks this state unconditionally.
   bool judge(double t, In q, In v);
   const std::optional<Breach>& breach() const { return breach_; }
+  /// Until the last check. Without meaning where impulses or other strands act.
+  EnergyAccount account() const { return meter_.account(); }
 
   /// All data gathered since start(); recall() lets another guard of an identically
   /// constructed system continue from there.
-  static constexpr std::size_t remembered = 8;  // numbers
+  static constexpr std::size_t remembered = 8 + EnergyMeter::remembered;  // numbers
   using Memory = std::array<double, remembered>;
   Memory memory() const;
   void recall(In memory);
@@ -91,7 +98,7 @@ class Guard {
     double work = 0, frame = 0, lowest = 0;
   };
 
-  Measure measure(double t, In q, In v);
+  Measure measure(double t, In q, In v, const Energy& energy);
   Points points_of(const GuardedStrand& strand, std::size_t first);
   void move_with(double t, const GuardedStrand& strand, const Points& p,
                  std::size_t first, Measure& now);
@@ -113,6 +120,7 @@ class Guard {
   std::vector<double> x_, u_, tangent_, load_;  // (3 points); u_: relative to the frame
   int steps_ = 0;                               // since judged
   Record record_;
+  EnergyMeter meter_;
   std::optional<Breach> breach_;
 };
 

@@ -84,6 +84,11 @@ class World {
   Status advance(double t_end);
   double time() const { return t_; }
   const std::string& failure() const { return failure_; }
+  /// Of all strands. Empty: without guards, or where what changes energy is not a power:
+  /// impulses of rigid contact and of friction between strands, other strands that move.
+  std::optional<EnergyAccount> account() const;
+  /// Why the motion of a strand was not smooth; empty: no such event was seen.
+  std::string not_smooth() const;
   /// What a guard found, or null.
   const Breach* breach() const;
   /// Largest of all strands so far; 0 if the method has none (ErrorIndicator).

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/moving_history.h"
 #include "integrators/catalogue.h"
 #include "integrators/error_indicator.h"
 #include "simulation/run/world.h"
@@ -198,6 +199,26 @@ std::string World::name_of(const Body& body) const {
 const Breach* World::breach() const {
   const auto broken = std::ranges::find_if(bodies_, &Body::breached);
   return broken == bodies_.end() ? nullptr : &*broken->guard->breach();
+}
+
+std::optional<EnergyAccount> World::account() const {
+  EnergyAccount sum;
+  if (interaction_ || mesh_ || rubbing_) return {};
+  for (const Body& body : bodies_) {
+    const bool known = body.guard && body.system->energetics() != nullptr &&
+                       body.system->contact_form() == nullptr;
+    if (!known) return {};
+    sum += body.guard->account();
+  }
+  return sum;
+}
+
+std::string World::not_smooth() const {
+  for (const Body& body : bodies_) {
+    const std::string why = tress::not_smooth(*body.system);
+    if (!why.empty()) return name_of(body) + ": " + why;
+  }
+  return {};
 }
 
 Stats World::Body::stats() const {

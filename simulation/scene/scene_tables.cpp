@@ -37,7 +37,10 @@ constexpr Parameter top[] = {
      .max = 1e6},
     {.name = "guard",
      .help = "end the run where it does what physics rules out: a piece stretched by "
-             "half, energy or speed from nowhere",
+             "half, a point faster than the energy allows, or more energy than at the "
+             "start by m g L, a tenth of the initial kinetic and elastic energy, and the "
+             "work of loads and root. Coarse but sound steps need that margin; what the "
+             "method created within it is printed",
      .choices = "true|false"},
     {.name = "rest",
      .help =

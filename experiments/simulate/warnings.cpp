@@ -1,0 +1,36 @@
+#include "experiments/simulate/warnings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+// Of the energy of the motion. Energy is as the square of an amplitude: less than this
+// changes that by less than a twentieth.
+constexpr double large_share = 0.1;
+
+}  // namespace
+
+std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
+  std::vector<std::string> all;
+  const double share = run.account ? run.account->share() : 0;
+  if (std::abs(share) > large_share) {
+    all.push_back(fmt::format(
+        "{} {} {:.2g} J, {:.2g} % of the energy of the motion: {}", scene.integrator,
+        share > 0 ? "dissipated" : "created", std::abs(run.account->dissipated),
+        100 * std::abs(share),
+        scene.chooses_steps() ? "take a smaller tolerance"
+                              : "take a shorter dt_s, or a method of order 2 or more"));
+  }
+  if (!run.not_smooth.empty()) {
+    all.push_back(fmt::format(
+        "the motion is not smooth, and no dt_s or tolerance controls its error: {}; take "
+        "a model with material frames, such as der or super_helix",
+        run.not_smooth));
+  }
+  return all;
+}
+
+}  // namespace tress::experiments::scene_runs
