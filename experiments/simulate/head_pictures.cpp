@@ -77,8 +77,9 @@ void write_head_pictures(const SceneOutline& outline, const HeadFrames& frames,
   const std::vector<int> counts(shown.size(), static_cast<int>(points));
   const std::vector<Reading> channels{{"curvature", "1/m"}};
   const SmoothLines curves(counts, chosen);
-  write_pictures({outline.scene, head_series(), channels, lines, chosen, curves},
-                 options);
+  write_pictures(
+      {outline.scene, head_series(outline.scene), channels, lines, chosen, curves},
+      options);
 }
 
 }  // namespace tress::experiments::scene_runs

@@ -8,14 +8,12 @@
 
 namespace tress::experiments::scene_runs {
 
-const std::vector<models::HeadEnergy>& HeadReading::energies(HeadRun& run, double t) {
-  run.energies(t, energies_);
-  return energies_;
-}
-
-std::vector<double> HeadReading::series(HeadRun& run, double t) const {
+std::vector<double> HeadReading::series(HeadRun& run, double t) {
   using models::HeadEnergy;
-  constexpr std::size_t numbers = sizeof(HeadEnergy) / sizeof(double), each = numbers + 1;
+  constexpr std::size_t numbers = sizeof(HeadEnergy) / sizeof(double);
+  run.energies(t, energies_);
+  run.potentials(t, potentials_);
+  const std::size_t effects = run.effects(), each = numbers + effects + 1;
   using Numbers = std::array<double, numbers>;
   HeadSeriesRow row;
   std::vector<double> all;
@@ -27,14 +25,16 @@ std::vector<double> HeadReading::series(HeadRun& run, double t) const {
           for (std::size_t k = 0; k < head.strands_of(block); ++k) {
             const std::size_t place = block * head.strands_of(0) + k;
             std::ranges::copy(std::bit_cast<Numbers>(energies_[place]), &to[each * k]);
-            to[each * k + numbers] = head.lost(place) ? 1 : 0;
+            std::copy_n(&potentials_[effects * place], effects, &to[each * k + numbers]);
+            to[each * (k + 1) - 1] = head.lost(place) ? 1 : 0;
           }
         },
         all);
     for (std::size_t i = 0; i < all.size(); i += each) {
       Numbers one;
       std::copy_n(&all[i], numbers, one.begin());
-      row.add(std::bit_cast<HeadEnergy>(one), all[i + numbers] != 0);
+      row.add(std::bit_cast<HeadEnergy>(one),
+              std::span(all).subspan(i + numbers, effects), all[i + each - 1] != 0);
     }
   });
   return row.at(t);

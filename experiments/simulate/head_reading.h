@@ -28,10 +28,8 @@ class HeadReading {
     run.by_chunks(at_once_, use);
   }
 
-  /// Of own strands, by their places, at t.
-  const std::vector<models::HeadEnergy>& energies(HeadRun& run, double t);
-  /// A row of head_series() from them; on the first rank.
-  std::vector<double> series(HeadRun& run, double t) const;
+  /// A row of head_series() at t; on the first rank.
+  std::vector<double> series(HeadRun& run, double t);
   /// Positions at t into `frame`, null on other ranks; of all strands, or shown ones
   /// alone.
   void frame(HeadRun& run, double t, bool all, HeadFrames* frame) const;
@@ -40,6 +38,7 @@ class HeadReading {
   std::vector<std::size_t> shown_;
   std::size_t at_once_;  // strands
   std::vector<models::HeadEnergy> energies_;
+  std::vector<double> potentials_;
 };
 
 }  // namespace tress::experiments::scene_runs

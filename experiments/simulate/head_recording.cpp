@@ -39,7 +39,7 @@ HeadRecording::HeadRecording(std::string stem, RunKey key, const Scene& scene,
       key_(std::move(key)),
       columns_(stored.columns),
       head_{run.strands(), run.head().numbers() / 3},
-      kept_(run.head().kept()),
+      kept_(run.kept()),
       lock_(stem_ + ".frames", "this scene") {
   try {
     open(scene, std::move(stored), resume);
@@ -80,9 +80,8 @@ void HeadRecording::write_lost() {
   for (const LostStrand& lost : progress_.lost) {
     Row row;
     row.set("t_s", lost.t);
-    table += fmt::format("{},{},{}\n", lost.strand, row.text("t_s"),
-                         lost.fast ? "it was faster than its energy allows"
-                                   : "its step had no finite result");
+    table += csv_line(std::vector<std::string>{
+        std::to_string(lost.strand), std::string(row.text("t_s")), lost.reason});
   }
   replace_file(stem_ + ".lost.csv", table);
   lost_written_ = progress_.lost.size();
@@ -95,11 +94,10 @@ void HeadRecording::add(const std::vector<double>& series) {
   progress_.sums = frames_->sums();
 }
 
-std::unique_ptr<SavedHead> HeadRecording::saving(std::size_t step, double speed) {
+std::unique_ptr<SavedHead> HeadRecording::saving(std::size_t step) {
   frames_->sync();
   progress_.frames = frames_->state();
   progress_.step = step;
-  progress_.speed = speed;
   return std::make_unique<SavedHead>(stem_ + ".state", key_, head_.strands, kept_,
                                      progress_);
 }

@@ -37,9 +37,8 @@ class HeadRecording {
   /// Takes a frame; add() writes it, its series and the lost strands.
   HeadFrames& frame() { return *frames_; }
   void add(const std::vector<double>& series);
-  /// For the state of all strands, `step` steps after the last frame; `speed`: of its
-  /// guard.
-  std::unique_ptr<SavedHead> saving(std::size_t step, double speed);
+  /// For the state of all strands, `step` steps after the last frame.
+  std::unique_ptr<SavedHead> saving(std::size_t step);
   /// The run is complete: removes what only a resumed run needs.
   void close();
 

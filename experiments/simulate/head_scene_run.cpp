@@ -20,8 +20,8 @@
 #include "experiments/simulate/time_bar.h"
 #include "simulation/head/head_balance.h"
 #include "simulation/head/head_device.h"
-#include "simulation/head/head_guard.h"
 #include "simulation/head/scene_head.h"
+#include "simulation/run/guard.h"
 #include "simulation/run/timing.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -51,23 +51,23 @@ class HeadSceneRun {
  private:
   void run(SceneRun& made) {
     HeadOutcome& outcome = made.head.emplace();
-    std::optional<HeadReach> reach;
     outcome.build_s = seconds_of([&] {
-      SceneHead made_head = make_head(outline_, options_.pack, options_.threads, ranks_);
-      reach = std::move(made_head.reach);
-      run_ = std::make_unique<HeadRun>(std::move(made_head), options_.threads, ranks_);
+      run_ = std::make_unique<HeadRun>(
+          make_head(outline_, options_.pack, options_.threads, ranks_), options_.threads,
+          ranks_);
       outcome.device = take_device();
     });
     build_s_ = ranks_.largest(outcome.build_s);
     reading_.emplace(shown_strands(run_->strands()), options_.threads);
     StoredFrames stored{options_.frame_bits, reading_->shown(), {}};
-    for (const Reading& column : head_series()) stored.columns.push_back(column.name);
+    for (const Reading& column : head_series(scene_)) {
+      stored.columns.push_back(column.name);
+    }
     if (ranks_.first()) {
       recording_.emplace(options_.stem, key_, scene_, *run_, std::move(stored),
                          options_.resume);
     }
-    const double speed = begin();
-    if (reach) guard_.emplace(std::move(*reach), speed);
+    begin();
     advance(outcome);
     made.frames = frames_;
     made.simulated_s = scene_.duration;
@@ -91,8 +91,18 @@ class HeadSceneRun {
     outcome.state = fmt::format("{:016x}", state);
     if (outcome.lost == 0) return;
     made.end = SceneRun::End::failed;
-    made.reason = fmt::format("{} of {} strands were lost: {}.lost.csv", outcome.lost,
-                              outcome.strands, options_.stem);
+    made.reason = why_failed(recording_->progress().lost);
+  }
+
+  std::string why_failed(const std::vector<LostStrand>& lost) const {
+    const LostStrand& first = lost.front();
+    const bool unsolved = first.reason.starts_with("no solution");
+    return fmt::format(
+        "{}{} of {} strands were lost, the first at t = {:.9g} s, strand {}: {} "
+        "({}.lost.csv): {}{}",
+        unsolved ? "" : "unstable: ", lost.size(), run_->strands(), first.t, first.strand,
+        first.reason, options_.stem, remedy(scene_.integrator, scene_.options),
+        unsolved ? ", or --as strands, which has more ways to solve a step" : "");
   }
 
   /// Steps of the head, or with a tolerance those of its strands.
@@ -144,16 +154,14 @@ class HeadSceneRun {
     return chosen.name;
   }
 
-  /// All ranks go on where the recording of the first does; speed: of its guard.
-  double begin() {
+  /// All ranks go on where the recording of the first does.
+  void begin() {
     struct Known {
       std::size_t frames = 0, step = 0, losses = 0;  // step: since the last frame
-      double speed = 0;
     } known;
     if (recording_) {
       const HeadProgress& progress = recording_->progress();
-      known = {recording_->frames().size(), progress.step, progress.lost.size(),
-               progress.speed};
+      known = {recording_->frames().size(), progress.step, progress.lost.size()};
     }
     ranks_.as_first(std::span(&known, 1));
     frames_ = known.frames;
@@ -167,7 +175,6 @@ class HeadSceneRun {
         run_->recall(strands, kept);
       });
     }
-    return known.speed;
   }
 
   /// To the last frame, unless a signal ends the program.
@@ -224,8 +231,7 @@ class HeadSceneRun {
       const double t = begin + static_cast<double>(i) * h;
       run_->step(t, h);
       ++steps_;
-      if (guard_) guard_->step(t, h, scene_.options.step);
-      for (const auto& loss : run_->lost()) lost_.lose({loss.strand, t + h});
+      lose(run_->on_device() ? std::nullopt : std::optional(t + h), h);
     }
     fetch(h);
   }
@@ -238,12 +244,18 @@ class HeadSceneRun {
     } catch (const DeviceFailure& no) {
       throw no_device(no, scene_.name);
     }
-    for (const auto& loss : run_->lost()) lost_.lose({loss.strand, loss.time + h});
+    lose({}, h);
+  }
+
+  /// What the run has lost in steps of h, all at t, or each at the end of its step.
+  void lose(std::optional<double> t, double h) {
+    for (const auto& loss : run_->lost()) {
+      lost_.lose({loss.strand, t.value_or(loss.time + h), std::string(loss.reason)});
+    }
   }
 
   void save_state(std::size_t step) {
-    const auto saved =
-        recording_ ? recording_->saving(step, guard_ ? guard_->speed() : 0) : nullptr;
+    const auto saved = recording_ ? recording_->saving(step) : nullptr;
     std::vector<double> kept;
     reading_->by_chunks(*run_, [&](HeadRun::Numbers strands) {
       run_->keep(strands, kept);
@@ -257,19 +269,6 @@ class HeadSceneRun {
       ++losses_;
       if (recording_) recording_->lose(lost);
     }
-  }
-
-  /// Strands that go on where physics does not are lost from this frame on.
-  void check(double t, const std::vector<models::HeadEnergy>& energies) {
-    if (!guard_) return;
-    if (t == 0) guard_->start(ranks_.largest(fastest(energies)));
-    if (!scene_.guard) return;
-    for (std::size_t k = 0; k < energies.size(); ++k) {
-      if (run_->head().lost(k) || !guard_->breached(t, energies[k])) continue;
-      run_->change().lose(k);
-      lost_.lose({run_->division().own()[k], t, true});
-    }
-    gather_lost();
   }
 
   /// A signal has come: the thread that handles it ends the program.
@@ -290,8 +289,9 @@ class HeadSceneRun {
     ++frames_;
     std::vector<double> series;
     outcome.read_s += seconds_of([&] {
+      run_->judge(t);
+      lose(t, 0);
       gather_lost();
-      check(t, reading_->energies(*run_, t));
       series = reading_->series(*run_, t);
       reading_->frame(*run_, t, options_.frame_bits > 0,
                       recording_ ? &recording_->frame() : nullptr);
@@ -312,7 +312,6 @@ class HeadSceneRun {
   LostStrands lost_;                        // not yet known to the first rank
   std::size_t frames_ = 0, step_ = 0;       // written; taken before this process began
   std::size_t losses_ = 0;                  // of all ranks
-  std::optional<HeadGuard> guard_;
   long steps_ = 0;
   models::HeadWork done_;  // by heads that others have taken the place of
 };

@@ -4,8 +4,8 @@
 
 namespace tress::experiments::scene_runs {
 
-const std::vector<Reading>& head_series() {
-  static const std::vector<Reading> all{
+std::vector<Reading> head_series(const Scene& scene) {
+  std::vector<Reading> all{
       {"t_s", "time"},
       {"tip_x_m", "tip, mean over the strands; all without lost strands"},
       {"tip_y_m", "tip, mean over the strands"},
@@ -18,11 +18,19 @@ const std::vector<Reading>& head_series() {
       {"fastest_m_s", "largest speed of an element's end"},
       {"lost_strands", "strands that have stopped, for their step was impossible"},
   };
+  const models::Effects effects = make_effects(scene);
+  const std::vector<std::string> names = effect_names(scene);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (effects[i]->uniform_acceleration()) continue;
+    all.push_back({names[i] + "_j", "its potential energy"});
+  }
   return all;
 }
 
-void HeadSeriesRow::add(const models::HeadEnergy& one, bool lost) {
+void HeadSeriesRow::add(const models::HeadEnergy& one, std::span<const double> potentials,
+                        bool lost) {
   ++strands_;
+  effects_.resize(potentials.size());
   if (lost) {
     ++lost_;
     return;
@@ -34,21 +42,24 @@ void HeadSeriesRow::add(const models::HeadEnergy& one, bool lost) {
   most_kinetic_ = std::max(most_kinetic_, one.kinetic);
   most_elastic_ = std::max(most_elastic_, one.elastic);
   fastest_ = std::max(fastest_, one.fastest);
+  for (std::size_t i = 0; i < potentials.size(); ++i) effects_[i] += potentials[i];
 }
 
 std::vector<double> HeadSeriesRow::at(double t) const {
   const Vec tip = 1 / static_cast<double>(strands_ - lost_) * tip_;
-  return {t,
-          tip.x,
-          tip.y,
-          tip.z,
-          kinetic_,
-          elastic_,
-          gravity_,
-          most_kinetic_,
-          most_elastic_,
-          fastest_,
-          static_cast<double>(lost_)};
+  std::vector<double> row{t,
+                          tip.x,
+                          tip.y,
+                          tip.z,
+                          kinetic_,
+                          elastic_,
+                          gravity_,
+                          most_kinetic_,
+                          most_elastic_,
+                          fastest_,
+                          static_cast<double>(lost_)};
+  row.insert(row.end(), effects_.begin(), effects_.end());
+  return row;
 }
 
 }  // namespace tress::experiments::scene_runs

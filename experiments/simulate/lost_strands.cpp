@@ -1,6 +1,7 @@
 #include "experiments/simulate/lost_strands.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -9,7 +10,8 @@ namespace tress::experiments::scene_runs {
 std::vector<LostStrand> LostStrands::gathered() {
   // Sent as bytes, without what lies between members.
   struct Entry {
-    double strand, t, fast;
+    double strand, t;
+    std::array<char, 80> reason;  // ended by a zero
   };
   const std::vector<std::size_t> counts = ranks_.of_each(own_.size());
   const auto rank = static_cast<std::ptrdiff_t>(ranks_.rank());
@@ -19,13 +21,15 @@ std::vector<LostStrand> LostStrands::gathered() {
   std::size_t next =
       std::accumulate(counts.begin(), counts.begin() + rank, std::size_t{0});
   for (const LostStrand& lost : own_) {
-    entries[next++] = {static_cast<double>(lost.strand), lost.t, lost.fast ? 1.0 : 0.0};
+    Entry& entry = entries[next++];
+    entry = {static_cast<double>(lost.strand), lost.t, {}};
+    lost.reason.copy(entry.reason.data(), entry.reason.size() - 1);
   }
   own_.clear();
   ranks_.share(std::span(entries), counts);
   std::vector<LostStrand> lost;
   for (const Entry& one : entries) {
-    lost.push_back({static_cast<std::size_t>(one.strand), one.t, one.fast != 0});
+    lost.push_back({static_cast<std::size_t>(one.strand), one.t, one.reason.data()});
   }
   std::ranges::sort(lost, {},
                     [](const LostStrand& one) { return std::pair(one.t, one.strand); });

@@ -153,9 +153,9 @@ Row outcome(const Scene& scene, const SceneRun& run) {
   }
   row.set("residuals", work.residuals).set("linearizations", work.linearizations);
   row.set("solves", work.solves).set("newton_iterations", work.newton_iterations);
-  if (run.account) {
-    row.set("method_dissipated_j", run.account->dissipated);
-    row.set("method_dissipated_rel", run.account->share());
+  if (run.dissipation) {
+    row.set("method_dissipated_j", run.dissipation->dissipated);
+    row.set("method_dissipated_rel", run.dissipation->share());
   }
   if (!run.not_smooth.empty()) row.set("not_smooth", run.not_smooth);
   if (work.contact_iterations > 0) {

@@ -105,7 +105,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     run.rejected += static_cast<long>(frame.series.back());
   }
   run.simulated_s = world->time();
-  run.account = world->account();
+  run.dissipation = world->dissipation();
   if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
   run.wall_s = seconds_since(begin);
   options.heartbeat->doing(scene.name + ": writing its pictures");

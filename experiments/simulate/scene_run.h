@@ -76,7 +76,7 @@ struct SceneRun {
   double indicator = 0;  // largest World::error_indicator
   Stats work = {};       // since this run began or was resumed
   Exchanges exchanges = {};
-  std::optional<EnergyAccount> account = {};  // World::account() at the end
+  std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
   std::string not_smooth = {};                // World::not_smooth(), first that was seen
   std::optional<HeadOutcome> head = {};
 };

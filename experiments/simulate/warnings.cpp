@@ -15,11 +15,11 @@ constexpr double large_share = 0.1;
 
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
   std::vector<std::string> all;
-  const double share = run.account ? run.account->share() : 0;
+  const double share = run.dissipation ? run.dissipation->share() : 0;
   if (std::abs(share) > large_share) {
     all.push_back(fmt::format(
         "{} {} {:.2g} J, {:.2g} % of the energy of the motion: {}", scene.integrator,
-        share > 0 ? "dissipated" : "created", std::abs(run.account->dissipated),
+        share > 0 ? "dissipated" : "created", std::abs(run.dissipation->dissipated),
         100 * std::abs(share),
         scene.chooses_steps() ? "take a smaller tolerance"
                               : "take a shorter dt_s, or a method of order 2 or more"));

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "python/bindings/owned_system.h"
-#include "simulation/head/head_guard.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/readout.h"
@@ -114,13 +113,8 @@ class HeadOfHair {
     }
     const models::HeadNumber number =
         bits == 64 ? models::HeadNumber::float64 : models::HeadNumber::float32;
-    SceneHead made = make_head(outline_, models::widest_pack(number), threads);
-    run_.emplace(std::move(made.head), threads, std::move(made.interaction));
+    run_.emplace(make_head(outline_, models::widest_pack(number), threads), threads);
     run_->energies(0, energies_);
-    if (scene_->guard && made.reach) {
-      guard_.emplace(std::move(*made.reach));
-      guard_->start(fastest(energies_));
-    }
   }
 
   /// In equal steps of at most dt_s; with a tolerance, in those that each strand needs.
@@ -133,19 +127,14 @@ class HeadOfHair {
       {
         const py::gil_scoped_release release;
         run_->step(begin + i * h, h);
-        if (guard_) guard_->step(begin + i * h, h, scene_->options.step);
       }
       look_for_signals();
       t_ = begin + (i + 1) * h;
     }
     t_ = t_end;
     const py::gil_scoped_release release;
+    run_->judge(t_);
     run_->energies(t_, energies_);
-    if (!guard_) return;
-    const Head& head = run_->head();
-    for (std::size_t k = 0; k < energies_.size(); ++k) {
-      if (!head.lost(k) && guard_->breached(t_, energies_[k])) run_->change().lose(k);
-    }
   }
 
   double time() const { return t_; }
@@ -188,7 +177,6 @@ class HeadOfHair {
   ScenePtr scene_;
   SceneOutline outline_;
   std::optional<HeadRun> run_;
-  std::optional<HeadGuard> guard_;
   std::vector<models::HeadEnergy> energies_;
   std::vector<double> x_;
   double t_ = 0;

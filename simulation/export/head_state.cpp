@@ -24,16 +24,18 @@ SavedHead::SavedHead(const std::string& file, const RunKey& key, std::size_t str
   put_numbers(progress.sums);
   std::vector<std::uint64_t> which;
   std::vector<double> when;
-  std::vector<char> fast;
+  std::vector<std::uint64_t> sizes;
+  std::string reasons;
   for (const LostStrand& lost : progress.lost) {
     which.push_back(lost.strand);
     when.push_back(lost.t);
-    fast.push_back(lost.fast ? 1 : 0);
+    sizes.push_back(lost.reason.size());
+    reasons += lost.reason;
   }
   put_numbers(which);
   put_numbers(when);
-  put_numbers(fast);
-  put_numbers(std::vector{progress.speed});
+  put_numbers(sizes);
+  put_bytes(reasons);
   put_numbers(std::vector{frames.length});
   put_numbers(frames.ranges);
   put_bytes(frames.bytes);
@@ -85,11 +87,11 @@ void HeadToResume::parse(const RunKey& key, const std::string& file,
   progress_.sums = numbers<std::uint64_t>(sizes[3]);
   const auto which = numbers<std::uint64_t>(sizes[4]);
   const auto when = numbers<double>(sizes[4]);
-  const auto fast = numbers<char>(sizes[4]);
+  const auto lengths = numbers<std::uint64_t>(sizes[4]);
   for (std::size_t i = 0; i < which.size(); ++i) {
-    progress_.lost.push_back({which[i], when[i], fast[i] != 0});
+    const auto reason = numbers<char>(lengths[i]);
+    progress_.lost.push_back({which[i], when[i], {reason.begin(), reason.end()}});
   }
-  progress_.speed = numbers<double>(1).front();
   progress_.frames.length = numbers<std::uint64_t>(1).front();
   progress_.frames.ranges = numbers<FileRange>(sizes[5]);
   const auto bytes = numbers<char>(sizes[6]);

@@ -15,8 +15,8 @@ namespace tress::simulation {
 /// A strand that stays where it is from this time on.
 struct LostStrand {
   std::size_t strand;
-  double t;           // s
-  bool fast = false;  // it was faster than physics allows; else: not finite
+  double t;  // s
+  std::string reason;
 };
 
 /// How far the run of a head has come.
@@ -24,7 +24,6 @@ struct HeadProgress {
   std::vector<std::uint64_t> sums;  // checksums of the frames that are written
   std::size_t step = 0;             // taken towards the next one
   std::vector<LostStrand> lost;     // in the order in which they were
-  double speed = 0;                 // m/s, what HeadGuard has gathered
   FileState frames;                 // of HeadFrames
 };
 

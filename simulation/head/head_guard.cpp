@@ -4,46 +4,254 @@
 #include <cmath>
 #include <utility>
 
+#include "math/gauss_legendre.h"
+#include "simulation/head/no_head.h"
+#include "simulation/run/guarded_strand.h"
+#include "simulation/scene/strand_tables.h"
+
 namespace tress::simulation {
 namespace {
 
-constexpr double share = 0.1;  // of errors in sound steps
+using models::Effect;
+using models::HeadEnergy;
 
-double specific_speed(const models::HeadEnergy& one) {
-  return std::sqrt(2 * (one.kinetic + one.elastic) / one.mass);
-}
+constexpr int smooth_every = 10;      // steps
+constexpr double smooth_for = 20e-3;  // s
 
 }  // namespace
 
-double fastest(std::span<const models::HeadEnergy> each) {
-  double most = 0;
-  for (const models::HeadEnergy& one : each) most = std::max(most, specific_speed(one));
-  return most;
-}
+/// Strands of a block at one time, with the points on which effects act.
+class HeadGuard::Reader {
+ public:
+  Reader(const HeadGuard& guard, const models::Head& head, std::size_t block,
+         std::size_t first, double t)
+      : guard_(guard),
+        first_(first),
+        t_(t),
+        numbers_(head.numbers()),
+        each_(head.strands_of(block)),
+        pose_(guard.motion_.at(t)) {
+    head.energies(block, t, each_);
+    if (!sees_points()) return;
+    ends_.resize(numbers_ * each_.size());
+    rates_.resize(ends_.size());
+    head.motion(block, t, ends_, rates_);
+    const std::size_t count =
+        guard.at_.empty() ? numbers_ / 3 : guard.at_.size() * guard.elements_;
+    for (auto* list : {&x_, &v_, &tangent_, &load_, &u_}) list->resize(3 * count);
+    for (auto* list : {&mass_, &length_}) list->resize(count);
+  }
 
-HeadGuard::HeadGuard(HeadReach reach, double speed)
-    : reach_(std::move(reach)), speed_(speed) {}
+  std::size_t strands() const { return each_.size(); }
+  const HeadEnergy& energy(std::size_t k) const { return each_[k]; }
 
-HeadGuard::Bound HeadGuard::at(double t) const {
-  const models::RootPose pose = reach_.motion.at(t);
-  const double turns = norm(pose.omega), r = reach_.radius;
-  const double speed = norm(pose.v) + turns * r;
-  return {speed, norm(reach_.gravity - pose.a) + (norm(pose.alpha) + turns * turns) * r +
-                     reach_.drag * speed};
-}
+  /// Strand k of the block is the one that the others tell of.
+  void take(std::size_t k) {
+    k_ = k;
+    if (!sees_points()) return;
+    const double length = strand().length, density = each_[k].mass / whole_length();
+    for (std::size_t i = 0; i < guard_.elements_; ++i) {
+      const Vec from = end(i), chord = end(i + 1) - from,
+                along = (1 / norm(chord)) * chord;
+      if (guard_.at_.empty()) {
+        if (i == 0) put(0, from, rate(0), along, length / 2);
+        put(i + 1, end(i + 1), rate(i + 1), along,
+            i + 1 < guard_.elements_ ? length : length / 2);
+      } else {
+        const std::size_t points = guard_.at_.size();
+        for (std::size_t j = 0; j < points; ++j) {
+          const double s = guard_.at_[j];
+          put(points * i + j, from + s * chord, rate(i) + s * (rate(i + 1) - rate(i)),
+              along, guard_.weight_[j] * length);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < mass_.size(); ++i) mass_[i] = density * length_[i];
+  }
+  double potential(const Effect& effect) const {
+    return effect.uniform_acceleration() || !reaches(effect)
+               ? 0
+               : effect.potential(t_, points());
+  }
+  /// Of its energy at the start, the part that is neither motion's nor a uniform load's.
+  double elastic() const {
+    double sum = each_[k_].elastic;
+    if (!sees_points()) return sum;
+    each_effect([&](const Effect& effect) {
+      if (effect.needs().position) sum += potential(effect);
+    });
+    return sum;
+  }
+  /// Energies and power of all effects.
+  EnergyMeasure measure() {
+    const HeadEnergy& one = each_[k_];
+    EnergyMeasure now{.kinetic = one.kinetic, .potential = one.elastic + one.gravity};
+    if (!sees_points()) return now;
+    each_effect([&](const Effect& effect) {
+      now.potential += potential(effect);
+      if (guard_.works_) now.power += effect.power(t_, points());
+    });
+    if (!guard_.moves_) return now;
+    std::ranges::fill(load_, 0.0);
+    each_effect([&](const Effect& effect) { effect.add_load(t_, points(), load_); });
+    now.move_with(pose_, points(), load_, u_);
+    return now;
+  }
+  /// m/s, of the root and the ends of elements, seen from the head.
+  double fastest() const {
+    if (!guard_.moves_) return each_[k_].fastest;
+    double most = 0;
+    for (std::size_t i = 0; i <= guard_.elements_; ++i) {
+      const double speed = norm(rate(i) - pose_.v - cross(pose_.omega, end(i) - pose_.x));
+      if (!(speed <= most)) most = speed;
+    }
+    return most;
+  }
+  /// Largest |chord/length - 1| of an element.
+  double stretch() const {
+    double most = 0;
+    for (std::size_t i = 0; i < guard_.elements_; ++i) {
+      const double off = std::abs(norm(end(i + 1) - end(i)) / strand().length - 1);
+      if (!(off <= most)) most = off;
+    }
+    return most;
+  }
 
-void HeadGuard::start(double fastest) { speed_ = fastest + at(0).speed; }
+ private:
+  /// Without work and effects of places nothing but energies counts.
+  bool sees_points() const {
+    return guard_.works_ || guard_.stretches_ || guard_.acts_somewhere_;
+  }
+  const OfStrand& strand() const { return guard_.strands_[first_ + k_]; }
+  double whole_length() const {
+    return static_cast<double>(guard_.elements_) * strand().length;
+  }
+  Vec end(std::size_t i) const { return load3(&ends_[numbers_ * k_ + 3 * i]); }
+  Vec rate(std::size_t i) const { return load3(&rates_[numbers_ * k_ + 3 * i]); }
+  void put(std::size_t i, const Vec& x, const Vec& v, const Vec& tangent, double length) {
+    store3(x, &x_[3 * i]);
+    store3(v, &v_[3 * i]);
+    store3(tangent, &tangent_[3 * i]);
+    length_[i] = length;
+  }
+  Points points() const {
+    return {static_cast<int>(mass_.size()), x_, v_, tangent_, mass_, length_};
+  }
+  bool reaches(const Effect& effect) const {
+    const double longest = (guard_.stretches_ ? 1 + most_stretch : 1) * whole_length();
+    return effect.reaches(t_, {end(0), longest});
+  }
+  template <class Use>
+  void each_effect(Use use) const {
+    const auto ask = [&](const models::Effects& effects) {
+      for (const auto& effect : effects) {
+        if (reaches(*effect)) use(*effect);
+      }
+    };
+    ask(guard_.effects_);
+    if (!guard_.own_.empty()) ask(guard_.own_[first_ + k_]);
+  }
 
-void HeadGuard::step(double t, double h, double longest) {
-  const double parts = std::max(1.0, std::ceil(h / longest - 1e-9)), part = h / parts;
-  for (double i = 0; i < parts; ++i) {
-    const double from = t + i * part;
-    speed_ += part * std::max(at(from).growth, at(from + part).growth);
+  const HeadGuard& guard_;
+  std::size_t first_, k_ = 0;
+  double t_;
+  std::size_t numbers_;
+  std::vector<HeadEnergy> each_;
+  RootPose pose_;
+  std::vector<double> ends_, rates_;                // as Head::motion()
+  std::vector<double> x_, v_, tangent_, load_, u_;  // (3 points)
+  std::vector<double> mass_, length_;               // (points)
+};
+
+HeadGuard::HeadGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest)
+    : motion_(options.motion),
+      effects_(make_effects(scene)),
+      moves_(!options.motion.fixed()),
+      works_(moves_ || !at_rest),
+      at_rest_(at_rest),
+      stretches_(steps_springs(scene)),
+      acts_somewhere_(std::ranges::any_of(effects_,
+                                          [](const auto& effect) {
+                                            return !effect->uniform_acceleration() &&
+                                                   !effect->viscosity();
+                                          })),
+      elements_(static_cast<std::size_t>(options.elements)) {
+  for (const auto& effect : effects_) {
+    if (!effect->uniform_acceleration()) placed_.push_back(effect.get());
+  }
+  if (stretches_ || (at_rest_ && !acts_somewhere_)) return;
+  for (const QuadraturePoint& point : gauss_legendre(options.points, 1)) {
+    at_.push_back(point.at);
+    weight_.push_back(point.weight);
   }
 }
 
-bool HeadGuard::breached(double t, const models::HeadEnergy& one) const {
-  return !(specific_speed(one) <= (1 + share) * (speed_ + at(t).speed));
+void HeadGuard::add(const Strand& strand, models::Effects own) {
+  const GuardedStrand guarded = guarded_strand(strand, effects_);
+  strands_.push_back({strand.segments.front().length, guarded.slack(), {}, {}});
+  if (own.empty() && own_.empty()) return;
+  own_.resize(strands_.size());
+  own_.back() = std::move(own);
+}
+
+void HeadGuard::potentials(const models::Head& head, std::size_t block, std::size_t first,
+                           double t, std::span<double> each) const {
+  std::ranges::fill(each, 0.0);
+  if (!acts_somewhere_) return;
+  Reader reader(*this, head, block, first, t);
+  for (std::size_t k = 0; k < reader.strands(); ++k) {
+    reader.take(k);
+    for (std::size_t i = 0; i < placed_.size(); ++i) {
+      each[placed_.size() * k + i] = reader.potential(*placed_[i]);
+    }
+  }
+}
+
+void HeadGuard::start(const models::Head& head, std::size_t block, std::size_t first,
+                      double t) {
+  Reader reader(*this, head, block, first, t);
+  for (std::size_t k = 0; k < reader.strands(); ++k) {
+    reader.take(k);
+    OfStrand& strand = strands_[first + k];
+    const EnergyMeasure now = reader.measure();
+    strand.account.start(
+        t, now, strand.slack + EnergyAccount::share(now.kinetic, reader.elastic()));
+  }
+}
+
+bool HeadGuard::due(double t, double h) const {
+  if (!works_ || strands_.empty()) return false;
+  // Of steps that are equal but for rounding.
+  const double since = t - strands_.front().account.seen() + 1e-6 * h;
+  return at_rest_ && !acts_somewhere_ ? since >= std::min(smooth_every * h, smooth_for)
+                                      : since >= std::min(guarded_every * h, guarded_for);
+}
+
+void HeadGuard::judge(const models::Head& head, std::size_t block, std::size_t first,
+                      double t) {
+  Reader reader(*this, head, block, first, t);
+  for (std::size_t k = 0; k < reader.strands(); ++k) {
+    OfStrand& strand = strands_[first + k];
+    strand.verdict = {};
+    reader.take(k);
+    const EnergyMeasure now = reader.measure();
+    strand.account.gather(t, now);
+    // Comparisons are written so that NaN violates a bound.
+    if (stretches_ && !(reader.stretch() <= most_stretch)) {
+      strand.verdict = off_length;
+    } else if (!(strand.account.gain(now) <= strand.account.allowed())) {
+      strand.verdict = too_much_energy;
+    } else if (!(reader.fastest() <= strand.account.fastest(reader.energy(k).mass))) {
+      strand.verdict = too_fast;
+    }
+  }
+}
+
+void HeadGuard::keep(std::size_t place, std::span<double> to) const {
+  std::ranges::copy(strands_[place].account.memory(), to.begin());
+}
+void HeadGuard::recall(std::size_t place, std::span<const double> from) {
+  strands_[place].account.recall(from);
 }
 
 }  // namespace tress::simulation

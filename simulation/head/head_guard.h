@@ -1,52 +1,85 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "models/head/head.h"
-#include "simulation/head/scene_head.h"
+#include "simulation/run/energy_account.h"
+#include "simulation/scene/scene.h"
 
 namespace tress::simulation {
 
-/// Speed (m/s) in which a strand's kinetic and elastic energies would be those of its
-/// mass, the largest of some strands'.
-double fastest(std::span<const models::HeadEnergy> each);
-
-/// Finds strands of a head that do what physics rules out: numbers that are finite, but
-/// wrong, where steps are too long. As Guard it looks from a frame that moves with the
-/// clamps, which do no work there. With u the velocity of a point in it, w that of the
-/// frame itself, a_w its acceleration, r the drag over mass, V the elastic energy, and s
-/// = sqrt((sum m u^2 + 2 V)/m), friction aside, since (u + w).u >= -|w||u|,
+/// Guard of every strand of a head: the account of energy, the bound of speed and, of
+/// springs, of stretch that Guard has for a strand by itself, with the work of all
+/// effects. Strands are known by their places in the head.
 ///
-///     s ds/dt = sum m (g - a_w - r (u + w)).u/m <= max(|g - a_w| + r |w|) s,
+/// Energies are the head's own. Potentials, loads and powers of effects are those on the
+/// points where its model has them act: the nodes of springs; else the Gauss-Legendre
+/// points of the elements, here of their chords, which is exact for rigid links. Nodes
+/// also serve where nothing but gravity and linear drag acts.
 ///
-/// so that s grows by at most the integral of that maximum, over all places that a strand
-/// reaches. In the world's frame sqrt((sum m |u + w|^2 + 2 V)/m) is at most max |w| more.
-/// A tenth of all allows for the error of coarse but sound steps. Loads other than
-/// gravity and drag have no place in this bound.
+/// When a state is judged: with every frame. Where nothing can do work on a strand in the
+/// frame of the head, that is enough, as the bound does not change. Under gravity and
+/// linear drag alone a head that moves does smooth work: every ten steps or 20 ms in
+/// addition, and else as Guard does. Cost: of the energies and positions of a block,
+/// about a third of a step, and of its effects' loads.
 class HeadGuard {
  public:
-  /// `speed`: what a run that is continued had gathered.
-  explicit HeadGuard(HeadReach reach, double speed = 0);
+  /// Of a head with these options; `at_rest`: whether what acts beside gravity and drag
+  /// does no work in the frame of the head.
+  HeadGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest);
 
-  /// fastest() of all strands at t = 0.
-  void start(double fastest);
-  /// A step from t to t + h has been taken, in which the bound is looked at every
-  /// `longest` s at least.
-  void step(double t, double h, double longest);
-  /// m/s, gathered so far.
-  double speed() const { return speed_; }
-  /// Whether a strand's energies at t are too large.
-  bool breached(double t, const models::HeadEnergy& one) const;
+  void reserve(std::size_t strands) { strands_.reserve(strands); }
+  /// The strand at the next place, with the effects on it alone.
+  void add(const Strand& strand, models::Effects own);
+
+  /// Effects whose potentials (J) are not in HeadEnergy::gravity: those of the scene, in
+  /// its order, without uniform accelerations.
+  std::size_t effects() const { return placed_.size(); }
+  /// So many of each strand of a block, whose first place is `first`.
+  void potentials(const models::Head& head, std::size_t block, std::size_t first,
+                  double t, std::span<double> each) const;
+
+  // Of the strands of a block; different blocks on different threads.
+  /// The state with which later ones are compared.
+  void start(const models::Head& head, std::size_t block, std::size_t first, double t);
+  /// Whether a step of h that has come to t must be judged.
+  bool due(double t, double h) const;
+  void judge(const models::Head& head, std::size_t block, std::size_t first, double t);
+  /// What the last judge() found; empty: nothing.
+  std::string_view verdict(std::size_t place) const { return strands_[place].verdict; }
+
+  /// Numbers of a strand that judge() changes.
+  static constexpr std::size_t kept = EnergyAccount::remembered;
+  void keep(std::size_t place, std::span<double> to) const;
+  void recall(std::size_t place, std::span<const double> from);
+
+  static constexpr std::string_view
+      too_much_energy = "it had more energy than it can have",
+      too_fast = "it was faster than its energy allows",
+      off_length = "a piece was off its length by more than half of it";
 
  private:
-  struct Bound {
-    double speed, growth;  // of the frame; of s
+  struct OfStrand {
+    double length = 0, slack = 0;  // m, of an element; J
+    EnergyAccount account;
+    std::string_view verdict;
   };
-  Bound at(double t) const;
+  class Reader;
 
-  HeadReach reach_;
-  double speed_;
+  RootMotion motion_;
+  models::Effects effects_;
+  std::vector<const models::Effect*> placed_;  // of these, those with potentials here
+  bool moves_, works_;   // the head; whether anything can do work in its frame
+  bool at_rest_;         // as HeadGuard()
+  bool stretches_;       // springs
+  bool acts_somewhere_;  // whether some effect is neither uniform nor drag
+  std::vector<double> at_, weight_;  // of points, of an element's length; none: nodes
+  std::size_t elements_;
+  std::vector<OfStrand> strands_;
+  std::vector<models::Effects> own_;  // of each strand, or empty
 };
 
 }  // namespace tress::simulation

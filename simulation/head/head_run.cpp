@@ -22,7 +22,7 @@ HeadRun::HeadRun(std::unique_ptr<Head> head, int threads,
                  std::unique_ptr<models::StrandInteraction> interaction)
     : HeadRun(SceneHead{.interaction = std::move(interaction),
                         .head = std::move(head),
-                        .reach = {},
+                        .guard = {},
                         .division = {},
                         .halo = {}},
               threads, alone_) {}
@@ -34,12 +34,18 @@ HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
       interaction_(std::move(made.interaction)),
       halo_(std::move(made.halo)),
       head_(std::move(made.head)),
+      guard_(std::move(made.guard)),
+      guarded_(guard_ && made.guarded),
       crew_(threads) {
   all_ = pieces([](std::size_t) { return true; });
   inner_ = all_;
   for (std::size_t w = 0; w < crew_.workers(); ++w) {
     scratch_.push_back(head_->scratch());
   }
+  if (!guarded_) return;
+  each_block([&](std::size_t block, std::size_t first) {
+    guard_->start(*head_, block, first, 0);
+  });
 }
 
 std::vector<HeadRun::Blocks> HeadRun::pieces(
@@ -141,35 +147,59 @@ void HeadRun::positions(double t, Numbers strands, std::vector<double>& x) {
       x);
 }
 
-void HeadRun::keep(Numbers strands, std::vector<double>& kept) {
+void HeadRun::keep(Numbers strands, std::vector<double>& to) {
   collect(
-      strands, head_->kept(),
-      [&](std::size_t block, std::span<double> to) { head_->keep(block, to); }, kept);
+      strands, kept(), [&](std::size_t block, std::span<double> x) { keep(block, x); },
+      to);
 }
 
-void HeadRun::recall(Numbers strands, std::vector<double>& kept) {
-  const std::size_t each = head_->kept();
+void HeadRun::keep(std::size_t block, std::span<double> to) const {
+  if (!guarded_) return head_->keep(block, to);
+  const std::size_t count = head_->strands_of(block), each = kept(),
+                    of_head = head_->kept();
+  std::vector<double> state(of_head * count);
+  head_->keep(block, state);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::copy_n(&state[of_head * k], of_head, &to[each * k]);
+    guard_->keep(first_of(block) + k, to.subspan(each * k + of_head));
+  }
+}
+
+void HeadRun::recall(std::size_t block, std::span<const double> from) {
+  if (!guarded_) return head_->recall(block, from);
+  const std::size_t count = head_->strands_of(block), each = kept(),
+                    of_head = head_->kept();
+  std::vector<double> state(of_head * count);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::copy_n(&from[each * k], of_head, &state[of_head * k]);
+    guard_->recall(first_of(block) + k, from.subspan(each * k + of_head));
+  }
+  head_->recall(block, state);
+}
+
+void HeadRun::recall(Numbers strands, std::vector<double>& kept_of_all) {
+  const std::size_t each = kept();
   const std::vector<std::size_t> counts = division_->counts(strands);
   std::vector<double> own(each * counts[static_cast<std::size_t>(ranks_->rank())]),
-      by_ranks(kept.size());
+      by_ranks(kept_of_all.size());
   std::vector<std::size_t> sizes(counts), next(counts.size());
   for (std::size_t& size : sizes) size *= each;
   std::exclusive_scan(sizes.begin(), sizes.end(), next.begin(), std::size_t{0});
   for (std::size_t i = 0; ranks_->first() && i < strands.size(); ++i) {
     std::size_t& to = next[static_cast<std::size_t>(division_->owner(strands[i]))];
-    std::copy_n(&kept[each * i], each, &by_ranks[to]);
+    std::copy_n(&kept_of_all[each * i], each, &by_ranks[to]);
     to += each;
   }
   ranks_->from_first(std::span(by_ranks), sizes, std::span(own));
   own_blocks_of(strands,
                 [&](std::size_t block, std::span<const HeadDivision::Listed> some) {
                   std::vector<double> of_block(each * head_->strands_of(block));
-                  head_->keep(block, of_block);
+                  keep(block, of_block);
                   for (const HeadDivision::Listed& one : some) {
                     std::copy_n(&own[each * one.index], each,
                                 &of_block[each * (one.place - first_of(block))]);
                   }
-                  head_->recall(block, of_block);
+                  recall(block, of_block);
                 });
 }
 
@@ -187,7 +217,9 @@ std::size_t HeadRun::hash() {
   models::StateHash all;
   std::vector<double> kept;
   by_chunks(hashed_at_once, [&](Numbers strands) {
-    keep(strands, kept);
+    collect(
+        strands, head_->kept(),
+        [&](std::size_t block, std::span<double> to) { head_->keep(block, to); }, kept);
     all.add(*head_, kept);
   });
   return all.value();
@@ -259,7 +291,9 @@ void HeadRun::take_steps(const std::vector<Blocks>& of, double t, double h) {
 void HeadRun::step(double t, double h) {
   if (device_) {
     lost_.clear();
-    return device_->step(t, h);
+    device_->step(t, h);
+    taken(t, h, [this] { fetch(); });
+    return;
   }
   look(t, h);
   take_steps(inner_, t, h);
@@ -270,6 +304,32 @@ void HeadRun::step(double t, double h) {
   lost_ = head_->losses(losses_);
   losses_ += lost_.size();
   for (models::HeadLoss& loss : lost_) loss.strand = division_->own()[loss.strand];
+  taken(t, h, [] {});
+}
+
+template <class Ready>
+void HeadRun::taken(double t, double h, Ready ready) {
+  ++steps_;
+  if (!guarded_ || !guard_->due(t + h, h)) return;
+  ready();
+  find_failed(t + h, t);
+}
+
+void HeadRun::judge(double t) {
+  lost_.clear();
+  if (guarded_) find_failed(t, t);
+}
+
+void HeadRun::find_failed(double t, double start) {
+  each_block([&](std::size_t block, std::size_t first) {
+    guard_->judge(*head_, block, first, t);
+  });
+  for (std::size_t k = 0; k < head_->strands(); ++k) {
+    const std::string_view reason = guard_->verdict(k);
+    if (reason.empty() || head_->lost(k)) continue;
+    change().lose(k);
+    lost_.push_back({division_->own()[k], steps_, start, reason});
+  }
 }
 
 void HeadRun::positions(double t, std::vector<double>& x) {
@@ -285,6 +345,16 @@ void HeadRun::energies(double t, std::vector<models::HeadEnergy>& each) {
   each.resize(head_->strands());
   each_block([&](std::size_t block, std::size_t first) {
     head_->energies(block, t, std::span(each).subspan(first, head_->strands_of(block)));
+  });
+}
+
+void HeadRun::potentials(double t, std::vector<double>& each) {
+  each.resize(effects() * head_->strands());
+  if (each.empty()) return;
+  each_block([&](std::size_t block, std::size_t first) {
+    guard_->potentials(
+        *head_, block, first, t,
+        std::span(each).subspan(effects() * first, effects() * head_->strands_of(block)));
   });
 }
 

@@ -29,6 +29,7 @@ class HeadRun {
           std::unique_ptr<models::StrandInteraction> interaction = {});
   /// By the ranks that it was made for, which must outlive it.
   HeadRun(SceneHead made, int threads, Ranks& ranks);
+  HeadRun(SceneHead made, int threads) : HeadRun(std::move(made), threads, alone_) {}
 
   /// Steps are taken on the first device from now on; its name. Throws InputError if the
   /// head is refused, DeviceFailure if there is no device for it.
@@ -41,6 +42,10 @@ class HeadRun {
   /// On a device steps may wait: strands are where all of them have brought them, and
   /// lost() tells of all since the last call. Throws DeviceFailure.
   void fetch();
+  /// Judges all strands where they are at t, by HeadGuard if there is one: those that
+  /// fail are lost, and lost() tells of them. Steps do so as often as HeadGuard asks for,
+  /// but not at frames.
+  void judge(double t);
   /// Own strands that the last step lost, by their numbers in the whole head.
   const std::vector<models::HeadLoss>& lost() const { return lost_; }
 
@@ -55,6 +60,9 @@ class HeadRun {
   /// Root and tips of elements (m), strand after strand.
   void positions(double t, std::vector<double>& x);
   void energies(double t, std::vector<models::HeadEnergy>& each);
+  /// HeadGuard::potentials(), so many of each strand; none of a head of no scene.
+  std::size_t effects() const { return guard_ ? guard_->effects() : 0; }
+  void potentials(double t, std::vector<double>& each);
 
   // Of strands of all ranks; all call these with the same strands, ascending numbers.
   using Numbers = std::span<const std::size_t>;
@@ -66,7 +74,9 @@ class HeadRun {
   void collect(Numbers strands, std::size_t each, const Read& read,
                std::vector<double>& all);
   void positions(double t, Numbers strands, std::vector<double>& x);
-  /// Head::keep() and Head::recall(); what is recalled is the first rank's.
+  /// Head::keep() and Head::recall(), with what the guard knows of each strand, so many
+  /// numbers; what is recalled is the first rank's.
+  std::size_t kept() const { return head_->kept() + (guarded_ ? HeadGuard::kept : 0); }
   void keep(Numbers strands, std::vector<double>& kept);
   void recall(Numbers strands, std::vector<double>& kept);
   /// Calls use(strands) for all, so many at a time.
@@ -98,6 +108,14 @@ class HeadRun {
   void each_block(Use use);
   std::size_t first_of(std::size_t block) const;
   void take_steps(const std::vector<Blocks>& of, double t, double h);
+  /// A step has been taken; `ready` brings the strands here if they must be judged.
+  template <class Ready>
+  void taken(double t, double h, Ready ready);
+  /// `start`: of the step that has come to t.
+  void find_failed(double t, double start);
+  /// What keep() and recall() know of a block.
+  void keep(std::size_t block, std::span<double> to) const;
+  void recall(std::size_t block, std::span<const double> from);
 
   /// Strands see each other where they are at t, for a step of h.
   void look(double t, double h);
@@ -113,6 +131,9 @@ class HeadRun {
   std::unique_ptr<models::StrandInteraction> interaction_;  // of own strands, by numbers
   std::unique_ptr<Halo> halo_;                              // or null
   std::unique_ptr<Head> head_;
+  std::unique_ptr<HeadGuard> guard_;  // or null
+  bool guarded_;                      // whether it judges
+  long steps_ = 0;
   std::unique_ptr<DeviceHead> device_;  // or null
   // By numbers, of look(): positions, velocities, and what Head::ahead() says.
   std::vector<double> x_, v_, ahead_, bulge_;

@@ -70,22 +70,16 @@ struct Held {
   const Strand& strand(std::size_t k) const { return strands[k]; }
 };
 
-/// Longest strand, farthest end from the motion's place, largest angle that an element
-/// winds by, largest drag over mass.
+/// Longest strand, largest angle that an element winds by.
 struct Extent {
-  double length = 0, radius = 0, winding = 0, lightest = 0;
+  double length = 0, winding = 0;
 
   void include(const Extent& other) {
     length = std::max(length, other.length);
-    radius = std::max(radius, other.radius);
     winding = std::max(winding, other.winding);
-    lightest = std::max(lightest, other.lightest);
   }
-  void include(const Strand& strand, const HeadOptions& options) {
+  void include(const Strand& strand) {
     length = std::max(length, strand.length());
-    radius = std::max(
-        radius, strand.length() + norm(strand.root.position - options.motion.position));
-    lightest = std::max(lightest, strand.length() / strand.mass());
     for (const Segment& segment : strand.segments) {
       for (const Vec& shape : {segment.natural, segment.initial}) {
         winding = std::max(winding, segment.length * norm(shape));
@@ -97,8 +91,7 @@ struct Extent {
 /// What has to be known of all strands of a scene before any is made into a head's; each
 /// rank looks at its share of them.
 template <class Strands>
-Extent extent_of(const Strands& series, const HeadOptions& options, Crew& crew,
-                 Ranks& ranks, std::span<Vec> roots) {
+Extent extent_of(const Strands& series, Crew& crew, Ranks& ranks, std::span<Vec> roots) {
   const auto rank = static_cast<std::size_t>(ranks.rank()),
              size = static_cast<std::size_t>(ranks.size());
   const auto first = [&](std::size_t r) { return series.size() * r / size; };
@@ -106,7 +99,7 @@ Extent extent_of(const Strands& series, const HeadOptions& options, Crew& crew,
   in_parts(crew, first(rank), first(rank + 1), parts,
            [&](std::size_t k, std::size_t part) {
              const Strand& strand = series.strand(k);
-             extents[part].include(strand, options);
+             extents[part].include(strand);
              if (!roots.empty()) roots[k] = strand.root.position;
            });
   Extent all;
@@ -116,8 +109,7 @@ Extent extent_of(const Strands& series, const HeadOptions& options, Crew& crew,
     for (std::size_t r = 0; r < size; ++r) counts[r] = first(r + 1) - first(r);
     ranks.share(roots, counts);
   }
-  return {ranks.largest(all.length), ranks.largest(all.radius),
-          ranks.largest(all.winding), ranks.largest(all.lightest)};
+  return {ranks.largest(all.length), ranks.largest(all.winding)};
 }
 
 /// make_head() for a StrandSeries, or for Held strands.
@@ -134,7 +126,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   // Strands that may touch each other lie beside each other in memory, too.
   const bool by_roots = divided || scene.interaction() != nullptr;
   std::vector<Vec> roots(by_roots ? series.size() : 0);
-  const Extent all = extent_of(series, options, crew, ranks, std::span(roots));
+  const Extent all = extent_of(series, crew, ranks, std::span(roots));
   options.longest = all.length;
   if (options.points == 0) options.points = points_of(scene, all.winding);
   const Strand strand_0 = series.strand(0);
@@ -155,7 +147,10 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   std::vector<std::shared_ptr<ChosenEffect>> chosen;
   made_head.head = empty_head(scene, options, pack);
   Head* const head = made_head.head.get();
+  made_head.guard = std::make_unique<HeadGuard>(scene, options, at_rest_in_head(scene));
+  made_head.guarded = scene.guard;
   head->reserve(own);
+  made_head.guard->reserve(own);
   constexpr std::size_t at_once = 1024;
   std::vector<Strand> made(std::min(at_once, own));
   for (std::size_t begin = 0; begin < own; begin += at_once) {
@@ -174,6 +169,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
           effects.push_back(std::move(effect));
         }
       }
+      made_head.guard->add(made[k - begin], effects);
       head->add(made[k - begin], std::move(effects));
     }
   }
@@ -181,10 +177,6 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     made_head.halo = std::make_unique<Halo>(
         ranks, made_head.division, options.motion, *made_head.interaction,
         std::move(chosen), static_cast<std::size_t>(options.elements + 1));
-  }
-  if (at_rest_in_head(scene)) {
-    made_head.reach = {options.motion, options.gravity, all.radius,
-                       options.drag * all.lightest + options.mass_damping};
   }
   return made_head;
 }

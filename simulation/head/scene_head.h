@@ -1,26 +1,18 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
 #include "models/effects/strand_interaction.h"
 #include "models/head/head.h"
 #include "simulation/head/halo.h"
 #include "simulation/head/head_division.h"
+#include "simulation/head/head_guard.h"
 #include "simulation/head/no_head.h"
 #include "simulation/head/ranks.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {
-
-/// What bounds the motion of a head, from its options and its strands (HeadGuard).
-struct HeadReach {
-  RootMotion motion;
-  Vec gravity;        // m/s^2
-  double radius = 0;  // m, from the place of the motion to the farthest end of a strand
-  double drag = 0;    // 1/s, largest force of the air over mass and velocity
-};
 
 /// The strands of a rank, of a scene that no_head() has nothing against, at t = 0: the
 /// largest number of quadrature points that any strand of the scene needs, if the scene
@@ -29,7 +21,8 @@ struct HeadReach {
 struct SceneHead {
   std::unique_ptr<models::StrandInteraction> interaction;  // or null; outlives the head
   std::unique_ptr<Head> head;
-  std::optional<HeadReach> reach;                // none: more acts than the bound knows
+  std::unique_ptr<HeadGuard> guard;              // null: a head of no scene
+  bool guarded = false;                          // whether it judges the steps
   std::shared_ptr<const HeadDivision> division;  // null: all strands, in their order
   std::unique_ptr<Halo> halo;  // null: no other rank's strands may touch these
 };

@@ -10,15 +10,6 @@
 namespace tress::simulation {
 namespace {
 
-constexpr double most_stretch = 0.5;  // of a segment, over its length
-constexpr double start_share = 0.1;   // of the start's energy: counts as error, not gain
-constexpr double whip = 30;           // square of tip speed over mean square speed
-constexpr int every = 4;              // steps
-constexpr double long_step = 2e-3;    // s
-// Share of EI/L: a strand at rest without load, solved to 1e-10 of the typical
-// coordinates, has less energy.
-constexpr double rounding = 1e-9;
-
 bool finite(In x) {
   return std::ranges::all_of(x, [](double entry) { return std::isfinite(entry); });
 }
@@ -88,37 +79,33 @@ Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t fir
 void Guard::start(double t, In q, In v) {
   breach_.reset();
   steps_ = 0;
-  record_ = {.t = t, .seen = t};
+  account_.start(t, {}, 0);
   if (energetics_ == nullptr) return;
   const Energy energy = energetics_->energy(t, q, v);
-  const Measure begin = measure(t, q, v, energy);
   meter_.start(energy, energetics_->power(t, q, v));
-  record_.energy = begin.kinetic + begin.potential;
-  record_.slack = slack(t, q, v, begin);
-  record_.power = begin.power;
-  record_.frame = begin.frame;
-  record_.lowest = begin.potential;
+  const EnergyMeasure begin = measure(t, q, v, energy);
+  account_.start(t, begin, slack(t, q, v, begin));
 }
 
-double Guard::slack(double t, In q, In, const Measure& begin) {
-  if (strands_.empty())
-    return begin.kinetic * start_share + typical_energy(system_, t, q);
+double Guard::slack(double t, In q, In, const EnergyMeasure& begin) {
+  if (strands_.empty()) {
+    return EnergyAccount::share(begin.kinetic, 0) + typical_energy(system_, t, q);
+  }
   double sum = 0, uniform = 0;
   std::size_t first = 0;
   for (const GuardedStrand& strand : strands_) {
-    sum += strand.weight_work + rounding * strand.bending_energy;
+    sum += strand.slack();
     const Points p = points_of(strand, first);
     for (const auto& effect : strand.effects) {
       if (strand.uniform(*effect)) uniform += effect->potential(t, p);
     }
     first += strand.rest.size();
   }
-  const double elastic = std::max(0.0, begin.potential - uniform);
-  return sum + start_share * (begin.kinetic + elastic);
+  return sum + EnergyAccount::share(begin.kinetic, begin.potential - uniform);
 }
 
 bool Guard::operator()(double t, In q, In v) {
-  if (++steps_ < every && t - record_.seen < long_step) return true;
+  if (++steps_ < guarded_every && t - account_.seen() < guarded_for) return true;
   return judge(t, q, v);
 }
 
@@ -131,14 +118,14 @@ bool Guard::judge(double t, In q, In v) {
   if (stretched(t, q)) return false;
   if (energetics_ == nullptr) return true;
   const Energy energy = energetics_->energy(t, q, v);
-  const Measure now = measure(t, q, v, energy);
-  meter_.gather(t - record_.seen, energy, energetics_->power(t, q, v));
-  gather(t, now);
+  const EnergyMeasure now = measure(t, q, v, energy);
+  meter_.gather(t - account_.seen(), energy, energetics_->power(t, q, v));
+  account_.gather(t, now);
   return !gained(t, now) && !too_fast(t);
 }
 
-Guard::Measure Guard::measure(double t, In q, In v, const Energy& energy) {
-  Measure now{.kinetic = energy.kinetic, .potential = energy.potential};
+EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy) {
+  EnergyMeasure now{.kinetic = energy.kinetic, .potential = energy.potential};
   if (points_ != nullptr) {
     points_->positions(t, q, x_);
     points_->velocities(t, q, v, u_);
@@ -154,15 +141,22 @@ Guard::Measure Guard::measure(double t, In q, In v, const Energy& energy) {
   return now;
 }
 
-/// Tangents along the chords from each point's predecessor.
+/// Tangents along the mean of the chords that meet at a point.
 Points Guard::points_of(const GuardedStrand& strand, std::size_t first) {
   const std::size_t count = strand.rest.size();
+  std::fill_n(&tangent_[3 * first], 3 * count, 0.0);
+  for (std::size_t i = first + 1; i < first + count; ++i) {
+    const auto from = static_cast<std::size_t>(before_[i]);
+    const Vec chord = load3(&x_[3 * i]) - load3(&x_[3 * from]);
+    for (const std::size_t at : {from, i}) {
+      store3(load3(&tangent_[3 * at]) + (1 / norm(chord)) * chord, &tangent_[3 * at]);
+    }
+  }
   for (std::size_t i = first; i < first + count; ++i) {
-    const bool root = i == first;
-    const auto from =
-        static_cast<std::size_t>(root ? static_cast<int>(first) : before_[i]);
-    const Vec chord = load3(&x_[3 * (root ? i + 1 : i)]) - load3(&x_[3 * from]);
-    store3((1 / norm(chord)) * chord, &tangent_[3 * i]);
+    const Vec sum = load3(&tangent_[3 * i]);
+    // Of a hairpin's two chords nothing is left.
+    if (const double size = norm(sum); size > 0)
+      store3((1 / size) * sum, &tangent_[3 * i]);
   }
   const auto part = [&](const std::vector<double>& all) {
     return In(all).subspan(3 * first, 3 * count);
@@ -174,29 +168,12 @@ Points Guard::points_of(const GuardedStrand& strand, std::size_t first) {
 /// Transforms from the world's frame to the clamp's; leaves the relative velocities in
 /// u_.
 void Guard::move_with(double t, const GuardedStrand& strand, const Points& p,
-                      std::size_t first, Measure& now) {
-  const RootPose root = strand.root->at(t);
+                      std::size_t first, EnergyMeasure& now) {
   const Out load = Out(load_).first(3 * strand.rest.size());
   std::ranges::fill(load, 0.0);
   for (const auto& effect : strand.effects) effect->add_load(t, p, load);
-  for (std::size_t i = 0; i < strand.rest.size(); ++i) {
-    const double m = p.mass[i];
-    const Vec r = load3(&p.x[3 * i]) - root.x, v = load3(&p.v[3 * i]);
-    const Vec turning = cross(root.omega, r), w = root.v + turning, u = v - w;
-    const Vec carried = root.a + cross(root.alpha, r) + cross(root.omega, turning);
-    now.kinetic += m * (dot(w, w) / 2 - dot(v, w));
-    now.frame += m * dot(w, w) / 2;
-    now.power -= dot(load3(&load[3 * i]), w) + m * dot(carried, u);
-    store3(u, &u_[3 * (first + i)]);
-  }
-}
-
-void Guard::gather(double t, const Measure& now) {
-  record_.work += std::max({0.0, record_.power, now.power}) * (t - record_.seen);
-  record_.seen = t;
-  record_.power = now.power;
-  record_.frame = std::max(record_.frame, now.frame);
-  record_.lowest = std::min(record_.lowest, now.potential);
+  now.move_with(strand.root->at(t), p, load,
+                Out(u_).subspan(3 * first, 3 * strand.rest.size()));
 }
 
 /// Comparisons are written so that NaN violates a bound.
@@ -224,9 +201,8 @@ bool Guard::stretched(double t, In q) {
   return true;
 }
 
-bool Guard::gained(double t, const Measure& now) {
-  const double gain = now.kinetic + now.potential - record_.energy;
-  const double allowed = record_.slack + record_.work + record_.frame;
+bool Guard::gained(double t, const EnergyMeasure& now) {
+  const double gain = account_.gain(now), allowed = account_.allowed();
   if (gain <= allowed) return false;
   broken(Breach::Kind::energy,
          fmt::format(
@@ -238,11 +214,9 @@ bool Guard::gained(double t, const Measure& now) {
 }
 
 bool Guard::too_fast(double t) {
-  const double energy =
-      record_.energy + record_.slack + record_.work + record_.frame - record_.lowest;
   std::size_t i = 0;
   for (const GuardedStrand& strand : strands_) {
-    const double bound = std::sqrt(whip * 2 * energy / strand.mass);
+    const double bound = account_.fastest(strand.mass);
     for (const std::size_t end = i + strand.rest.size(); i < end; ++i) {
       const double speed = norm(load3(&u_[3 * i]));
       if (speed <= bound) continue;
@@ -280,16 +254,16 @@ bool Guard::broken(Breach::Kind kind, std::string what, std::string where, doubl
 }
 
 Guard::Memory Guard::memory() const {
-  const Record& r = record_;
-  Memory all{r.t, r.energy, r.slack, r.seen, r.power, r.work, r.frame, r.lowest};
-  std::ranges::copy(meter_.memory(), all.end() - EnergyMeter::remembered);
+  Memory all{};
+  const auto account = account_.memory();
+  const auto dissipation = meter_.memory();
+  std::ranges::copy(dissipation, std::ranges::copy(account, all.begin()).out);
   return all;
 }
 
 void Guard::recall(In memory) {
-  record_ = {memory[0], memory[1], memory[2], memory[3],
-             memory[4], memory[5], memory[6], memory[7]};
-  meter_.recall(memory.subspan(remembered - EnergyMeter::remembered));
+  account_.recall(memory.first(EnergyAccount::remembered));
+  meter_.recall(memory.subspan(EnergyAccount::remembered));
   steps_ = 0;
   breach_.reset();
 }

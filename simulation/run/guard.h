@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +7,7 @@
 
 #include "simulation/run/energy_account.h"
 #include "simulation/run/guarded_strand.h"
+#include "simulation/run/method_dissipation.h"
 #include "simulation/run/simulation.h"
 
 namespace tress::simulation {
@@ -33,31 +33,13 @@ std::string remedy(std::string_view integrator, const Options& options,
 /// more than half of its length; more energy than the initial energy plus the work done;
 /// a point faster than that energy permits.
 ///
-/// Energy: in a frame that moves with the clamp, the clamp does no work. With x the
-/// position and v the velocity of a point of mass m, w = V + omega x r that of the frame
-/// there, u = v - w, f the loads of all effects, P the power (in the world's frame) of
-/// their non-potential part, V_p the potential of the rest, and a_w = A + alpha x r +
-/// omega x (omega x r) (the Coriolis term does no work),
-///
-///     E = sum m u^2/2 + V_p,   dE/dt <= P - sum (f.w + m a_w.u),
-///
-/// where internal friction only decreases E. The work W is the sum of the positive parts
-/// of the right-hand side, taking the larger of the two ends of each interval. A motion
-/// satisfies
-///
-///     E <= E(0) + m g L + E_0/10 + W + largest sum m w^2/2:
-///
-/// m g L is the energy gained by hanging down; a tenth of E_0, the initial kinetic and
-/// elastic energy, allows for the error of coarse but sound steps; the last term allows
-/// for sums over lumped masses. A root at rest has w = 0. Mechanisms have no m g L: their
-/// typical kinetic energy (System::scale) replaces it, and P is Energetics::power.
-///
-/// Speed: E minus the lowest potential so far bounds the kinetic energy. If a tenth of
-/// the strand has all of it and turns about its own start, its tip moves at sqrt(30)
-/// times the root mean square speed.
+/// Energy and speed: as EnergyAccount, with the slack m g L + E_0/10. m g L is the energy
+/// gained by hanging down; a tenth of E_0, the initial kinetic and elastic energy, allows
+/// for the error of coarse but sound steps. Mechanisms have no m g L: their typical
+/// kinetic energy (System::scale) replaces it, and P is Energetics::power.
 ///
 /// An error of the energy up to m g L ends no run: coarse but sound steps may have one
-/// while the strand falls. EnergyAccount, which is exact up to the trapezoidal rule,
+/// while the strand falls. MethodDissipation, which is exact up to the trapezoidal rule,
 /// shows it.
 ///
 /// Checks every fourth step, all steps longer than 2 ms, and the last; each check costs
@@ -76,36 +58,24 @@ class Guard {
   bool judge(double t, In q, In v);
   const std::optional<Breach>& breach() const { return breach_; }
   /// Until the last check. Without meaning where impulses or other strands act.
-  EnergyAccount account() const { return meter_.account(); }
+  MethodDissipation dissipation() const { return meter_.dissipation(); }
 
   /// All data gathered since start(); recall() lets another guard of an identically
   /// constructed system continue from there.
-  static constexpr std::size_t remembered = 8 + EnergyMeter::remembered;  // numbers
+  static constexpr std::size_t remembered =  // numbers
+      EnergyAccount::remembered + DissipationMeter::remembered;
   using Memory = std::array<double, remembered>;
   Memory memory() const;
   void recall(In memory);
 
  private:
-  struct Measure {
-    double kinetic = 0, potential = 0;  // J, in the moving frame
-    double power = 0;                   // W, into it
-    double frame = 0;                   // J, of the frame's own motion
-  };
-  /// Data gathered so far.
-  struct Record {
-    double t = 0, energy = 0, slack = 0;  // at the start
-    double seen = 0, power = 0;           // when last judged
-    double work = 0, frame = 0, lowest = 0;
-  };
-
-  Measure measure(double t, In q, In v, const Energy& energy);
+  EnergyMeasure measure(double t, In q, In v, const Energy& energy);
   Points points_of(const GuardedStrand& strand, std::size_t first);
   void move_with(double t, const GuardedStrand& strand, const Points& p,
-                 std::size_t first, Measure& now);
-  double slack(double t, In q, In v, const Measure& begin);
-  void gather(double t, const Measure& now);
+                 std::size_t first, EnergyMeasure& now);
+  double slack(double t, In q, In v, const EnergyMeasure& begin);
   bool stretched(double t, In q);
-  bool gained(double t, const Measure& now);
+  bool gained(double t, const EnergyMeasure& now);
   bool too_fast(double t);
   std::string fastest() const;
   std::string place(std::size_t point, std::string_view what) const;
@@ -119,8 +89,8 @@ class Guard {
   std::vector<int> before_;                     // each point along its strand, -1: none
   std::vector<double> x_, u_, tangent_, load_;  // (3 points); u_: relative to the frame
   int steps_ = 0;                               // since judged
-  Record record_;
-  EnergyMeter meter_;
+  EnergyAccount account_;
+  DissipationMeter meter_;
   std::optional<Breach> breach_;
 };
 

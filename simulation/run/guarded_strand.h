@@ -8,6 +8,11 @@
 
 namespace tress::simulation {
 
+/// A state is checked after so many steps, or so much time (s), and fails with a segment
+/// that is off its length by more than so much of it.
+constexpr int guarded_every = 4;
+constexpr double guarded_for = 2e-3, most_stretch = 0.5;
+
 /// Half of each neighbouring segment and its mass, at the root and the tips of segments,
 /// which are the material points of every strand model.
 struct Lumps {
@@ -26,6 +31,9 @@ struct GuardedStrand {
   double weight_work = 0;
   double bending_energy = 0;  // J, EI/L: a bend of about one radian
 
+  /// J, that it may gain by hanging down. At least a share of EI/L: a strand at rest
+  /// without load, solved to 1e-10 of the typical coordinates, has less energy.
+  double slack() const { return weight_work + 1e-9 * bending_energy; }
   int points() const { return static_cast<int>(rest.size()); }
   bool uniform(const Effect& effect) const {
     return !effect.needs().position && !effect.needs().velocity;

@@ -86,7 +86,7 @@ class World {
   const std::string& failure() const { return failure_; }
   /// Of all strands. Empty: without guards, or where what changes energy is not a power:
   /// impulses of rigid contact and of friction between strands, other strands that move.
-  std::optional<EnergyAccount> account() const;
+  std::optional<MethodDissipation> dissipation() const;
   /// Why the motion of a strand was not smooth; empty: no such event was seen.
   std::string not_smooth() const;
   /// What a guard found, or null.

@@ -201,14 +201,14 @@ const Breach* World::breach() const {
   return broken == bodies_.end() ? nullptr : &*broken->guard->breach();
 }
 
-std::optional<EnergyAccount> World::account() const {
-  EnergyAccount sum;
+std::optional<MethodDissipation> World::dissipation() const {
+  MethodDissipation sum;
   if (interaction_ || mesh_ || rubbing_) return {};
   for (const Body& body : bodies_) {
     const bool known = body.guard && body.system->energetics() != nullptr &&
                        body.system->contact_form() == nullptr;
     if (!known) return {};
-    sum += body.guard->account();
+    sum += body.guard->dissipation();
   }
   return sum;
 }

@@ -38,9 +38,11 @@ constexpr Parameter top[] = {
     {.name = "guard",
      .help = "end the run where it does what physics rules out: a piece stretched by "
              "half, a point faster than the energy allows, or more energy than at the "
-             "start by m g L, a tenth of the initial kinetic and elastic energy, and the "
-             "work of loads and root. Coarse but sound steps need that margin; what the "
-             "method created within it is printed",
+             "start by m g L, a tenth of the initial kinetic and elastic energy, and 1.1 "
+             "times the work of loads and root. Coarse but sound steps need that margin; "
+             "what the method created within it is printed. In a head of hair, whose "
+             "other strands go on, each strand that does so stops and the run fails in "
+             "the end",
      .choices = "true|false"},
     {.name = "rest",
      .help =

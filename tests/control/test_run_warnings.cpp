@@ -20,7 +20,7 @@ SceneRun run_of(const Scene& scene) {
   for (std::size_t frame = 1; frame <= scene.last_frame(); ++frame) {
     EXPECT_EQ(world.advance(scene.time_of(frame)), Status::ok) << world.failure();
   }
-  run.account = world.account();
+  run.dissipation = world.dissipation();
   run.not_smooth = world.not_smooth();
   return run;
 }
@@ -37,13 +37,13 @@ Scene hair(const std::string& model, const std::string& integrator,
 
 const std::string gravity = "[effects.gravity]\n";
 
-TEST(EnergyAccount, ShowsWhatAMethodDissipates) {
+TEST(MethodDissipation, ShowsWhatAMethodDissipates) {
   const std::string euler = "id = \"backward_euler\"\ndt_s = 0.005";
   const Scene scene = hair("der", euler, "", gravity);
   const SceneRun run = run_of(scene);
-  ASSERT_TRUE(run.account);
-  EXPECT_GT(run.account->share(), 0.1);
-  EXPECT_LT(run.account->share(), 1);
+  ASSERT_TRUE(run.dissipation);
+  EXPECT_GT(run.dissipation->share(), 0.1);
+  EXPECT_LT(run.dissipation->share(), 1);
   const auto said = warnings(scene, run);
   ASSERT_EQ(said.size(), 1U);
   EXPECT_NE(said[0].find("backward_euler dissipated"), std::string::npos) << said[0];
@@ -53,19 +53,19 @@ TEST(EnergyAccount, ShowsWhatAMethodDissipates) {
 /// accurate run changes by what these do; the trapezoidal rule errs by (4 h w)^2/12 of
 /// their work for powers of the rate w, here below 1e-2 for the slow motion that has the
 /// energy.
-TEST(EnergyAccount, BalancesForAnAccurateMethod) {
+TEST(MethodDissipation, BalancesForAnAccurateMethod) {
   const std::string driven = "[root]\nmotion = \"shake\"\namplitude_m = 0.02\n" +
                              gravity + "[effects.linear_drag]\ndrag_kg_m_s = 1e-5\n";
   for (const char* const model : {"super_helix", "der", "mass_spring"}) {
     const Scene scene = hair(model, "id = \"esdirk43\"\ndt_s = 0.0005", "", driven);
     const SceneRun run = run_of(scene);
-    ASSERT_TRUE(run.account);
-    EXPECT_LT(std::abs(run.account->share()), 0.02) << model;
+    ASSERT_TRUE(run.dissipation);
+    EXPECT_LT(std::abs(run.dissipation->share()), 0.02) << model;
     EXPECT_TRUE(warnings(scene, run).empty());
   }
 }
 
-TEST(EnergyAccount, GoesOnFromASnapshot) {
+TEST(MethodDissipation, GoesOnFromASnapshot) {
   const Scene scene = hair("der", "id = \"backward_euler\"\ndt_s = 0.005", "", gravity);
   World whole(scene), first(scene), second(scene);
   for (std::size_t frame = 1; frame <= 12; ++frame) {
@@ -79,7 +79,7 @@ TEST(EnergyAccount, GoesOnFromASnapshot) {
               1e-12 * whole.account()->available);
 }
 
-TEST(EnergyAccount, IsEmptyWhereImpulsesAct) {
+TEST(MethodDissipation, IsEmptyWhereImpulsesAct) {
   const Scene scene =
       hair("der", "id = \"backward_euler\"\ndt_s = 0.005", "",
            gravity +

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "experiments/run/exit_code.h"
+#include "tests/fuzz/limited_run.h"
+#include "tests/fuzz/random_head.h"
+
+// paired_scenes COUNT SEED SIMULATE [FOLDER]: runs random scenes, and first the files of
+// FOLDER, by the program SIMULATE as one head of hair and strand by strand, until COUNT
+// of them could be compared. Both must come to the same verdict, and where both go on to
+// the end, to the same energies. Ends with 1 if some pair does not; its files stay in
+// paired_scenes/.
+//
+// Energies: the points of an element are those of any strand's need in a head, and agree
+// with the strand's own to 1e-8 (models::quadrature_points); motions that are not smooth,
+// as of strands that hit bodies, amplify this. A head that loses digits or a load differs
+// by percents. Between them lies
+constexpr double tolerance = 1e-3;
+// of the largest energy of the run. Strands that take a step again in shorter ones are no
+// longer the same steps: only their verdicts are compared. A strand by itself has more
+// ways to solve a step than a head has (integrators/stage.h): a head that says that it
+// found no solution is counted, but is no finding.
+
+namespace {
+
+using tress::testing_support::LimitedRun;
+using tress::testing_support::run_limited;
+
+constexpr double limit = 20;       // s of processor time
+constexpr double thermal = 4e-21;  // J, kT at room temperature: less is no motion
+const std::filesystem::path folder = "paired_scenes";
+
+using Columns = std::map<std::string, std::vector<double>>;
+Columns columns(const std::string& file) {
+  std::ifstream lines(file);
+  std::string line, cell;
+  std::vector<std::string> names;
+  Columns all;
+  while (std::getline(lines, line)) {
+    const bool heads = names.empty();
+    std::istringstream cells(line);
+    for (std::size_t i = 0; std::getline(cells, cell, ','); ++i) {
+      if (heads) {
+        names.push_back(cell);
+      } else {
+        all[names.at(i)].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+      }
+    }
+  }
+  return all;
+}
+
+struct Outcome {
+  LimitedRun run;
+  std::string stem, said;
+};
+
+Outcome run(const std::string& scene, const std::string& simulate, const char* as) {
+  const std::filesystem::path here = folder / as;
+  std::filesystem::create_directories(here);
+  Outcome made;
+  made.stem = (here / std::filesystem::path(scene).stem()).string();
+  made.run = run_limited({simulate, scene, "--as", as, "--progress", "none", "--frames",
+                          "none", "--out", here.string()},
+                         made.stem, limit);
+  std::ifstream err(made.stem + ".err");
+  for (std::string line; std::getline(err, line);) made.said = line;
+  return made;
+}
+
+/// Largest difference of the kinetic or the elastic energy over the largest energy.
+double apart(const Columns& head, const Columns& strands) {
+  double most = 0, scale = thermal;
+  for (const char* name : {"kinetic_j", "elastic_j"}) {
+    const std::vector<double>&one = head.at(name), &other = strands.at(name);
+    if (one.size() != other.size()) return HUGE_VAL;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      const double off = std::abs(one[i] - other[i]);
+      if (!std::isfinite(off)) return HUGE_VAL;
+      most = std::max(most, off);
+      scale = std::max(scale, std::abs(other[i]));
+    }
+  }
+  return most / scale;
+}
+
+/// What came of a pair in words; "agree ...", "refused", or a finding.
+std::string verdict(const std::string& scene, const std::string& simulate) {
+  using namespace tress::experiments;
+  const Outcome head = run(scene, simulate, "head"),
+                strands = run(scene, simulate, "strands");
+  for (const Outcome* one : {&head, &strands}) {
+    if (one->run.code == usage_error) return "refused";
+    if (one->run.stopped) return "stopped";
+    if (one->run.code != done && one->run.code != rows_failed) return "CRASH";
+  }
+  if (strands.run.code == done && head.said.find("no solution") != std::string::npos) {
+    return "limit: the head finds no solution of a step";
+  }
+  if (head.run.code != strands.run.code) {
+    std::printf("  head:    %s\n  strands: %s\n", head.said.c_str(),
+                strands.said.c_str());
+    return head.run.code == done ? "DIFFER: head goes on, strands fail"
+                                 : "DIFFER: head fails, strands go on";
+  }
+  if (head.run.code == rows_failed) return "agree: both fail";
+  const Columns of_strands = columns(strands.stem + ".csv");
+  const auto& again = of_strands.at("rejected_steps");
+  if (std::any_of(again.begin(), again.end(), [](double n) { return n > 0; })) {
+    return "agree: both go on, strands by shorter steps";
+  }
+  const double off = apart(columns(head.stem + ".csv"), of_strands);
+  std::printf("  %.2g\n", off);
+  if (!(off <= tolerance)) return "DIFFER: energies";
+  return off <= 1e-6 ? "agree to 1e-6" : "agree to 1e-3";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4 && argc != 5) {
+    std::fputs("usage: paired_scenes COUNT SEED SIMULATE [FOLDER]\n", stderr);
+    return 2;
+  }
+  try {
+    std::filesystem::create_directories(folder);
+    std::map<std::string, long> met;
+    bool found = false;
+    const auto judge = [&](const std::string& scene) {
+      std::printf("%s\n", scene.c_str());
+      std::fflush(stdout);
+      const std::string word = verdict(scene, argv[3]);
+      std::printf("  %s\n", word.c_str());
+      ++met[word];
+      found = found || word.starts_with("DIFFER") || word == "CRASH";
+      return word;
+    };
+    if (argc == 5) {
+      std::vector<std::string> files;
+      for (const auto& entry : std::filesystem::directory_iterator(argv[4])) {
+        files.push_back(entry.path().string());
+      }
+      std::ranges::sort(files);
+      for (const std::string& file : files) judge(file);
+    }
+    std::uint64_t seed = std::strtoull(argv[2], nullptr, 10) << 20;
+    for (long compared = 0; compared < std::atol(argv[1]); ++seed) {
+      const std::string scene = (folder / (std::to_string(seed) + ".toml")).string();
+      std::ofstream(scene) << tress::testing_support::random_head(seed);
+      const std::string word = judge(scene);
+      if (word != "refused" && word != "stopped") ++compared;
+    }
+    for (const auto& [word, times] : met) std::printf("%6ld %s\n", times, word.c_str());
+    return found ? 1 : 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "paired_scenes: %s\n", error.what());
+    return 1;
+  }
+}
