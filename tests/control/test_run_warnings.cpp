@@ -75,8 +75,8 @@ TEST(MethodDissipation, GoesOnFromASnapshot) {
       EXPECT_EQ(second.advance(scene.time_of(frame)), Status::ok);
     }
   }
-  EXPECT_NEAR(second.account()->dissipated, whole.account()->dissipated,
-              1e-12 * whole.account()->available);
+  EXPECT_NEAR(second.dissipation()->dissipated, whole.dissipation()->dissipated,
+              1e-12 * whole.dissipation()->available);
 }
 
 TEST(MethodDissipation, IsEmptyWhereImpulsesAct) {
