@@ -77,7 +77,7 @@ struct SceneRun {
   Stats work = {};       // since this run began or was resumed
   Exchanges exchanges = {};
   std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
-  std::string not_smooth = {};                // World::not_smooth(), first that was seen
+  std::string not_smooth = {};  // World::not_smooth(), first that was seen
   std::optional<HeadOutcome> head = {};
 };
 
