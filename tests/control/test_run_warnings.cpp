@@ -85,7 +85,7 @@ TEST(MethodDissipation, IsEmptyWhereImpulsesAct) {
            gravity +
                "[effects.body]\nshape = \"plane\"\ncentre_m = [0, 0, -1]\n"
                "friction_law = \"exact\"\nnormal = \"rigid\"\n");
-  EXPECT_FALSE(run_of(scene).account);
+  EXPECT_FALSE(run_of(scene).dissipation);
 }
 
 const std::string curls =
