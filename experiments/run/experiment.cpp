@@ -103,11 +103,11 @@ RunKey run_key(const Experiment& experiment, const CommandLine& line) {
   return key;
 }
 
-/// Rows of a complete table from an earlier run with the same settings, if this very
-/// program made it.
-void keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
+/// Rows of a complete table from an earlier run with the same settings. False: another
+/// build made it, and its rows are not kept.
+bool keep_table(const Experiment& experiment, const CommandLine& line, Rows& rows) {
   std::error_code ignored;  // check_output has reported the problem
-  if (!std::filesystem::exists(line.out, ignored)) return;
+  if (!std::filesystem::exists(line.out, ignored)) return true;
   const CsvTable table = read_csv(line.out);
   check_header(table, experiment.columns, line.out);
   const auto manifest = manifest_of(line.out);
@@ -120,12 +120,9 @@ void keep_table(const Experiment& experiment, const CommandLine& line, Rows& row
                      beside(line.out, ".meta.json"),
                      "repeat them, choose another --out, or leave out --resume");
   }
-  if (manifest && !made_by_this_program(*manifest)) {
-    tell("{}: {} was made by another build: it is made again from its first row\n",
-         experiment.name, line.out);
-    return;
-  }
+  if (manifest && !made_by_this_program(*manifest)) return false;
   for (const Row& row : table.rows) rows.keep(row);
+  return true;
 }
 
 /// Completes, judges and writes the table; returns the exit code.
@@ -189,11 +186,11 @@ std::unique_ptr<Journal> open_journal(const Experiment& experiment,
 }
 
 /// Refuses what a run would refuse before it plans its rows; the journal of an unfinished
-/// run, if there is one.
+/// run, if there is one. `own`: as keep_table().
 std::unique_ptr<Journal> begin(const Experiment& experiment, const CommandLine& line,
-                               Rows& rows) {
+                               Rows& rows, bool& own) {
   check_outputs(line);
-  if (line.resume) keep_table(experiment, line, rows);
+  if (line.resume) own = keep_table(experiment, line, rows);
   auto journal = open_journal(experiment, line);
   if (!journal->rows().empty()) return journal;
   journal->remove();
@@ -228,17 +225,22 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
   // Problems with a named output are reported before planning, which may take seconds for
   // its references; a plan that fails leaves nothing behind.
   const bool named = named_output(line);
-  if (named) journal = begin(experiment, line, rows);
+  bool own = true;
+  if (named) journal = begin(experiment, line, rows, own);
   const std::vector<Case> planned = planned_aloud(experiment, line);
   if (planned.empty() && line.shard_count == 1) {
     throw InputError("these options leave no row to run", "command line",
                      "--list shows what there is");
   }
   check_place(experiment, line);
-  if (line.resume && !named) keep_table(experiment, line, rows);
+  if (line.resume && !named) own = keep_table(experiment, line, rows);
   if (!journal && line.out != standard_output) journal = open_journal(experiment, line);
   if (journal) {
     for (const Row& row : journal->rows()) rows.keep(row);
+  }
+  if (!own) {
+    tell("{}: {} was made by another build: it is made again from its first row\n",
+         experiment.name, line.out);
   }
   std::vector<Case> todo;
   for (const Case& work : planned) {
@@ -292,7 +294,8 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
 
 int check(const Experiment& experiment, const CommandLine& line) {
   Rows rows;
-  if (line.out != standard_output) begin(experiment, line, rows);
+  bool own = true;
+  if (line.out != standard_output) begin(experiment, line, rows, own);
   return done;
 }
 

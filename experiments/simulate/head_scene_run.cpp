@@ -229,7 +229,7 @@ class HeadSceneRun {
         end_here(i, stop);
       }
       const double t = begin + static_cast<double>(i) * h;
-      run_->step(t, h);
+      where_a_device_fails([&] { run_->step(t, h); });
       ++steps_;
       lose(run_->on_device() ? std::nullopt : std::optional(t + h), h);
     }
@@ -239,12 +239,18 @@ class HeadSceneRun {
   /// What a device has done in steps of h.
   void fetch(double h) {
     if (!run_->on_device()) return;
+    where_a_device_fails([&] { run_->fetch(); });
+    lose({}, h);
+  }
+
+  /// Does `work`; throws InputError where the device fails in it.
+  template <class Work>
+  void where_a_device_fails(Work work) {
     try {
-      run_->fetch();
+      work();
     } catch (const DeviceFailure& no) {
       throw no_device(no, scene_.name);
     }
-    lose({}, h);
   }
 
   /// What the run has lost in steps of h, all at t, or each at the end of its step.

@@ -176,7 +176,7 @@ TEST(Advise, SaysThatTimeIsOver) {
   Toy process;
   process.write("hair.toml", sagging);
   const Toy::Result result = process.run(
-      "--advise hair.toml --quick --timeout 0.1 --out table.csv "
+      "--advise hair.toml --quick --timeout 0.001 --out table.csv "
       "--set reference_substeps=4096 --set references=reference");
   EXPECT_EQ(result.code, 3) << result.err;
   EXPECT_THAT(result.out, HasSubstr("out of time"));

@@ -113,7 +113,7 @@ const Wrong wrong_scenes[] = {
      "expected a number, got a string"},
     {"NumberForWord", "[strand]\nshape = 1\n", "3:9", "expected a string, got a number"},
     {"DateForNumber", "[strand]\nlength_m = 1979-05-27\n", "3:12", "a date or a time"},
-    {"TableForNumber", "[strand]\nlength_m = {}\n", "3:12", "a table where"},
+    {"TableForNumber", "[strand]\nlength_m = {}\n", "3:12", "got a table"},
     {"TwoOfThree", "[strand]\nroot_tangent = [1, 0]\n", "3:16", "2 numbers instead of 3"},
     {"NumberForTable", "strand = 3\n", "2:10", "write [strand]"},
     {"TwoOfOne", strand + "[[effects.gravity]]\n", "3:1", "give one [effects.gravity]"},
