@@ -307,24 +307,6 @@ TEST(Family, Tolerance_ComparesWithAFixedStepThatIsAsAccurate) {
   }
 }
 
-/// So few calls that the run by tr_bdf2 ends before the end, and that no two methods
-/// agree beyond the first of 24 samples: what is within the tolerance there has not met
-/// it. Which number of calls does that depends on the methods: it is searched.
-TEST(Family, Tolerance_IsNotMetOnASliverOfTheTime) {
-  Row row;
-  for (double calls = 1.1e4; calls < 4e4 && row.status() != "short_horizon";
-       calls *= 1.1) {
-    Row given;
-    given.set("model", "super_helix").set("tolerance", 3e-6).set("most_calls", calls);
-    row = tolerance.run(short_hair(), given).front();
-  }
-  EXPECT_NE(row.text("failure").find("max_work"), std::string_view::npos);
-  EXPECT_LT(row.number("horizon_s"), 0.2);
-  EXPECT_LE(row.number("value"), 3e-6);
-  EXPECT_EQ(row.status(), "short_horizon");
-  EXPECT_EQ(row.text("holds"), "");
-}
-
 TEST(Family, Tolerance_CountsARunCutShortAsWithoutSolution) {
   const auto rows = by_tolerance(short_hair(), "super_helix", 50);
   EXPECT_TRUE(rows[0].ok());
