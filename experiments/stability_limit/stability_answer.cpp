@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,10 @@ std::string method(const Row& row) {
                      row.text("tangent").empty()
                          ? ""
                          : fmt::format(" (tangent {})", row.text("tangent")));
+}
+
+std::string subject(const Row& row) {
+  return fmt::format("{}, {}", row.text("scene"), row.text("model"));
 }
 
 /// "11 ms", "0.35 us"
@@ -33,6 +39,10 @@ std::string by_step(const Row& row) {
     line += ", the longest step that was tried";
   } else if (row.text("at_1_5") == "stable") {
     line += ", but stable again at 1.5 times that";
+  } else if (row.text("at_1_5") == name(Broken::no_solution)) {
+    line +=
+        ", at 1.5 times that some step has no solution and a run takes shorter ones "
+        "there";
   } else if (row.has("at_1_5")) {
     line += fmt::format(", unstable at 1.5 times that ({})", row.text("at_1_5"));
   }
@@ -58,7 +68,14 @@ std::string by_tolerance(const Row& row) {
 
 std::vector<std::string> stability_answer(const std::vector<Row>& rows) {
   std::vector<const Row*> sorted;
-  for (const Row& row : rows) sorted.push_back(&row);
+  std::map<std::string, std::vector<std::string>> cannot;  // drive a scene's model
+  for (const Row& row : rows) {
+    if (row.status() == "refused") {
+      cannot[subject(row)].push_back(method(row));
+    } else {
+      sorted.push_back(&row);
+    }
+  }
   const auto step = [](const Row* row) {
     const bool known = row->text("study") != "tolerance" && row->has("dt_max_s");
     return known ? row->number("dt_max_s") : 0;
@@ -71,8 +88,11 @@ std::vector<std::string> stability_answer(const std::vector<Row>& rows) {
   for (const Row* row : sorted) {
     const std::string line =
         row->text("study") == "tolerance" ? by_tolerance(*row) : by_step(*row);
-    lines.push_back(
-        fmt::format("{}, {}: {}", row->text("scene"), row->text("model"), line));
+    lines.push_back(fmt::format("{}: {}", subject(*row), line));
+  }
+  for (const auto& [of, methods] : cannot) {
+    lines.push_back(fmt::format("{}: not driven by {} (--list says why)", of,
+                                fmt::join(methods, ", ")));
   }
   return lines;
 }

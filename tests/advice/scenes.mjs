@@ -13,18 +13,19 @@ function generator(seed) {
 }
 
 /// Young's modulus, radius, density and length of a kind are drawn between these, uniformly in
-/// their logarithms; tau (s) is internal friction over E I, drag in kg/(m s).
+/// their logarithms; tau (s) is internal friction over E I, drag in kg/(m s). Measured hair has
+/// E/G = 4.4; isotropic materials have Poisson's ratio.
 const kinds = {
   hair: { weight: 5, E: [2.7e9, 5.3e9], radius: [30e-6, 45e-6], density: [1300, 1320],
-    length: [0.05, 0.3], poisson: 0.48, tau: [1e-3, 3e-3], drag: [8e-5, 2e-4], curl: 150 },
+    length: [0.05, 0.3], shear: 4.4, tau: [1e-3, 3e-3], drag: [8e-5, 2e-4], curl: 150 },
   'soft hair': { weight: 2, E: [1e7, 5e8], radius: [35e-6, 60e-6], density: [1300, 1320],
-    length: [0.05, 0.25], poisson: 0.48, tau: [1e-3, 2e-2], drag: [2e-5, 2e-4], curl: 150 },
+    length: [0.05, 0.25], shear: 4.4, tau: [1e-3, 2e-2], drag: [2e-5, 2e-4], curl: 150 },
   wire: { weight: 2, E: [5e10, 2.1e11], radius: [5e-5, 3e-4], density: [6450, 7850],
     length: [0.1, 0.6], poisson: 0.3, tau: [1e-6, 1e-4], drag: [1e-5, 2e-4], curl: 20 },
   rod: { weight: 2, E: [3e5, 3e6], radius: [1e-3, 5e-3], density: [1070, 1200],
     length: [0.1, 0.4], poisson: 0.48, tau: [1e-3, 2e-2], drag: [1e-3, 1e-1], curl: 30 },
   groom: { weight: 1, E: [2.7e9, 5.3e9], radius: [30e-6, 45e-6], density: [1300, 1320],
-    length: [0.05, 0.2], poisson: 0.48, tau: [1e-3, 3e-3], drag: [8e-5, 2e-4], curl: 80 },
+    length: [0.05, 0.2], shear: 4.4, tau: [1e-3, 3e-3], drag: [8e-5, 2e-4], curl: 80 },
 };
 
 export function random_scene(seed) {
@@ -46,7 +47,8 @@ export function random_scene(seed) {
     '[model]', 'id = "super_helix"',
     '[integrator]', 'id = "backward_euler"', 'dt_s = 0.002',
     '[material]', 'name = "custom"', `radius_m = ${number(radius)}`,
-    `youngs_modulus_pa = ${number(E)}`, `poisson_ratio = ${kind.poisson}`,
+    `youngs_modulus_pa = ${number(E)}`,
+    kind.shear ? `shear_modulus_pa = ${number(E / kind.shear)}` : `poisson_ratio = ${kind.poisson}`,
     `density_kg_m3 = ${number(between(kind.density))}`,
     `internal_friction_kg_m3_s = ${number(friction)}`,
     name === 'groom' ? '[groom]' : '[strand]',

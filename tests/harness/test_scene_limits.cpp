@@ -127,6 +127,10 @@ TEST_F(SceneLimit, OfAMethodThatTheModelCannotTakeIsARefusal) {
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().status(), "refused");
   EXPECT_THAT(std::string(found.front().text("reason")), HasSubstr("xpbd"));
+  EXPECT_EQ(
+      stability_answer(found),
+      std::vector<std::string>{
+          "helix, super_helix: not driven by xpbd (tangent exact) (--list says why)"});
 }
 
 TEST_F(SceneLimit, EndsWithItsWork) {
