@@ -177,7 +177,7 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
                               first.text("reason"))
                 : fmt::format("no answer: {}", first.text("reason"))};
   }
-  if (best->status() == "not_met") return best_so_far(rows, *best);
+  if (best->status() == "no_answer") return best_so_far(rows, *best);
   if (best->status() == "file_differs") {
     return {fmt::format("no answer: {}", best->text("reason"))};
   }
@@ -187,7 +187,7 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
     lines.push_back(robustness(*best));
   }
   const Row* winner = find(rows, "winner");
-  if (winner != nullptr && winner->status() == "not_met") winner = nullptr;
+  if (winner != best && winner != nullptr && !winner->ok()) winner = nullptr;
   const Row* next = best == winner ? find(rows, "runner_up") : winner;
   lines.push_back(next_best(next));
   lines.push_back(what_not(rows, winner == nullptr ? *best : *winner));

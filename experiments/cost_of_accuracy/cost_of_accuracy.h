@@ -85,7 +85,7 @@ constexpr double parted = 0.01 / believed;
 /// A run meets a target when it does so wherever the rod is within the gap of the two
 /// sides, error + gap <= target, and its neighbours do so for 1.5 times the target (see
 /// Neighbour). If none meets it, the winner row has the nearest run and the status
-/// not_met.
+/// not_met, of advice no_answer.
 std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
                              const Row& identity, const Deadline& deadline);
 

@@ -24,6 +24,14 @@ constexpr double long_enough = 0.01;  // s
 /// takes three or four, and halving the step reduces them.
 constexpr double most_iterations = 10;
 
+/// Coordinates of an element, at most, and calls of an iteration: a residual, a matrix, a
+/// solution.
+constexpr double most_coordinates = 7, calls = 3;
+
+int stages(const Method& method) {
+  return std::max(1, find_integrator(method.integrator).stages);
+}
+
 /// A run's scene with longer or shorter steps, or changed data.
 Scene neighbour(Scene scene, Neighbour which) {
   const auto with = [&scene](double factor) {
@@ -63,7 +71,15 @@ Scene SceneMeasure::scene(const Method& method, int elements, int substeps) cons
                        comparison_);
   // A tolerance does not say how many steps a run takes: where the next solution is far
   // some methods find no way.
-  if (method.by_tolerance) run.options.max_steps = std::max(1L, longest_run_ / elements);
+  const long most_steps = std::max(1L, longest_run_ / elements);
+  if (method.by_tolerance) run.options.max_steps = most_steps;
+  // A step without a solution is tried again many times before the iterations of a frame
+  // are counted.
+  const auto steps =
+      static_cast<double>(comparison_.frames) *
+      static_cast<double>(method.by_tolerance ? most_steps : long{substeps});
+  run.options.max_work = most_iterations * stages(method) * steps * calls *
+                         (most_coordinates * elements + 10);
   return run;
 }
 
@@ -90,11 +106,10 @@ SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
                                             int substeps, double most_s,
                                             std::optional<Neighbour> as,
                                             double most_own_s) const {
-  const int stages = std::max(1, find_integrator(method.integrator).stages);
   const auto of = [&](int count) {
     Scene run = scene(method, count, substeps);
     if (as) run = neighbour(std::move(run), *as);
-    RunLimit limit{most_iterations * stages, most_s, most_own_s};
+    RunLimit limit{most_iterations * stages(method), most_s, most_own_s};
     if (count == elements) limit.useless = useless(reference(as));
     return tip_paths(run, 0, limit);
   };

@@ -118,12 +118,13 @@ void settle(const Study& study, Finalists& finalists, const std::vector<double>&
   }
 }
 
-/// The row that is advised: its file is run as it is written, and an answer for a part of
-/// the scene is none for the whole.
+/// The row that is advised: its file is run as it is written. An answer for a part of the
+/// scene is none for the whole, and a run that misses the target is none.
 void conclude(const Study& study, std::vector<Row>& rows) {
   const Row* best = advised(rows);
   if (best == nullptr) return;
   Row& row = rows[static_cast<std::size_t>(best - rows.data())];
+  if (row.status() == "not_met") row.failed("no_answer", std::string(row.text("reason")));
   if (!row.ok() || !confirm(study, row) || !study.cut()) return;
   row.failed("valid_in_part",
              fmt::format("the references agree for the first {:.3g} s of {:.3g} s only",

@@ -39,6 +39,7 @@ void World::restore(const Snapshot& snapshot) {
     body.before = {};
     body.indicator = 0;
     body.shortened = 0;
+    body.failed_work = 0;
     body.gave_up = false;
   }
   failure_.clear();

@@ -147,7 +147,8 @@ class World {
     std::vector<double> q, v;
     // Work done before the integrator's last start.
     Stats before;
-    Stats stats() const;  // including `before`
+    Stats stats() const;     // including `before`
+    double failed_work = 0;  // of shorter steps that failed, as total_work() counts it
     double indicator = 0;
     int shortened = 0;     // steps divided into shorter ones since restore()
     bool gave_up = false;  // shorter steps did not help
@@ -178,6 +179,7 @@ class World {
   void build_coupled(const Scene& scene, const Parameters& between);
   void ready(const Scene& scene);
   void advance(Body& body, double t, bool last);
+  double work_left(const Body& body) const;
   Status shorter_steps(Body& body, double end);
   std::string name_of(const Body& body) const;
   std::string failure_of(const Body& body) const;

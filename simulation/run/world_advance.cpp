@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contract/moving_history.h"
 #include "integrators/catalogue.h"
@@ -119,20 +120,23 @@ void World::advance(Body& body, double t, bool last) {
   const bool again = has_fixed_step(integrator_, options_) &&
                      count <= static_cast<double>(options_.max_steps);
   Integrator& method = *body.integrator;
-  // Shorter steps would only use more work.
-  const auto used_up = [&] {
-    return work_used_up(options_, method.stats(), static_cast<int>(method.q().size()));
-  };
   body.keep(t_, method.q(), method.v());
   body.status = method.advance(t, body.observer());
   while (again && body.status != Status::ok && !body.breached() && !body.gave_up &&
-         !used_up() && body.shortened++ < most_shortened) {
+         work_left(body) > 0 && body.shortened++ < most_shortened) {
     const double end = body.t + span / count;
     body.status = shorter_steps(body, end < t - 1e-6 * span / count ? end : t);
     if (body.status == Status::ok) body.status = method.advance(t, body.observer());
   }
   if (!body.guard || body.breached() || (body.status == Status::ok && !last)) return;
   if (!body.guard->judge(body.t, body.q, body.v)) body.status = Status::fatal;
+}
+
+/// Of Options::max_work, which bounds failed attempts too.
+double World::work_left(const Body& body) const {
+  if (options_.max_work == 0) return std::numeric_limits<double>::infinity();
+  const auto n = static_cast<int>(body.q.size());
+  return options_.max_work - body.failed_work - total_work(body.stats(), n);
 }
 
 /// From the last successful state to `end`, one step further, with as few shorter steps
@@ -142,8 +146,9 @@ Status World::shorter_steps(Body& body, double end) {
   const std::vector<double> q = body.q, v = body.v, memory = body.system->memory();
   const auto gathered = body.guard ? body.guard->memory() : Guard::Memory{};
   Options shorter = options_;
-  for (int k = 0; k < halvings; ++k) {
+  for (int k = 0; k < halvings && work_left(body) > 0; ++k) {
     ++body.before.rejected;
+    if (options_.max_work > 0) shorter.max_work = work_left(body);
     shorter.step = (end - begin) / std::ldexp(2.0, k);
     const auto method = make_integrator(integrator_.id, *body.system, shorter);
     body.keep(begin, q, v);
@@ -153,14 +158,18 @@ Status World::shorter_steps(Body& body, double end) {
     Status status = method->start(begin, body.q, body.v);
     if (status == Status::ok) status = method->advance(end, body.observer());
     if (body.breached()) return Status::fatal;
-    if (status != Status::ok) continue;
+    if (status != Status::ok) {
+      body.failed_work +=
+          total_work(method->stats(), static_cast<int>(method->q().size()));
+      continue;
+    }
     add_work(method->stats(), body.before);
     add_work(body.integrator->stats(), body.before);
     body.indicator =
         std::max({body.indicator, indicator_of(*body.integrator), indicator_of(*method)});
     return body.integrator->start(end, body.q, body.v);
   }
-  body.gave_up = true;
+  body.gave_up = work_left(body) > 0;
   return Status::fatal;
 }
 
@@ -182,6 +191,11 @@ std::string World::failure_of(const Body& body) const {
   if (body.breached()) {
     return fmt::format("{}: {}; guard = false lets it go on",
                        body.guard->breach()->message(), remedy(integrator_.id, options_));
+  }
+  if (work_left(body) <= 0) {
+    return fmt::format("{}: {}; max_work used up by shorter steps: {}", name_of(body),
+                       body.integrator->failure(),
+                       remedy(integrator_.id, options_, Limit::work));
   }
   return fmt::format(
       "{}: {}{}: {}", name_of(body), body.integrator->failure(),

@@ -167,20 +167,48 @@ TEST(World, StepsWithoutASolutionAreTakenInShorterOnes) {
 
 /// Turned from one moment to the next, these springs by their filtered tangent have no
 /// step that Newton's iteration solves, however short.
+constexpr const char* hinges = R"(title = "hinges"
+[model]
+id = "mass_spring"
+bending = "angular"
+tangent = "filtered"
+[integrator]
+id = "generalized_alpha"
+dt_s = 3e-4
+[material]
+name = "hair.african"
+radius_m = 2e-5
+youngs_modulus_pa = 2e7
+[[strand]]
+root_tangent = [0.1, 0.1, 0.5]
+length_m = 0.015
+elements = 9
+[root]
+motion = "rotate"
+frequency_hz = 17
+angle_rad = 0.4
+centre_m = [-0.05, 0, 0]
+)";
+
 TEST(World, AStepThatShorterOnesDoNotHelpEndsTheRun) {
-  const Scene scene = parse_scene(
-      "title = \"hinges\"\n[model]\nid = \"mass_spring\"\nbending = \"angular\"\n"
-      "tangent = \"filtered\"\n"
-      "[integrator]\nid = \"generalized_alpha\"\ndt_s = 3e-4\n[material]\n"
-      "name = \"hair.african\"\nradius_m = 2e-5\nyoungs_modulus_pa = 2e7\n[[strand]]\n"
-      "root_tangent = [0.1, 0.1, 0.5]\nlength_m = 0.015\nelements = 9\n"
-      "[root]\nmotion = \"rotate\"\nfrequency_hz = 17\nangle_rad = 0.4\ncentre_m = "
-      "[-0.05, 0, 0]\n",
-      "hinges.toml");
+  const Scene scene = parse_scene(hinges, "hinges.toml");
   World world(scene);
   ASSERT_NE(world.advance(0.01), Status::ok);
   EXPECT_THAT(world.failure(), testing::HasSubstr("nor for 64 in its place"));
   EXPECT_EQ(world.stats().rejected, 6);
+}
+
+/// Without a bound the six attempts at this step take more work than the steps before.
+TEST(World, MaxWorkBoundsStepsThatAreTriedAgain) {
+  Scene scene = parse_scene(hinges, "hinges.toml");
+  World free(scene);
+  ASSERT_NE(free.advance(0.01), Status::ok);
+  scene.options.max_work = 1.05 * free.work();
+  World world(scene);
+  ASSERT_NE(world.advance(0.01), Status::ok);
+  EXPECT_THAT(world.failure(), testing::HasSubstr("max_work used up by shorter steps"));
+  EXPECT_THAT(world.failure(), testing::HasSubstr("try more than max_work"));
+  EXPECT_LT(world.stats().rejected, 6);
 }
 
 #ifndef __SANITIZE_ADDRESS__  // it has an allocator and an address space of its own
