@@ -6,7 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "experiments/cost_of_accuracy/finalists.h"
 #include "experiments/cost_of_accuracy/search.h"
+#include "models/catalogue.h"
+#include "simulation/scene/scene.h"
 
 namespace tress::test_search {
 
@@ -323,6 +326,32 @@ TEST(Runs, BudgetAndTargetAgree) {
     ASSERT_NE(found, nullptr);
     EXPECT_LE(most_accurate(search.runs(), found->wall_s, 0)->error, target);
   }
+}
+
+// A machine whose times scatter makes no tie of a run that is dearer by more than that.
+TEST(Finalists, ScatterMakesNoTieOfADearerRun) {
+  Counted counted{{{1, 2, 0.1, 1, 1.4e-3}, {1, 2, 0.1, 1, 1e-3}}};
+  Search search(plan({0.01}), 2, counted.measure(), steady, no_end);
+  search.coarse();
+  search.refine();
+  const ModelEntry& model = find_model("super_helix");
+  // The dearer method is the simpler one.
+  std::vector<experiments::cost_of_accuracy::Method> methods = {
+      {{&model, {}, "backward_euler"}}, {{&model, {{"modes", "bend"}}, "tr_bdf2"}}};
+  int timed = 0;
+  const Scene scene = parse_scene(
+      "title = \"hair\"\n[model]\nid = \"super_helix\"\n[strand]\nelements = 4\n",
+      "hair.toml");
+  Finalists finalists(search, scene, methods, [&](const Trial& run) {
+    ++timed;
+    return WallTime{run.wall_s, 5};
+  });
+  const auto best = finalists.of(0.01, false);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->winner.method, 1u);
+  ASSERT_TRUE(best->runner_up);
+  EXPECT_FALSE(finalists.tied(*best->runner_up, best->winner));
+  EXPECT_GT(timed, 4);  // times that scatter are taken again
 }
 
 }  // namespace tress::test_search
