@@ -71,7 +71,7 @@ class Stage {
   /// multipliers until the law holds within Options::contact_tolerance; where a later
   /// solution fails, or after Options::contact_iterations, the one before stands, and
   /// stats tell by how much the law is violated. `retry` where friction would do work on
-  /// a slide (ContactForm::drive() above 100 times that tolerance).
+  /// a slide: ContactForm::drive() above that tolerance.
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                Matrix matrix = Matrix::own, Effort effort = Effort::whole) noexcept;
 

@@ -18,9 +18,6 @@ constexpr double most_velocities = 2;
 // An iteration with forces ends where corrections have grown by this, and where halving
 // one so far does not help.
 constexpr double most_growing = 2, least_part = 1e-3;
-// Over the tolerance: a strand with more contacts than unknowns may stall above it, at
-// what does not matter in its motion; beyond this a step is refused.
-constexpr double most_driven = 100;
 // What the forces of an iteration leave of the laws, over what contacts may leave.
 constexpr double left = 0.01;
 
@@ -50,7 +47,10 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
     break;
   }
   if (violation <= contact_tolerance_) return Status::ok;
-  if (drive > most_driven * contact_tolerance_) {
+  // Strands with more contacts than unknowns may stall above the tolerance, at what does
+  // not matter in their motion. A law that is met within the tolerance bounds the drive
+  // by it (ExactContact::State::violation()), and that bound is kept.
+  if (drive > contact_tolerance_) {
     dynamics_.driven = drive;
     return Status::retry;
   }

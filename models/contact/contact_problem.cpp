@@ -417,16 +417,7 @@ ContactProblem::Outcome ContactProblem::solve(double proximal, double tolerance,
     quiet *= quieter;
     for (Solved& solved : solved_) solved.wake();
   }
-  for (Body& body : std::span(bodies_).first(used_))
-    std::ranges::fill(body.forces, Vec());
-  for (const Contact& contact : contacts_) {
-    const Vec world = contact.force * contact.axes;
-    for (const End& end : contact.ends) {
-      Vec& to = bodies_[static_cast<std::size_t>(end.body)]
-                    .forces[static_cast<std::size_t>(end.point)];
-      to = to + end.weight * world;
-    }
-  }
+  sum_forces();
   return outcome;
 }
 

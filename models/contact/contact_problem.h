@@ -89,6 +89,10 @@ class ContactProblem {
   /// violates the laws by more than `tolerance` (m/s), or so many sweeps.
   Outcome solve(double proximal, double tolerance, int most_sweeps,
                 const Loop& loop = one_by_one);
+  /// Ends a solution that was not found: reduces friction that does work on a slide until
+  /// no T.u exceeds `tolerance` mu N. A few times round by as much as stops a contact's
+  /// own work, then by all of it, so that it ends. Returns the violation, m/s.
+  double stop_driving(double tolerance, const Loop& loop = one_by_one);
 
   std::span<const Contact> contacts() const { return contacts_; }
   /// With the forces, in the contact's axes, m/s.
@@ -167,6 +171,7 @@ class ContactProblem {
   Joint solve_jointly(const Loop& loop, double tolerance);
   double largest_seen() const;
   double worst(const Loop& loop, double tolerance);
+  void sum_forces();
 
   std::vector<Body> bodies_;  // the first used_ are in use
   std::size_t used_ = 0;

@@ -18,6 +18,9 @@ constexpr std::size_t settled_per_visit = 32;
 constexpr std::pair<std::size_t, std::size_t> pairs_of_parts[] = {{0, 1}, {2, 3}, {0, 2},
                                                                   {1, 3}, {0, 3}, {1, 2}};
 
+// Of stop_driving(): so often friction is reduced by no more than its contact needs.
+constexpr int gentle_rounds = 16;
+
 }  // namespace
 
 /// Where contacts find their bodies and columns, with room for those of contacts given
@@ -123,6 +126,43 @@ void ContactProblem::each_part(const Loop& loop, const std::function<void(Part&)
     const auto of_part = [&](std::size_t i) { act(parts_[first + i]); };
     visits < least_visits ? one_by_one(count, of_part) : loop(count, of_part);
     first += count;
+  }
+}
+
+double ContactProblem::stop_driving(double tolerance, const Loop& loop) {
+  bool driven = true;
+  for (int round = 0; driven; ++round) {
+    driven = false;
+    for (Solved& solved : solved_) {
+      Contact& contact = *solved.contact;
+      const Vec friction{0, contact.force.y, contact.force.z};
+      const double work = dot(friction, velocity(solved));
+      const double most = contact.friction * std::max(0.0, contact.force.x);
+      if (!(work > tolerance * most)) continue;
+      driven = true;
+      // Without a part p of the friction T it does (T - p T).(u - p W T), 0 at p =
+      // T.u/TWT.
+      const double all = dot(friction, contact.local * friction);
+      const double part = round < gentle_rounds && work < all ? work / all : 1;
+      contact.force = contact.force - part * friction;
+      push(solved, -part * friction);
+    }
+  }
+  sum_forces();
+  return worst(loop, tolerance);
+}
+
+/// On the points of bodies.
+void ContactProblem::sum_forces() {
+  for (Body& body : std::span(bodies_).first(used_))
+    std::ranges::fill(body.forces, Vec());
+  for (const Contact& contact : contacts_) {
+    const Vec world = contact.force * contact.axes;
+    for (const End& end : contact.ends) {
+      Vec& to = bodies_[static_cast<std::size_t>(end.body)]
+                    .forces[static_cast<std::size_t>(end.point)];
+      to = to + end.weight * world;
+    }
   }
 }
 

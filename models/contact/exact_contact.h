@@ -98,7 +98,10 @@ struct ExactContact {
     bool slips() const { return slips_; }
     Vec load() const { return load_ * normal_.n + tangential_; }
 
-    /// The largest speed by which the motion and the force violate the law, m/s.
+    /// The largest speed by which the motion and the force violate the law, m/s. It
+    /// bounds the speed T.U/(mu N) at which friction drives the slide. What sticks has
+    /// |T| <= mu N, hence T.U <= mu N |U|. What slips has T = mu N d, |d| = 1, and
+    /// |U + |U| d|^2 = 2 |U| (|U| + U.d) >= 2 (U.d)^2 where U.d > 0.
     double violation() const {
       double worst = 0;
       if (law_.rigid) worst = load_ > 0 ? std::abs(gap_rate_) : std::max(0.0, -gap_rate_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -394,6 +395,9 @@ void StrandFriction::solve(const Loop& loop) {
   const ContactProblem::Outcome outcome =
       problem_.solve(proximal, law_.tolerance, law_.sweeps, loop);
   outcome_ = {outcome_.sweeps + outcome.sweeps, outcome.violation};
+  if (outcome.violation > law_.tolerance) {
+    outcome_.violation = problem_.stop_driving(law_.tolerance, loop);
+  }
   for (Known& known : known_.all) {
     const auto& contact = problem_.contacts()[static_cast<std::size_t>(known.contact)];
     known.force = contact.force;
@@ -450,18 +454,20 @@ std::vector<double> StrandFriction::friction_used() const {
   return used;
 }
 
-/// The forces x and velocities y of contact_violation() are within e = violation/(2 -
-/// sqrt 2) of some x', y' that obey the laws [Tseng 1996], so that x_t.y_t <= e (|x_t'| +
-/// |y_t'| + e) - |x_t'| |y_t'| where it slides: positive for forces beyond 3 e only at
-/// |y_t'| < 1.5 e.
+/// Where the laws were not found it is at most the tolerance (stop_driving()). Where they
+/// were, the forces x and velocities y of contact_violation() are within e = violation/(2
+/// - sqrt 2) of some x', y' that obey the laws [Tseng 1996], so that x_t.y_t <= e (|x_t'|
+/// + |y_t'| + e) - |x_t'| |y_t'| where it slides: positive for forces beyond 3 e only at
+/// |y_t'| < 1.5 e. Smaller ones act at less than 3 e on a slide. Rounding errors of a
+/// violation are those of some sums of velocities.
 double StrandFriction::drive() const {
-  const double least =
-      3 * std::max(law_.tolerance, outcome_.violation) / (2 - std::sqrt(2));
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
   double fastest = 0;
   for (const ContactProblem::Contact& contact : problem_.contacts()) {
     const double most = contact.friction * contact.force.x;
-    if (!(most * trace(contact.local) / 3 > least)) continue;
     const Vec u = problem_.velocity(contact), &f = contact.force;
+    const double e = std::max(law_.tolerance, rounding * norm(u)) / (2 - std::sqrt(2));
+    if (!(most > 0 && most * trace(contact.local) / 3 > 3 * e)) continue;
     fastest = std::max(fastest, (f.y * u.y + f.z * u.z) / most);
   }
   return fastest;

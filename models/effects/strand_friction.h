@@ -93,8 +93,8 @@ class StrandFriction {
   std::vector<Touch> touches() const;
 
   /// The largest T.u/(mu N) of the step's contacts, m/s: friction does work on a slide
-  /// where it is positive. Of contacts that the tolerance does not let open. Where the
-  /// law holds within the tolerance it is below five times that.
+  /// where it is positive. Of contacts that the tolerance does not let open. It is below
+  /// five times the tolerance in every step.
   double drive() const;
 
   /// Pairs of segments that touched in the step.

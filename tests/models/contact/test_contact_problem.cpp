@@ -99,6 +99,41 @@ TEST(ContactProblem, SolvesContactsOfRegularCompliance) {
   }
 }
 
+/// A solution that was cut short.
+TEST(ContactProblem, EndsWithoutFrictionThatDrivesASlide) {
+  constexpr double tolerance = 1e-8;
+  double drove = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const RandomContacts all = random_contacts(2, 5, 6, 12, seed);
+    ContactProblem problem = all.problem();
+    if (problem.solve(1e-2, tolerance, 1).violation <= tolerance) continue;
+    const auto drive = [&](const ContactProblem::Contact& contact) {
+      const Vec u = problem.velocity(contact), &f = contact.force;
+      return f.y * u.y + f.z * u.z - tolerance * contact.friction * f.x;
+    };
+    for (const auto& contact : problem.contacts()) {
+      drove = std::max(drove, drive(contact));
+    }
+    problem.stop_driving(tolerance);
+    for (const auto& contact : problem.contacts()) {
+      EXPECT_LE(drive(contact), 0) << seed;
+      EXPECT_LE(std::hypot(contact.force.y, contact.force.z),
+                contact.friction * contact.force.x * (1 + 1e-12));
+    }
+    for (std::size_t k = 0; k < problem.bodies(); ++k) {
+      for (std::size_t p = 0; p < problem.forces(k).size(); ++p) {
+        Vec expected;
+        for (std::size_t of = 0; of < problem.forces(k).size(); ++of) {
+          expected =
+              expected + all.bodies[k].compliance[5 * of + p] * problem.forces(k)[of];
+        }
+        EXPECT_LE(norm(problem.change(k, p) - expected), 1e-11 * (1 + norm(expected)));
+      }
+    }
+  }
+  EXPECT_GT(drove, 0);
+}
+
 TEST(ContactProblem, SolvesMoreContactsThanUnknowns) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     // Two bodies of 6 unknowns each, 36 components of contacts.
