@@ -121,6 +121,8 @@ struct Study {
     int stride = 1;          // the first rod and every n-th after it
     std::size_t models = 0;  // the first n
   } quick = {};
+  /// Runs only where it is named.
+  bool apart = false;
 };
 
 std::span<const Study> studies();
@@ -136,7 +138,13 @@ Row answer(Row row, const Claim& claim, double value, bool holds);
 Row no_answer(Row row, const Claim& claim, std::string_view status,
               std::string_view reason);
 
-extern const Study stable_steps, twist, bdf_order, equal_accuracy, tolerance, sweeps;
+/// Answers `claim` of a run that is within its tolerance up to the last of `agreed` out
+/// of `samples` times at which its references agree: it holds, or it has no answer where
+/// they agree on less than half of the time.
+Row within_tolerance(Row row, const Claim& claim, double error, int agreed, int samples);
+
+extern const Study stable_steps, twist, bdf_order, equal_accuracy, tolerance, sweeps,
+    tolerances_study;
 
 /// Linear interpolation between order statistics [Hyndman & Fan 1996, type 7];
 /// `share` in [0, 1], `values` not empty.

@@ -37,7 +37,8 @@ constexpr Parameter settings[] = {
      .choices = "drawn|none"},
     {.name = "study",
      .help = "part of the study to run",
-     .choices = "all|stable_steps|twist|bdf_order|equal_accuracy|tolerance|sweeps"},
+     .choices = "all|stable_steps|twist|bdf_order|equal_accuracy|tolerance|sweeps|"
+                "tolerances"},
     {.name = "tolerance",
      .help = "tolerance of the study of that name, relative to the length",
      .number = 1e-3,
@@ -85,7 +86,10 @@ std::vector<Column> columns_of_table() {
        {"growth",
         "of a deviation of the strand to that of its tip, where an error is beyond "
         "the tolerance"},
-       {"gap", "what the answer is uncertain by, relative to the length"}});
+       {"gap", "what the answer is uncertain by, relative to the length"},
+       {"error_rel", "study tolerances: tip error in time over the length"},
+       {"looser_error_rel", "the same at ten times the tolerance"},
+       {"warned", "whether the run warns of the energy that its method took or gave"}});
   return all;
 }
 
@@ -147,11 +151,26 @@ std::vector<Case> cases(const CommandLine& line) {
   const Parameters& own = checked.experiment();
   std::vector<Case> all;
   for (const Study& study : studies()) {
-    if (own.word("study") != "all" && own.word("study") != study.id) continue;
+    const bool all_studies = own.word("study") == "all" && !study.apart;
+    if (!all_studies && own.word("study") != study.id) continue;
     if (study.models.empty() && !line.models.empty()) continue;  // compares its own
     add_cases(line, own, study, all);
   }
   return all;
+}
+
+/// Of the study tolerances.
+void check_tolerances(const std::vector<Row>& rows, Verdicts& verdicts) {
+  bool judged = false, holds = true;
+  double most = 0;
+  for (const Row& row : rows) {
+    if (row.text("study") != tolerances_study.id || !row.ok()) continue;
+    judged = true;
+    holds = holds && row.text("holds") == "true";
+    if (row.text("warned") != "true") most = std::max(most, row.number("value"));
+  }
+  if (!judged) return;
+  verdicts.check(std::string(tolerances_study.claims.front().statement), holds, most);
 }
 
 void write_summary(const CommandLine& line, const std::vector<Row>& rows) {
@@ -191,6 +210,7 @@ int main(int argc, char** argv) {
       .settings = family::settings,
       .unused = family::unused,
       .cases = family::cases,
+      .checks = family::check_tolerances,
       .finding = family::finding,
       .conclude = family::write_summary};
   return run_experiment(experiment, argc, argv);

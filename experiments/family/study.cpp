@@ -6,8 +6,8 @@
 namespace tress::experiments::family {
 
 std::span<const Study> studies() {
-  static const std::array all{stable_steps,   twist,     bdf_order,
-                              equal_accuracy, tolerance, sweeps};
+  static const std::array all{stable_steps, twist,  bdf_order,       equal_accuracy,
+                              tolerance,    sweeps, tolerances_study};
   return all;
 }
 

@@ -289,12 +289,7 @@ class Judge {
 
   Row operator()(Row row, double error) {
     const double asked = subject_.tolerance;
-    if (error <= asked && until_ < least_share * samples) {
-      return no_answer(row.set("value", error), claims[0], "short_horizon",
-                       "within the tolerance, but two methods agree on less than half of "
-                       "the time");
-    }
-    if (error <= asked) return answer(row, claims[0], error, true);
+    if (error <= asked) return within_tolerance(row, claims[0], error, until_, samples);
     if (error >= no_solution) return answer(row, claims[0], no_solution, false);
     if (!growth_) growth_ = growth_of(subject_, until_);
     row.set("growth", *growth_);
@@ -387,6 +382,13 @@ std::vector<Row> run(const Rod& rod, const Row& row) {
 }
 
 }  // namespace
+
+Row within_tolerance(Row row, const Claim& claim, double error, int agreed, int all) {
+  if (agreed >= least_share * all) return answer(row, claim, error, true);
+  return no_answer(row.set("value", error), claim, "short_horizon",
+                   "within the tolerance, but two methods agree on less than half of the "
+                   "time");
+}
 
 const Study tolerance{"tolerance", claims, run, models, {16, 3}};
 

@@ -4,19 +4,14 @@
 
 #include <cmath>
 
+#include "simulation/run/dissipation_warning.h"
+
 namespace tress::experiments::scene_runs {
-namespace {
-
-// Of the energy of the motion. Energy is as the square of an amplitude: less than this
-// changes that by less than a twentieth.
-constexpr double large_share = 0.1;
-
-}  // namespace
 
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
   std::vector<std::string> all;
   const double share = run.dissipation ? run.dissipation->share() : 0;
-  if (std::abs(share) > large_share) {
+  if (run.dissipation && simulation::warns(*run.dissipation)) {
     all.push_back(fmt::format(
         "{} {} {:.2g} J, {:.2g} % of the energy of the motion: {}", scene.integrator,
         share > 0 ? "dissipated" : "created", std::abs(run.dissipation->dissipated),

@@ -307,6 +307,16 @@ TEST(Family, Tolerance_ComparesWithAFixedStepThatIsAsAccurate) {
   }
 }
 
+/// References that agree on a sliver of the time do not show that a tolerance is met.
+TEST(Family, Tolerance_IsNotMetOnASliverOfTheTime) {
+  for (const int agreed : {1, 11, 12, 24}) {
+    const Row row = within_tolerance({}, tolerance.claims[0], 2e-6, agreed, 24);
+    EXPECT_EQ(row.number("value"), 2e-6);
+    EXPECT_EQ(row.status(), agreed < 12 ? "short_horizon" : "ok") << agreed;
+    EXPECT_EQ(row.text("holds"), agreed < 12 ? "" : "true") << agreed;
+  }
+}
+
 TEST(Family, Tolerance_CountsARunCutShortAsWithoutSolution) {
   const auto rows = by_tolerance(short_hair(), "super_helix", 50);
   EXPECT_TRUE(rows[0].ok());
