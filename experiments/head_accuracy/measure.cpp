@@ -14,6 +14,7 @@
 #include "models/reduced/reduced_strand.h"
 #include "simulation/export/full_hair.h"
 #include "simulation/groom/guide_choice.h"
+#include "simulation/head/head_classes.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/timing.h"
@@ -63,7 +64,12 @@ Scene read_head_scene(const std::string& file) {
     // Whether it has guides is what is asked; they do not run as a head.
     outline.scene = every_strand(std::move(outline.scene), enough);
   }
-  if (const auto no = no_head(outline)) throw InputError(no->reason, file, no->remedy);
+  if (const auto no = no_single_head(outline)) {
+    throw InputError(no->reason, file, no->remedy);
+  }
+  if (const auto no = no_lanes(outline.scene)) {
+    throw InputError("no SIMD lanes for " + no->reason, file, no->remedy);
+  }
   refuse_if(given.model->id != "super_helix",
             std::string(given.model->id) + ": work is that of super-helices", file,
             "use [model] id = \"super_helix\"");

@@ -25,6 +25,7 @@
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
+#include "simulation/head/batch_matrix.h"
 #include "simulation/plugin/load_plugin.h"
 
 namespace tress::experiments {
@@ -322,7 +323,8 @@ int answer(const Experiment& experiment, int argc, char** argv) {
   if (line.list) {
     write_all(
         STDOUT_FILENO,
-        catalogue_text(model_catalogue(), integrator_catalogue(), experiment.settings),
+        catalogue_text(model_catalogue(), integrator_catalogue(), experiment.settings) +
+            batch_matrix(),
         "standard output");
     return done;
   }

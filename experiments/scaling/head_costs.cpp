@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/scaling/scaling.h"
+#include "simulation/head/head_classes.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/timing.h"
@@ -64,7 +65,12 @@ std::vector<Case> head_costs(const CommandLine& line,
   std::set<std::string> names;
   for (const std::string& file : files) {
     const Outline whole = std::make_shared<const SceneOutline>(read_outline(file));
-    if (const auto no = no_head(*whole)) throw InputError(no->reason, file, no->remedy);
+    if (const auto no = no_single_head(*whole)) {
+      throw InputError(no->reason, file, no->remedy);
+    }
+    if (const auto no = no_lanes(whole->scene)) {
+      throw InputError("no SIMD lanes for " + no->reason, file, no->remedy);
+    }
     const std::string name = std::filesystem::path(file).filename().string();
     if (!names.insert(name).second) {
       throw InputError("two scenes of one name", file, "rename one of them");

@@ -26,8 +26,9 @@ constexpr const char* help_end =
 std::vector<std::string> endings(bool head, const SceneRunOptions& options) {
   std::vector<std::string> all{".csv", ".meta.json", ".json", ".state"};
   if (head) {
-    all.insert(all.end(), {".h5", ".xdmf", ".lost.csv"});
+    all.insert(all.end(), {".h5", ".xdmf", ".lost.csv", ".rest.csv"});
   } else {
+    all.push_back(".lost.csv");
     all.insert(all.end(), {".errors.csv", ".rest.csv", ".fit.csv"});
   }
   if (options.usd) all.push_back(".usda");
@@ -57,8 +58,10 @@ void declare(CLI::App& app, Arguments& a) {
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
   app.add_option("--as", a.as,
-                 "strands: one by one; head: all side by side, up to a million; auto: a "
-                 "head, where the scene can be one and has 1000 strands (default auto)")
+                 "strands: one by one; head: all in one batch, up to a million, in SIMD "
+                 "lanes or as replicated systems (--list of other programs shows which); "
+                 "auto: a head, where 1000 strands have lanes, or above 10000 strands "
+                 "(default auto)")
       ->check(CLI::IsMember({"auto", "strands", "head"}));
   app.add_option("--bits", a.bits,
                  "floating-point precision of a head: 64 or 32 bits (default 64)")

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "experiments/simulate/lost_strands.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/files/row.h"
@@ -76,14 +77,7 @@ void HeadRecording::open(const Scene& scene, StoredFrames stored, bool resume) {
 
 void HeadRecording::write_lost() {
   if (progress_.lost.size() == lost_written_) return;
-  std::string table = "strand,t_s,reason\n";
-  for (const LostStrand& lost : progress_.lost) {
-    Row row;
-    row.set("t_s", lost.t);
-    table += csv_line(std::vector<std::string>{
-        std::to_string(lost.strand), std::string(row.text("t_s")), lost.reason});
-  }
-  replace_file(stem_ + ".lost.csv", table);
+  replace_file(stem_ + ".lost.csv", lost_table(progress_.lost));
   lost_written_ = progress_.lost.size();
 }
 

@@ -15,6 +15,7 @@ namespace tress::experiments::scene_runs {
 void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
   const Scene& scene = outline.scene;
   const Ranks& ranks = *options.ranks;
+  const std::optional<NoHead> without = no_lanes(scene, options.pack.number);
   const std::size_t strands = outline.series->size(),
                     elements = scene.strands.front().segments.size(),
                     size = static_cast<std::size_t>(ranks.size()),
@@ -37,7 +38,9 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
     throw InputError(fmt::format("a head of {} strands of {} elements needs about {:.2g} "
                                  "GB of memory, {:.2g} GB are free",
                                  strands, elements, memory / 1e9, free / 1e9),
-                     scene.name, "give fewer strands or elements, or --bits 32");
+                     scene.name,
+                     without ? "give fewer strands or elements"
+                             : "give fewer strands or elements, or --bits 32");
   }
   std::error_code unknown;
   const auto disk =
@@ -51,12 +54,17 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
             static_cast<double>(disk.available) / 1e9),
         scene.name, "give fewer frames_1_s, --frames 32 or none, or another --out");
   }
+  const std::string engine =
+      without ? fmt::format(
+                    "replicated systems, each as slow as a single strand: no SIMD "
+                    "lanes for {}; for lanes, {}",
+                    without->reason, without->remedy)
+              : fmt::format("{} bits, {} SIMD lanes", bits_of(options.pack),
+                            options.pack.lanes);
   tell(
-      "simulate: {}: a head of {} strands of {} elements, {} bits, {} lanes: about "
-      "{:.0f} "
-      "MB of memory, {:.0f} frames of {:.3g} MB before compression\n",
-      scene.name, strands, elements, bits_of(options.pack), options.pack.lanes,
-      memory / 1e6, frames, frame / 1e6);
+      "simulate: {}: a head of {} strands of {} elements: about {:.0f} MB of memory, "
+      "{:.0f} frames of {:.3g} MB before compression; {}\n",
+      scene.name, strands, elements, memory / 1e6, frames, frame / 1e6, engine);
 }
 
 }  // namespace tress::experiments::scene_runs

@@ -14,6 +14,7 @@
 #include "experiments/simulate/head_reading.h"
 #include "experiments/simulate/head_recording.h"
 #include "experiments/simulate/head_series.h"
+#include "experiments/simulate/held_report.h"
 #include "experiments/simulate/lost_strands.h"
 #include "experiments/simulate/save_clock.h"
 #include "experiments/simulate/stop_request.h"
@@ -52,9 +53,9 @@ class HeadSceneRun {
   void run(SceneRun& made) {
     HeadOutcome& outcome = made.head.emplace();
     outcome.build_s = seconds_of([&] {
-      run_ = std::make_unique<HeadRun>(
-          make_head(outline_, options_.pack, options_.threads, ranks_), options_.threads,
-          ranks_);
+      SceneHead head = make_head(outline_, options_.pack, options_.threads, ranks_);
+      report(head);
+      run_ = std::make_unique<HeadRun>(std::move(head), options_.threads, ranks_);
       outcome.device = take_device();
     });
     build_s_ = ranks_.largest(outcome.build_s);
@@ -83,7 +84,9 @@ class HeadSceneRun {
     write_head_pictures(outline_, recording_->frames(), reading_->shown(), options_);
     const auto whole = interruption_.hold();
     recording_->close();
-    outcome.pack = options_.pack;
+    outcome.pack =
+        run_->lanes() ? options_.pack : HeadPack{models::HeadNumber::float64, 1};
+    outcome.engine = run_->lanes() ? "lanes" : "replicated";
     outcome.strands = run_->strands();
     outcome.lost = recording_->progress().lost.size();
     outcome.bytes_per_strand = static_cast<double>(run_->head().bytes()) /
@@ -94,6 +97,19 @@ class HeadSceneRun {
     made.reason = why_failed(recording_->progress().lost);
   }
 
+  /// What holds strands at rest; of ranks none has all.
+  void report(const SceneHead& head) {
+    if (head.held.empty() || ranks_.size() > 1) return;
+    Scene whole = scene_;
+    whole.strands.clear();
+    std::vector<HeldShape> held;
+    for (const std::size_t place : head.division->by_number()) {
+      whole.strands.push_back(outline_.series->strand(held.size()));
+      held.push_back(head.held[place]);
+    }
+    report_held(whole, held, options_.stem + ".rest.csv");
+  }
+
   std::string why_failed(const std::vector<LostStrand>& lost) const {
     const LostStrand& first = lost.front();
     const bool unsolved = first.reason.starts_with("no solution");
@@ -102,14 +118,16 @@ class HeadSceneRun {
         "({}.lost.csv): {}{}",
         unsolved ? "" : "unstable: ", lost.size(), run_->strands(), first.t, first.strand,
         first.reason, options_.stem, remedy(scene_.integrator, scene_.options),
-        unsolved ? ", or --as strands, which has more ways to solve a step" : "");
+        unsolved && run_->lanes()
+            ? ", or --as strands, which has more ways to solve a step"
+            : "");
   }
 
   /// Steps of the head, or with a tolerance those of its strands.
   Stats work() {
     Stats all;
     all.steps = steps_;
-    if (scene_.options.tolerance == 0) return all;
+    if (run_->lanes() && scene_.options.tolerance == 0) return all;
     done_ += run_->work();
     all.steps = 0;
     for (const models::HeadWork& done : ranks_.of_each(done_)) {
@@ -117,8 +135,9 @@ class HeadSceneRun {
       all.rejected_by_error += done.rejected_by_error;
       all.rejected_by_newton += done.rejected_by_newton;
       all.newton_iterations += done.iterations + done.again_iterations;
+      all.rejected += run_->lanes() ? done.rejected_by_error + done.rejected_by_newton
+                                    : done.shortened;
     }
-    all.rejected = all.rejected_by_error + all.rejected_by_newton;
     return all;
   }
 
@@ -204,7 +223,7 @@ class HeadSceneRun {
       // Of the ranks' clocks none is the others'.
       const bool by_clock = between_saves == 0 && ranks_.largest(clock.due() ? 1 : 0) > 0;
       if (!by_clock && (between_saves == 0 || frame % between_saves != 0)) continue;
-      outcome.write_s += seconds_of([&] { save_state(0); });
+      outcome.write_s += seconds_of([&] { save_state(0, !by_clock); });
       clock.saved();
       if (by_clock) continue;
       outcome.build_s += seconds_of([&] {
@@ -220,8 +239,9 @@ class HeadSceneRun {
   /// Equal ones, as long as longest_step() at most, from `done` on.
   void take_steps(std::size_t frame, std::size_t done, StopRequest& stop) {
     const double begin = scene_.time_of(frame - 1), end = scene_.time_of(frame),
-                 count = std::max(1.0,
-                                  std::ceil((end - begin) / longest_step(scene_) - 1e-9)),
+                 count = std::max(
+                     1.0, std::ceil((end - begin) / longest_step(scene_, run_->lanes()) -
+                                    1e-9)),
                  h = (end - begin) / count;
     for (std::size_t i = done; i < static_cast<std::size_t>(count); ++i) {
       if (ranks_.largest(stop.asked() ? 1 : 0) > 0) {
@@ -231,7 +251,11 @@ class HeadSceneRun {
       const double t = begin + static_cast<double>(i) * h;
       where_a_device_fails([&] { run_->step(t, h); });
       ++steps_;
-      lose(run_->on_device() ? std::nullopt : std::optional(t + h), h);
+      if (run_->lanes()) {
+        lose(run_->on_device() ? std::nullopt : std::optional(t + h), h);
+      } else {
+        lose({}, 0);
+      }
     }
     fetch(h);
   }
@@ -260,12 +284,14 @@ class HeadSceneRun {
     }
   }
 
-  void save_state(std::size_t step) {
+  /// `restart`: systems go on from it as a run that is resumed there does.
+  void save_state(std::size_t step, bool restart) {
     const auto saved = recording_ ? recording_->saving(step) : nullptr;
     std::vector<double> kept;
     reading_->by_chunks(*run_, [&](HeadRun::Numbers strands) {
       run_->keep(strands, kept);
       if (saved) saved->put(kept);
+      if (restart && !run_->lanes()) run_->recall(strands, kept);
     });
     if (saved) saved->finish();
   }
@@ -280,8 +306,11 @@ class HeadSceneRun {
   /// A signal has come: the thread that handles it ends the program.
   [[noreturn]] void end_here(std::size_t step, StopRequest& stop) {
     try {
-      gather_lost();
-      save_state(step);
+      // Systems restart at saved states of checkpoint_s only.
+      if (run_->lanes() || scene_.checkpoint == 0) {
+        gather_lost();
+        save_state(step, false);
+      }
       ranks_.largest(0);  // none ends before the first has saved
       stop.answer();
     } catch (const std::exception& error) {

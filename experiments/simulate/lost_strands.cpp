@@ -5,13 +5,27 @@
 #include <numeric>
 #include <utility>
 
+#include "simulation/files/csv.h"
+#include "simulation/files/row.h"
+
 namespace tress::experiments::scene_runs {
+
+std::string lost_table(const std::vector<LostStrand>& lost) {
+  std::string table = "strand,t_s,reason\n";
+  for (const LostStrand& one : lost) {
+    Row row;
+    row.set("t_s", one.t);
+    table += csv_line(std::vector<std::string>{std::to_string(one.strand),
+                                               std::string(row.text("t_s")), one.reason});
+  }
+  return table;
+}
 
 std::vector<LostStrand> LostStrands::gathered() {
   // Sent as bytes, without what lies between members.
   struct Entry {
     double strand, t;
-    std::array<char, 80> reason;  // ended by a zero
+    std::array<char, 400> reason;  // ended by a zero
   };
   const std::vector<std::size_t> counts = ranks_.of_each(own_.size());
   const auto rank = static_cast<std::ptrdiff_t>(ranks_.rank());

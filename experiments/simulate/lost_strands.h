@@ -1,14 +1,18 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
-#include "simulation/export/head_state.h"
 #include "simulation/head/ranks.h"
+#include "simulation/run/lost_strand.h"
 
 namespace tress::experiments::scene_runs {
 
 using namespace simulation;
+
+/// <stem>.lost.csv of these.
+std::string lost_table(const std::vector<LostStrand>& lost);
 
 /// The strands of a head that ranks lose, until all of them know.
 class LostStrands {

@@ -75,9 +75,13 @@ constexpr Column columns_of_outcome[] = {
     {"space_parted", "strands whose two runs part"},
     {"space_error_missing", "why there is no estimate"},
     {"strands", "of a head of hair"},
-    {"lost_strands", "of a head: those whose step was impossible"},
+    {"lost_strands",
+     "of a head, or with failed_strands = stay: strands whose step was impossible"},
     {"bits", "of a head's numbers"},
     {"lanes", "strands of a head computed side by side"},
+    {"engine",
+     "of a head: lanes, or replicated: each strand is a system of its own, as a single "
+     "strand is"},
     {"device", "that took a head's steps: cpu, or the name of a GPU"},
     {"ranks", "processes that shared a head"},
     {"rank_strands", "of these the one with most: its strands"},
@@ -177,10 +181,14 @@ Row outcome(const Scene& scene, const SceneRun& run) {
       row.set("claim_s", head.claim_s).set("exchange_s", head.exchange_s);
       row.set("meet_s", head.meet_s);
     }
-    row.set("lanes", head.pack.lanes).set("bytes_per_strand", head.bytes_per_strand);
+    row.set("lanes", head.pack.lanes).set("engine", head.engine);
+    row.set("bytes_per_strand", head.bytes_per_strand);
     row.set("state", head.state).set("build_s", head.build_s);
     row.set("step_s", head.step_s).set("read_s", head.read_s);
     row.set("write_s", head.write_s);
+  }
+  if (!run.head && scene.failed_strands == FailedStrands::stay) {
+    row.set("lost_strands", run.lost);
   }
   row.set("wall_s", run.wall_s);
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);

@@ -1,15 +1,19 @@
 #include "experiments/simulate/scene_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "contract/input_error.h"
 #include "experiments/simulate/held_report.h"
+#include "experiments/simulate/lost_strands.h"
 #include "experiments/simulate/pictures.h"
 #include "experiments/simulate/save_clock.h"
 #include "experiments/simulate/time_bar.h"
 #include "simulation/export/recording.h"
+#include "simulation/files/files.h"
 
 namespace tress::experiments::scene_runs {
 namespace {
@@ -82,6 +86,10 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
       run.reason = world->failure();
       break;
     }
+    if (world->lost().size() > run.lost) {
+      run.lost = world->lost().size();
+      replace_file(options.stem + ".lost.csv", lost_table(world->lost()));
+    }
     add_frame();
     if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
     run.indicator = std::max(run.indicator, world->error_indicator());
@@ -103,6 +111,15 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   run.frames = recording.frames().size();
   for (const Frame3d& frame : recording.frames()) {
     run.rejected += static_cast<long>(frame.series.back());
+  }
+  if (run.lost > 0 && run.end != SceneRun::End::failed) {
+    const LostStrand& first = world->lost().front();
+    run.end = SceneRun::End::failed;
+    run.reason = fmt::format(
+        "{} of {} strands were lost, the first at t = {:.9g} s, strand {}: {} "
+        "({}.lost.csv): {}",
+        run.lost, world->strands(), first.t, first.strand, first.reason, options.stem,
+        remedy(scene.integrator, scene.options));
   }
   run.simulated_s = world->time();
   run.dissipation = world->dissipation();

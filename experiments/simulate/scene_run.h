@@ -52,6 +52,7 @@ inline int bits_of(const models::HeadPack& pack) {
 /// Of a head.
 struct HeadOutcome {
   models::HeadPack pack;
+  std::string engine;          // lanes or replicated: what steps the strands
   std::string device = "cpu";  // that took its steps, or the name of another one
   int ranks = 1;
   // Of the rank that has most: strands, memory at its largest.
@@ -78,6 +79,7 @@ struct SceneRun {
   Exchanges exchanges = {};
   std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
   std::string not_smooth = {};  // World::not_smooth(), first that was seen
+  std::size_t lost = 0;         // strands that failed and stay
   std::optional<HeadOutcome> head = {};
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "python/bindings/owned_system.h"
+#include "simulation/head/head_classes.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/readout.h"
@@ -108,20 +109,21 @@ class HeadOfHair {
  public:
   HeadOfHair(ScenePtr scene, SceneOutline outline, int bits, int threads)
       : scene_(std::move(scene)), outline_(std::move(outline)) {
-    if (const auto no = no_head(outline_)) {
-      throw InputError(no->reason, scene_->name, no->remedy);
-    }
     const models::HeadNumber number =
         bits == 64 ? models::HeadNumber::float64 : models::HeadNumber::float32;
+    if (const auto no = no_single_head(outline_, number)) {
+      throw InputError(no->reason, scene_->name, no->remedy);
+    }
     run_.emplace(make_head(outline_, models::widest_pack(number), threads), threads);
     run_->energies(0, energies_);
   }
 
   /// In equal steps of at most dt_s; with a tolerance, in those that each strand needs.
   void advance(double t_end) {
-    const double begin = t_,
-                 count = std::max(
-                     1.0, std::ceil((t_end - begin) / longest_step(*scene_) - 1e-9));
+    const double begin = t_, count = std::max(
+                                 1.0, std::ceil((t_end - begin) /
+                                                    longest_step(*scene_, run_->lanes()) -
+                                                1e-9));
     const double h = (t_end - begin) / count;
     for (double i = 0; i < count; ++i) {
       {

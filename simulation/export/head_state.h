@@ -9,15 +9,9 @@
 #include "simulation/files/file_state.h"
 #include "simulation/files/files.h"
 #include "simulation/files/run_key.h"
+#include "simulation/run/lost_strand.h"
 
 namespace tress::simulation {
-
-/// A strand that stays where it is from this time on.
-struct LostStrand {
-  std::size_t strand;
-  double t;  // s
-  std::string reason;
-};
 
 /// How far the run of a head has come.
 struct HeadProgress {

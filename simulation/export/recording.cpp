@@ -71,6 +71,17 @@ std::string state_text(const std::string& key, const Saved& saved) {
   bytes.put_sized(s.guards);
   bytes.put_sized(s.rubs);
   bytes.put_sized(s.mesh);
+  std::vector<std::uint64_t> which;
+  std::vector<double> when;
+  for (const LostStrand& one : s.lost) {
+    which.push_back(one.strand);
+    when.push_back(one.t);
+  }
+  bytes.put_sized(which);
+  bytes.put_sized(when);
+  for (const LostStrand& one : s.lost) {
+    bytes.put_sized(std::vector<char>(one.reason.begin(), one.reason.end()));
+  }
   return sealed(bytes.text());
 }
 
@@ -86,9 +97,10 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
   bool whole = bytes.take(head, 3) && bytes.take(t, 1);
   Saved saved;
   if (whole) {
-    saved = {head[0],
-             head[1],
-             {.t = t[0], .strands = {}, .guards = {}, .rubs = {}, .mesh = {}}};
+    saved = {
+        head[0],
+        head[1],
+        {.t = t[0], .strands = {}, .guards = {}, .rubs = {}, .mesh = {}, .lost = {}}};
     saved.snapshot.strands.resize(head[2]);
   }
   for (auto& strand : saved.snapshot.strands) {
@@ -96,8 +108,18 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
       whole = whole && bytes.take_sized(*x);
     }
   }
-  if (!whole || !bytes.take_sized(saved.snapshot.guards) ||
-      !bytes.take_sized(saved.snapshot.rubs) || !bytes.take_sized(saved.snapshot.mesh)) {
+  whole = whole && bytes.take_sized(saved.snapshot.guards) &&
+          bytes.take_sized(saved.snapshot.rubs) && bytes.take_sized(saved.snapshot.mesh);
+  std::vector<std::uint64_t> which;
+  std::vector<double> when;
+  whole = whole && bytes.take_sized(which) && bytes.take_sized(when) &&
+          which.size() == when.size();
+  for (std::size_t i = 0; whole && i < which.size(); ++i) {
+    std::vector<char> reason;
+    whole = bytes.take_sized(reason);
+    saved.snapshot.lost.push_back({which[i], when[i], {reason.begin(), reason.end()}});
+  }
+  if (!whole) {
     throw std::runtime_error("it ends too early");
   }
   return saved;

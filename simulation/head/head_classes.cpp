@@ -10,8 +10,14 @@
 namespace tress::simulation {
 
 bool has_classes(const SceneOutline& outline) {
-  return outline.series != nullptr &&
-         std::ranges::any_of(outline.scene.tables->sources, has_tolerance);
+  if (outline.series == nullptr) return false;
+  const auto& sources = outline.scene.tables->sources;
+  const auto elements = [](const StrandSource& source) {
+    return source.table.values().whole("elements");
+  };
+  return std::ranges::any_of(sources, has_tolerance) ||
+         std::ranges::adjacent_find(sources, std::ranges::not_equal_to{}, elements) !=
+             sources.end();
 }
 
 std::vector<HeadClass> head_classes(const SceneOutline& outline, int threads) {
@@ -35,10 +41,20 @@ std::vector<HeadClass> head_classes(const SceneOutline& outline, int threads) {
   return made;
 }
 
+std::optional<NoHead> no_single_head(const SceneOutline& outline,
+                                     models::HeadNumber number) {
+  if (has_classes(outline)) {
+    return NoHead{"strands of several numbers of elements",
+                  "give all equally many elements, and no tolerance"};
+  }
+  return no_head(outline, number);
+}
+
 std::optional<NoHead> no_classes(const SceneOutline& outline) {
   if (outline.scene.interaction() == nullptr) return {};
   return NoHead{"strands of several numbers of elements that touch each other",
-                "leave out the tolerance of the groom, or [effects.strand_interaction]"};
+                "give all equally many elements, or leave out "
+                "[effects.strand_interaction]"};
 }
 
 }  // namespace tress::simulation

@@ -13,11 +13,15 @@ struct HeadClass {
   SceneOutline outline;
 };
 
-/// Whether strands get as many elements as they need ([groom] tolerance_m).
+/// Whether strands may differ in their numbers of elements: their tables do, or they get
+/// as many as they need ([groom] tolerance_m).
 bool has_classes(const SceneOutline& outline);
 /// Of such a scene, ascending; each may run as a head. Every strand is made once, by so
 /// many threads. Throws InputError where a strand cannot be made.
 std::vector<HeadClass> head_classes(const SceneOutline& outline, int threads);
+/// no_head(), for those who run one head of a scene.
+std::optional<NoHead> no_single_head(
+    const SceneOutline& outline, models::HeadNumber number = models::HeadNumber::float64);
 /// What speaks against running them side by side: strands that touch.
 std::optional<NoHead> no_classes(const SceneOutline& outline);
 

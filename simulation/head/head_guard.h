@@ -1,85 +1,41 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "models/head/head.h"
-#include "simulation/run/energy_account.h"
-#include "simulation/scene/scene.h"
 
 namespace tress::simulation {
 
-/// Guard of every strand of a head: the account of energy, the bound of speed and, of
-/// springs, of stretch that Guard has for a strand by itself, with the work of all
-/// effects. Strands are known by their places in the head.
-///
-/// Energies are the head's own. Potentials, loads and powers of effects are those on the
-/// points where its model has them act: the nodes of springs; else the Gauss-Legendre
-/// points of the elements, here of their chords, which is exact for rigid links. Nodes
-/// also serve where nothing but gravity and linear drag acts.
-///
-/// When a state is judged: with every frame. Where nothing can do work on a strand in the
-/// frame of the head, that is enough, as the bound does not change. Under gravity and
-/// linear drag alone a head that moves does smooth work: every ten steps or 20 ms in
-/// addition, and else as Guard does. Cost: of the energies and positions of a block,
-/// about a third of a step, and of its effects' loads.
+/// Judges the strands of a head, and reads the potentials of effects on them. Strands are
+/// known by their places in the head.
 class HeadGuard {
  public:
-  /// Of a head with these options; `at_rest`: whether what acts beside gravity and drag
-  /// does no work in the frame of the head.
-  HeadGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest);
-
-  void reserve(std::size_t strands) { strands_.reserve(strands); }
-  /// The strand at the next place, with the effects on it alone.
-  void add(const Strand& strand, models::Effects own);
+  virtual ~HeadGuard() = default;
 
   /// Effects whose potentials (J) are not in HeadEnergy::gravity: those of the scene, in
   /// its order, without uniform accelerations.
-  std::size_t effects() const { return placed_.size(); }
+  virtual std::size_t effects() const = 0;
   /// So many of each strand of a block, whose first place is `first`.
-  void potentials(const models::Head& head, std::size_t block, std::size_t first,
-                  double t, std::span<double> each) const;
+  virtual void potentials(const models::Head& head, std::size_t block, std::size_t first,
+                          double t, std::span<double> each) const = 0;
 
   // Of the strands of a block; different blocks on different threads.
   /// The state with which later ones are compared.
-  void start(const models::Head& head, std::size_t block, std::size_t first, double t);
+  virtual void start(const models::Head& head, std::size_t block, std::size_t first,
+                     double t) = 0;
   /// Whether a step of h that has come to t must be judged.
-  bool due(double t, double h) const;
-  void judge(const models::Head& head, std::size_t block, std::size_t first, double t);
+  virtual bool due(double t, double h) const = 0;
+  virtual void judge(const models::Head& head, std::size_t block, std::size_t first,
+                     double t) = 0;
   /// What the last judge() found; empty: nothing.
-  std::string_view verdict(std::size_t place) const { return strands_[place].verdict; }
+  virtual std::string_view verdict(std::size_t place) const = 0;
 
-  /// Numbers of a strand that judge() changes.
-  static constexpr std::size_t kept = EnergyAccount::remembered;
-  void keep(std::size_t place, std::span<double> to) const;
-  void recall(std::size_t place, std::span<const double> from);
-
-  static constexpr std::string_view
-      too_much_energy = "it had more energy than it can have",
-      too_fast = "it was faster than its energy allows",
-      off_length = "a piece was off its length by more than half of it";
-
- private:
-  struct OfStrand {
-    double length = 0, slack = 0;  // m, of an element; J
-    EnergyAccount account;
-    std::string_view verdict;
-  };
-  class Reader;
-
-  RootMotion motion_;
-  models::Effects effects_;
-  std::vector<const models::Effect*> placed_;  // of these, those with potentials here
-  bool moves_, works_;   // the head; whether anything can do work in its frame
-  bool at_rest_;         // as HeadGuard()
-  bool stretches_;       // springs
-  bool acts_somewhere_;  // whether some effect is neither uniform nor drag
-  std::vector<double> at_, weight_;  // of points, of an element's length; none: nodes
-  std::size_t elements_;
-  std::vector<OfStrand> strands_;
-  std::vector<models::Effects> own_;  // of each strand, or empty
+  /// Numbers of a strand that judge() changes, beside those that the head keeps.
+  virtual std::size_t kept() const = 0;
+  virtual void keep(std::size_t place, std::span<double> to) const = 0;
+  virtual void recall(std::size_t place, std::span<const double> from) = 0;
 };
 
 }  // namespace tress::simulation

@@ -23,8 +23,11 @@ HeadRun::HeadRun(std::unique_ptr<Head> head, int threads,
     : HeadRun(SceneHead{.interaction = std::move(interaction),
                         .head = std::move(head),
                         .guard = {},
+                        .guarded = false,
+                        .lanes = true,
                         .division = {},
-                        .halo = {}},
+                        .halo = {},
+                        .held = {}},
               threads, alone_) {}
 
 HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
@@ -36,12 +39,14 @@ HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
       head_(std::move(made.head)),
       guard_(std::move(made.guard)),
       guarded_(guard_ && made.guarded),
+      lanes_(made.lanes),
       crew_(threads) {
   all_ = pieces([](std::size_t) { return true; });
   inner_ = all_;
   for (std::size_t w = 0; w < crew_.workers(); ++w) {
     scratch_.push_back(head_->scratch());
   }
+  if (!lanes_) look(0, 0);
   if (!guarded_) return;
   each_block([&](std::size_t block, std::size_t first) {
     guard_->start(*head_, block, first, 0);
@@ -263,8 +268,34 @@ void HeadRun::look(double t, double h) {
       outer_ = pieces([&](std::size_t b) { return touched[b] != 0; });
     }
     halo_->send(x_, v_);
+  } else if (ranks_->size() > 1) {
+    share_motion();
   }
   interaction_->update(x_, v_, loop());
+}
+
+void HeadRun::share_motion() {
+  const std::size_t each = head_->numbers();
+  std::vector<std::size_t> numbers(strands());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  const std::vector<std::size_t> counts = division_->counts(numbers);
+  std::vector<std::size_t> sizes(counts), first(counts.size());
+  for (std::size_t& size : sizes) size *= each;
+  std::exclusive_scan(sizes.begin(), sizes.end(), first.begin(), std::size_t{0});
+  for (std::vector<double>* own : {&x_, &v_}) {
+    std::vector<double> by_ranks(each * strands()), all(by_ranks.size());
+    std::ranges::copy(
+        *own, by_ranks.begin() + static_cast<std::ptrdiff_t>(
+                                     first[static_cast<std::size_t>(ranks_->rank())]));
+    ranks_->share(std::span(by_ranks), sizes);
+    std::vector<std::size_t> next(first);
+    for (const std::size_t k : numbers) {
+      std::size_t& from = next[static_cast<std::size_t>(division_->owner(k))];
+      std::copy_n(&by_ranks[from], each, &all[each * k]);
+      from += each;
+    }
+    *own = std::move(all);
+  }
 }
 
 const std::string& HeadRun::move_to_device() {

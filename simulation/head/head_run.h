@@ -35,6 +35,8 @@ class HeadRun {
   /// head is refused, DeviceFailure if there is no device for it.
   const std::string& move_to_device();
   bool on_device() const { return device_ != nullptr; }
+  /// Whether strands are stepped in SIMD lanes, else each as a system of its own.
+  bool lanes() const { return lanes_; }
 
   /// From t to t + h (s). Methods that iterate get blocks by the dozen, so that their
   /// lanes find strands to go on with.
@@ -76,7 +78,7 @@ class HeadRun {
   void positions(double t, Numbers strands, std::vector<double>& x);
   /// Head::keep() and Head::recall(), with what the guard knows of each strand, so many
   /// numbers; what is recalled is the first rank's.
-  std::size_t kept() const { return head_->kept() + (guarded_ ? HeadGuard::kept : 0); }
+  std::size_t kept() const { return head_->kept() + (guarded_ ? guard_->kept() : 0); }
   void keep(Numbers strands, std::vector<double>& kept);
   void recall(Numbers strands, std::vector<double>& kept);
   /// Calls use(strands) for all, so many at a time.
@@ -119,6 +121,8 @@ class HeadRun {
 
   /// Strands see each other where they are at t, for a step of h.
   void look(double t, double h);
+  /// x_ and v_ of own strands become those of all.
+  void share_motion();
   models::Loop loop();
   /// Of a list of strands, own ones by blocks: use(block, listed ones).
   void own_blocks_of(
@@ -128,11 +132,13 @@ class HeadRun {
   OneRank alone_;
   Ranks* ranks_;
   std::shared_ptr<const HeadDivision> division_;
-  std::unique_ptr<models::StrandInteraction> interaction_;  // of own strands, by numbers
-  std::unique_ptr<Halo> halo_;                              // or null
+  // Of own strands, by numbers; not in lanes: of all.
+  std::unique_ptr<models::StrandInteraction> interaction_;
+  std::unique_ptr<Halo> halo_;  // or null
   std::unique_ptr<Head> head_;
   std::unique_ptr<HeadGuard> guard_;  // or null
   bool guarded_;                      // whether it judges
+  bool lanes_;
   long steps_ = 0;
   std::unique_ptr<DeviceHead> device_;  // or null
   // By numbers, of look(): positions, velocities, and what Head::ahead() says.

@@ -11,10 +11,14 @@
 namespace tress::simulation {
 namespace {
 
-/// An option of the model that heads do not have.
+std::span<const StrandSource> sources_of(const Scene& scene) {
+  if (scene.tables == nullptr) return {};
+  return scene.tables->sources;
+}
+
+/// An option of the model that lanes do not have.
 NoHead no_option(const Parameters& p, const char* key, std::string remedy) {
-  return {fmt::format("{} = \"{}\" does not come as a head", key, p.word(key)),
-          std::move(remedy)};
+  return {fmt::format("{} = \"{}\"", key, p.word(key)), std::move(remedy)};
 }
 
 /// Whether steps are solved with all derivatives of the residual.
@@ -26,16 +30,26 @@ bool has_exact_tangent(const Scene& scene) {
 /// The tangent of the scene's method: all derivatives, or `of_one` for one correction.
 std::optional<NoHead> no_tangent(const Scene& scene, const char* of_one) {
   const bool exact = has_exact_tangent(scene);
-  const std::string needed = exact ? "exact" : of_one;
-  if (scene.model_options.word("tangent") == needed) return {};
-  return no_option(scene.model_options, "tangent",
-                   fmt::format("give [model] tangent = \"{}\"{}", needed,
-                               exact ? " to " + scene.integrator
-                                     : ", or [integrator] id = \"backward_euler\""));
+  const std::string_view needed = exact ? "exact" : of_one,
+                         given = scene.model_options.word("tangent");
+  if (given == needed) return {};
+  return NoHead{fmt::format("tangent = \"{}\" with {}", given, scene.integrator),
+                fmt::format("give [model] tangent = \"{}\"{}", needed,
+                            exact ? " to " + scene.integrator
+                                  : ", or [integrator] id = \"backward_euler\"")};
+}
+
+std::optional<NoHead> no_integrator(const Scene& scene) {
+  if (head_method(scene)) return {};
+  return NoHead{scene.integrator,
+                "use [integrator] id = \"semi_implicit_euler\", "
+                "\"linearly_implicit_midpoint\", \"backward_euler\" or "
+                "\"tr_bdf2\""};
 }
 
 std::optional<NoHead> no_springs(const Scene& scene) {
   const Parameters& p = scene.model_options;
+  if (auto no = no_integrator(scene)) return no;
   if (p.word("bending") != "angular") {
     return no_option(p, "bending", "give [model] bending = \"angular\"");
   }
@@ -49,20 +63,19 @@ std::optional<NoHead> no_model(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (steps_springs(scene)) return no_springs(scene);
   if (scene.model->id != "super_helix" && !steps_chains(scene)) {
-    return NoHead{fmt::format("{} does not come as a head", scene.model->id),
+    return NoHead{std::string(scene.model->id),
                   "use [model] id = \"super_helix\", \"articulated_chain\" or "
                   "\"mass_spring\""};
   }
+  if (auto no = no_integrator(scene)) return no;
   if (p.word("modes") == "bend_planar") {
-    return NoHead{"strands of a head bend in both directions",
-                  "give [model] modes = \"bend_twist\" or \"bend\""};
+    return no_option(p, "modes", "give [model] modes = \"bend_twist\" or \"bend\"");
   }
   if (auto no = no_tangent(scene, "stiff")) return no;
   if (scene.integrator == "tr_bdf2" && p.word("modes") == "bend_twist" &&
       p.word("rotary_inertia") == "off") {
     return NoHead{
-        "a head by tr_bdf2 starts from an acceleration, which twist without "
-        "inertia does not have",
+        "tr_bdf2 and twist without inertia, whose acceleration at the start is unknown",
         "give [model] rotary_inertia = \"on\" or modes = \"bend\""};
   }
   if (p.word("solver") != "recursive") {
@@ -76,49 +89,26 @@ std::optional<NoHead> no_model(const Scene& scene) {
 }
 
 std::optional<NoHead> no_method(const Scene& scene) {
-  if (!head_method(scene)) {
-    return NoHead{fmt::format("{} does not step a head", scene.integrator),
-                  "use [integrator] id = \"semi_implicit_euler\", "
-                  "\"linearly_implicit_midpoint\", \"backward_euler\" or "
-                  "\"tr_bdf2\""};
-  }
   if (has_exact_tangent(scene) && scene.options.refresh != Refresh::every_iteration) {
-    return NoHead{"heads have a new matrix in every iteration",
-                  "leave out [integrator] refresh"};
+    return NoHead{"kept matrices", "leave out [integrator] refresh"};
   }
   if (scene.rest == RestStrains::inverse) {
-    return NoHead{"strands of a head have the natural strains of their tables",
-                  "leave out rest = \"inverse\""};
+    return NoHead{"rest = \"inverse\"", "leave out rest"};
   }
   const Options& options = scene.options;
   if (options.max_work > 0) {
-    return NoHead{"a head does not count its work", "leave out [integrator] max_work"};
+    return NoHead{"max_work", "leave out [integrator] max_work"};
   }
-  if (options.tolerance > 0) {
-    if (options.max_steps == Options{}.max_steps) return {};
-    return NoHead{"strands of a head that choose their steps are not stopped after some",
+  if (options.tolerance > 0 && options.max_steps != Options{}.max_steps) {
+    return NoHead{"max_steps with a tolerance",
                   "give [integrator] min_step_s instead of max_steps"};
-  }
-  if (1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
-    return NoHead{"more than max_steps steps of dt_s from frame to frame",
-                  "give a longer dt_s, or more frames_1_s"};
   }
   return {};
 }
 
 std::optional<NoHead> no_strands(const Scene& scene) {
-  const std::vector<StrandSource>& sources = scene.tables->sources;
-  const int elements = sources.front().table.values().whole("elements");
-  for (const StrandSource& source : sources) {
+  for (const StrandSource& source : sources_of(scene)) {
     const Parameters& p = source.table.values();
-    if (p.whole("elements") != elements) {
-      return NoHead{
-          fmt::format("strands of {} and of {} elements", elements, p.whole("elements")),
-          "give all equally many elements"};
-    }
-    if (source.groom && p.whole("guides") > 0) {
-      return NoHead{"all strands of a head are simulated", "leave out guides"};
-    }
     if (source.file && p.word("cuts") != "equal") {
       return NoHead{"elements of different lengths", "give [groom] cuts = \"equal\""};
     }
@@ -132,10 +122,10 @@ std::optional<NoHead> no_strands(const Scene& scene) {
   return {};
 }
 
-/// Heads with bodies alone, beside what all heads have; empty: it is no such head.
+/// Lanes with bodies alone, beside what all have; empty: there are others.
 std::string only_with_bodies(const Scene& scene) {
-  if (steps_springs(scene)) return "a head of springs";
-  return has_exact_tangent(scene) ? "a head by " + scene.integrator : "";
+  if (steps_springs(scene)) return "mass_spring";
+  return has_exact_tangent(scene) ? scene.integrator : "";
 }
 std::string with_others(const Scene& scene) {
   return steps_springs(scene) ? "leave it out, or use [model] id = \"super_helix\""
@@ -148,22 +138,69 @@ std::optional<NoHead> no_effects(const Scene& scene) {
   for (const EffectChoice& choice : scene.effects) {
     const auto effect = make_effect(scene, choice);
     if (effect != nullptr) {
-      if (auto no = models::refused_by_heads(*effect))
-        return NoHead{no->reason, no->remedy};
+      if (auto no = models::refused_by_heads(*effect)) {
+        return NoHead{fmt::format("[effects.{}], as {}", choice.entry->id, no->reason),
+                      "leave it out"};
+      }
       if (!bodies.empty() && !effect->uniform_acceleration() && !effect->viscosity() &&
           effect->rigid_contact() == nullptr) {
-        return NoHead{fmt::format("[effects.{}] on {}", choice.entry->id, bodies),
+        return NoHead{fmt::format("[effects.{}] with {}", choice.entry->id, bodies),
                       with_others(scene)};
       }
-    } else if (!bodies.empty() && &choice.parameters == scene.interaction()) {
-      return NoHead{"interaction on " + bodies, with_others(scene)};
-    } else if (&choice.parameters != scene.interaction()) {
-      return NoHead{fmt::format("a head does not know [effects.{}]", choice.entry->id),
-                    "leave it out"};
-    } else if (choice.parameters.word("coupling") == "monolithic") {
-      return NoHead{"strands of a head are no system of one",
-                    "give [effects.strand_interaction] coupling = \"lagged\""};
+    } else if (!bodies.empty()) {
+      return NoHead{"[effects.strand_interaction] with " + bodies, with_others(scene)};
     }
+  }
+  return {};
+}
+
+std::optional<NoHead> no_number(const Scene& scene, models::HeadNumber number) {
+  const bool narrow = number == models::HeadNumber::float32;
+  if (narrow && steps_springs(scene)) {
+    return NoHead{"springs in 32 bits, which do not resolve their strains",
+                  "give --bits 64"};
+  }
+  if (narrow && steps_chains(scene) && scene.integrator == "linearly_implicit_midpoint") {
+    return NoHead{
+        "rigid links in 32 bits, whose rounding a single correction does not mend",
+        "give --bits 64, or [integrator] id = \"tr_bdf2\""};
+  }
+  const double tolerance = scene.options.tolerance;
+  if (tolerance == 0 || models::resolve(number, tolerance)) return {};
+  return NoHead{
+      fmt::format("tolerance = {:g} in {} bits, which do not resolve it", tolerance,
+                  narrow ? 32 : 64),
+      narrow ? "give --bits 64, or a larger tolerance" : "give a larger tolerance"};
+}
+
+/// Strands that are no systems of their own, or that are not all simulated.
+std::optional<NoHead> no_strand_alone(const Scene& scene) {
+  for (const StrandSource& source : sources_of(scene)) {
+    if (source.groom && source.table.values().whole("guides") > 0) {
+      return NoHead{"all strands of a batch are simulated", "leave out guides"};
+    }
+  }
+  if (scene.friction() != nullptr) {
+    return NoHead{"[effects.strand_friction] solves the contacts of all strands together",
+                  "leave it out, or give --as strands"};
+  }
+  if (scene.mesh() != nullptr) {
+    return NoHead{"[effects.control_mesh] ties all strands into one mesh",
+                  "leave it out, or give --as strands"};
+  }
+  if (scene.rest == RestStrains::inverse && scene.unstable == Unstable::drop) {
+    return NoHead{"unstable = \"drop\" leaves strands out before the run",
+                  "use unstable = \"stiffen\" or \"keep\", or give --as strands"};
+  }
+  const Parameters* interaction = scene.interaction();
+  if (interaction == nullptr) return {};
+  if (interaction->word("coupling") == "monolithic") {
+    return NoHead{"strands with monolithic coupling are one system",
+                  "give [effects.strand_interaction] coupling = \"lagged\""};
+  }
+  if (scene.options.tolerance > 0) {
+    return NoHead{"strands that touch and choose their steps share their intervals",
+                  "give dt_s instead of tolerance, or --as strands"};
   }
   return {};
 }
@@ -180,34 +217,36 @@ std::optional<models::HeadMethod> head_method(const Scene& scene) {
   return {};
 }
 
+std::optional<NoHead> no_lanes(const Scene& scene, models::HeadNumber number) {
+  if (auto no = no_model(scene)) return no;
+  if (auto no = no_method(scene)) return no;
+  if (auto no = no_number(scene, number)) return no;
+  if (auto no = no_strands(scene)) return no;
+  return no_effects(scene);
+}
+
 std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
   const Scene& scene = outline.scene;
   if (scene.strands.empty()) {
-    return NoHead{fmt::format("{} brings its own geometry", scene.model->id),
-                  "use [model] id = \"super_helix\""};
+    return NoHead{fmt::format("{} brings its own geometry and is one system: there are "
+                              "no strands to batch",
+                              scene.model->id),
+                  "give --as strands"};
   }
-  if (auto no = no_model(scene)) return no;
-  if (steps_springs(scene) && number != models::HeadNumber::float64) {
-    return NoHead{"springs in 32 bits, which do not resolve their strains",
-                  "give --bits 64"};
+  if (auto no = no_strand_alone(scene)) return no;
+  const auto without = no_lanes(scene, number);
+  if (without && number != models::HeadNumber::float64) {
+    const bool named = without->remedy.find("--bits 64") != std::string::npos;
+    return NoHead{"no SIMD lanes for " + without->reason,
+                  without->remedy + (named ? "" : ", or --bits 64")};
   }
-  if (steps_chains(scene) && scene.integrator == "linearly_implicit_midpoint" &&
-      number != models::HeadNumber::float64) {
-    return NoHead{
-        "rigid links in 32 bits, whose rounding a single correction does not mend",
-        "give --bits 64, or [integrator] id = \"tr_bdf2\""};
+  const Options& options = scene.options;
+  if (!scene.chooses_steps() &&
+      1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
+    return NoHead{"more than max_steps steps of dt_s from frame to frame",
+                  "give a longer dt_s, or more frames_1_s"};
   }
-  if (auto no = no_method(scene)) return no;
-  const double tolerance = scene.options.tolerance;
-  if (tolerance > 0 && !models::resolve(number, tolerance)) {
-    const bool narrow = number == models::HeadNumber::float32;
-    return NoHead{
-        fmt::format("tolerance = {:g} in {} bits, which do not resolve it", tolerance,
-                    narrow ? 32 : 64),
-        narrow ? "give --bits 64, or a larger tolerance" : "give a larger tolerance"};
-  }
-  if (auto no = no_strands(scene)) return no;
-  return no_effects(scene);
+  return {};
 }
 
 }  // namespace tress::simulation

@@ -10,21 +10,26 @@
 
 namespace tress::simulation {
 
-/// Why a scene is no head of hair, and what would make it one.
+/// Why a scene does not run as asked for, and what would make it so.
 struct NoHead {
   std::string reason, remedy;
 };
 
-/// What speaks against running a scene as one Head (models/head/head.h); nothing if it
-/// can, with such numbers. Of strands it sees what their tables say: make_head() throws
-/// InputError where a strand of them does not fit.
+/// Why the strands of a scene do not run in SIMD lanes with such numbers: the part of the
+/// scene that has none. They are then systems of their own (ReplicatedHead).
+std::optional<NoHead> no_lanes(const Scene& scene,
+                               models::HeadNumber number = models::HeadNumber::float64);
+
+/// What speaks against running a scene as one batch, a Head (models/head/head.h), with
+/// such numbers: physics, or what the scene asks for. Of strands it sees what their
+/// tables say: make_head() throws InputError where a strand of them does not fit.
 std::optional<NoHead> no_head(const SceneOutline& outline,
                               models::HeadNumber number = models::HeadNumber::float64);
 
-/// Of a scene that can be a head: of springs, of rigid links, or else of super-helices.
+/// Of a scene that has lanes: of springs, of rigid links, or else of super-helices.
 bool steps_springs(const Scene& scene);
 bool steps_chains(const Scene& scene);
-/// Methods that heads have, by the ids of integrators.
+/// Methods that lanes have, by the ids of integrators.
 inline constexpr std::pair<std::string_view, models::HeadMethod> head_methods[] = {
     {"semi_implicit_euler", models::HeadMethod::semi_implicit_euler},
     {"linearly_implicit_midpoint", models::HeadMethod::linearly_implicit_midpoint},

@@ -11,6 +11,9 @@
 #include "models/contact/contact_law.h"
 #include "models/contact/strand_partners.h"
 #include "models/reduced/reduced_strand.h"
+#include "simulation/head/lane_guard.h"
+#include "simulation/head/replicated_head.h"
+#include "simulation/rest/held_shape.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/threads/crew.h"
 
@@ -112,12 +115,118 @@ Extent extent_of(const Strands& series, Crew& crew, Ranks& ranks, std::span<Vec>
   return {ranks.largest(all.length), ranks.largest(all.winding)};
 }
 
+/// use(strands, place of the first) of a rank's own strands, by their places.
+template <class Strands, class Use>
+void each_own(const Strands& series, const HeadDivision& division, Crew& crew, Use use) {
+  constexpr std::size_t at_once = 1024;
+  const std::size_t own = division.own().size();
+  std::vector<Strand> made;
+  for (std::size_t begin = 0; begin < own; begin += at_once) {
+    made.resize(std::min(at_once, own - begin));
+    in_parts(crew, 0, made.size(), parts, [&](std::size_t k, std::size_t) {
+      made[k] = series.strand(division.own()[begin + k]);
+    });
+    use(std::span<const Strand>(made), begin);
+  }
+}
+
+template <class Strands>
+void add_in_lanes(const Scene& scene, const Strands& series, const HeadPack& pack,
+                  const Extent& all, Crew& crew, Ranks& ranks, SceneHead& to) {
+  HeadOptions options = options_of(scene);
+  options.longest = all.length;
+  if (options.points == 0) options.points = points_of(scene, all.winding);
+  const Strand strand_0 = series.strand(0);
+  options.line_density =
+      strand_0.material.density * strand_0.segments.front().section.area();
+  const HeadDivision& division = *to.division;
+  const std::size_t own = division.own().size();
+  if (const Parameters* between = scene.interaction()) {
+    to.interaction = std::make_unique<models::StrandInteraction>(
+        *between, std::vector<int>(own, options.elements + 1));
+  }
+  std::vector<std::shared_ptr<ChosenEffect>> chosen;
+  to.head = empty_head(scene, options, pack);
+  auto guard = std::make_unique<LaneGuard>(scene, options, at_rest_in_head(scene));
+  to.head->reserve(own);
+  guard->reserve(own);
+  each_own(series, division, crew, [&](std::span<const Strand> made, std::size_t begin) {
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      models::Effects effects;
+      if (to.interaction) {
+        auto effect = to.interaction->effect(division.order()[begin + k]);
+        if (ranks.size() > 1) {
+          chosen.push_back(std::make_shared<ChosenEffect>(std::move(effect)));
+          effects.push_back(chosen.back());
+        } else {
+          effects.push_back(std::move(effect));
+        }
+      }
+      guard->add(made[k], effects);
+      to.head->add(made[k], std::move(effects));
+    }
+  });
+  to.guard = std::move(guard);
+  if (chosen.empty()) return;
+  to.halo = std::make_unique<Halo>(ranks, to.division, options.motion, *to.interaction,
+                                   std::move(chosen),
+                                   static_cast<std::size_t>(options.elements + 1));
+}
+
+/// Strands see all others, those of other ranks too, where they begin.
+template <class Strands>
+void look_at_start(const Scene& scene, const Strands& series, SceneHead& to) {
+  Scene whole = scene;
+  whole.strands.clear();
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    whole.strands.push_back(series.strand(k));
+  }
+  const std::vector<double> x = points_at_start(whole);
+  to.interaction->update(x, std::vector<double>(x.size()));
+}
+
+template <class Strands>
+void replicate(const Scene& scene, const Strands& series, Crew& crew, SceneHead& to) {
+  const std::size_t elements = scene.strands.front().segments.size();
+  const bool held = scene.rest == RestStrains::inverse;
+  if (const Parameters* between = scene.interaction()) {
+    to.interaction = std::make_unique<models::StrandInteraction>(
+        *between, std::vector<int>(series.size(), static_cast<int>(elements) + 1));
+    if (held) look_at_start(scene, series, to);
+  }
+  const HeadDivision& division = *to.division;
+  const auto between = [&](std::size_t number) {
+    return to.interaction ? models::Effects{to.interaction->effect(number)}
+                          : models::Effects{};
+  };
+  auto head = std::make_unique<ReplicatedHead>(scene, static_cast<int>(elements));
+  head->reserve(division.own().size());
+  Scene some = scene;
+  each_own(series, division, crew, [&](std::span<const Strand> made, std::size_t begin) {
+    const auto numbers = division.own().subspan(begin, made.size());
+    some.strands.assign(made.begin(), made.end());
+    if (held) {
+      for (HeldShape& one : held_shapes(
+               some, [&](std::size_t k) { return between(numbers[k]); }, crew, numbers)) {
+        to.held.push_back(std::move(one));
+      }
+    }
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      const HeldShape* const holds = held ? &to.held[begin + k] : nullptr;
+      const Strand strand = held ? stiffer(made[k], *holds) : made[k];
+      head->add({strand, between(numbers[k]), holds}, numbers[k]);
+    }
+  });
+  to.lanes = false;
+  to.guard = head->guard();
+  to.head = std::move(head);
+}
+
 /// make_head() for a StrandSeries, or for Held strands.
 template <class Strands>
 SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pack,
                   int threads, Ranks& ranks, std::span<const double> cost) {
   Crew crew(threads);
-  HeadOptions options = options_of(scene);
   const bool divided = ranks.size() > 1;
   if (divided && series.size() < static_cast<std::size_t>(ranks.size())) {
     throw InputError(fmt::format("{} strands for {} ranks", series.size(), ranks.size()),
@@ -127,58 +236,35 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   const bool by_roots = divided || scene.interaction() != nullptr;
   std::vector<Vec> roots(by_roots ? series.size() : 0);
   const Extent all = extent_of(series, crew, ranks, std::span(roots));
-  options.longest = all.length;
-  if (options.points == 0) options.points = points_of(scene, all.winding);
-  const Strand strand_0 = series.strand(0);
-  options.line_density =
-      strand_0.material.density * strand_0.segments.front().section.area();
   const std::vector<double> equal(cost.empty() ? roots.size() : 0, 1);
-  SceneHead made_head;
-  made_head.division = by_roots ? std::make_shared<HeadDivision>(
-                                      roots, cost.empty() ? std::span(equal) : cost,
-                                      ranks.size(), ranks.rank())
-                                : std::make_shared<HeadDivision>(series.size());
-  const HeadDivision& division = *made_head.division;
-  const std::size_t own = division.own().size();
-  if (const Parameters* between = scene.interaction()) {
-    made_head.interaction = std::make_unique<models::StrandInteraction>(
-        *between, std::vector<int>(own, options.elements + 1));
+  SceneHead made;
+  made.division = by_roots ? std::make_shared<HeadDivision>(
+                                 roots, cost.empty() ? std::span(equal) : cost,
+                                 ranks.size(), ranks.rank())
+                           : std::make_shared<HeadDivision>(series.size());
+  made.guarded = scene.guard;
+  if (no_lanes(scene, pack.number)) {
+    replicate(scene, series, crew, made);
+  } else {
+    add_in_lanes(scene, series, pack, all, crew, ranks, made);
   }
-  std::vector<std::shared_ptr<ChosenEffect>> chosen;
-  made_head.head = empty_head(scene, options, pack);
-  Head* const head = made_head.head.get();
-  made_head.guard = std::make_unique<HeadGuard>(scene, options, at_rest_in_head(scene));
-  made_head.guarded = scene.guard;
-  head->reserve(own);
-  made_head.guard->reserve(own);
-  constexpr std::size_t at_once = 1024;
-  std::vector<Strand> made(std::min(at_once, own));
-  for (std::size_t begin = 0; begin < own; begin += at_once) {
-    const std::size_t end = std::min(begin + at_once, own);
-    in_parts(crew, begin, end, parts, [&](std::size_t k, std::size_t) {
-      made[k - begin] = series.strand(division.own()[k]);
-    });
-    for (std::size_t k = begin; k < end; ++k) {
-      models::Effects effects;
-      if (made_head.interaction) {
-        auto effect = made_head.interaction->effect(division.order()[k]);
-        if (divided) {
-          chosen.push_back(std::make_shared<ChosenEffect>(std::move(effect)));
-          effects.push_back(chosen.back());
-        } else {
-          effects.push_back(std::move(effect));
-        }
-      }
-      made_head.guard->add(made[k - begin], effects);
-      head->add(made[k - begin], std::move(effects));
-    }
+  return made;
+}
+
+/// A block.
+std::unique_ptr<Head> few_strands(const Scene& scene, const HeadPack& pack, bool lanes) {
+  if (!lanes) {
+    const auto elements = static_cast<int>(scene.strands.front().segments.size());
+    auto head = std::make_unique<ReplicatedHead>(scene, elements);
+    head->add(scene.strands.front());
+    return head;
   }
-  if (!chosen.empty()) {
-    made_head.halo = std::make_unique<Halo>(
-        ranks, made_head.division, options.motion, *made_head.interaction,
-        std::move(chosen), static_cast<std::size_t>(options.elements + 1));
-  }
-  return made_head;
+  HeadOptions options = options_of(scene);
+  options.longest = 1;
+  if (options.points == 0) options.points = 8;
+  std::unique_ptr<Head> head = empty_head(scene, options, pack);
+  for (int k = 0; k < pack.lanes; ++k) head->add(scene.strands.front());
+  return head;
 }
 
 }  // namespace
@@ -198,26 +284,27 @@ SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threa
   return head_of(outline.scene, *outline.series, pack, threads, ranks, cost);
 }
 
-double longest_step(const Scene& scene) {
+double longest_step(const Scene& scene, bool lanes) {
   const Options& options = scene.options;
-  if (options.tolerance == 0) return options.step;
+  if (lanes ? options.tolerance == 0 : scene.interaction() != nullptr) {
+    return options.step;
+  }
+  if (!lanes) return std::numeric_limits<double>::infinity();
   return options.max_step > 0 ? options.max_step
                               : std::numeric_limits<double>::infinity();
 }
 
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
                        std::size_t strands) {
-  HeadOptions options = options_of(outline.scene);
-  options.longest = 1;
-  if (options.points == 0) options.points = 8;
-  const std::unique_ptr<Head> block = empty_head(outline.scene, options, pack);
-  const auto lanes = static_cast<std::size_t>(pack.lanes);
-  for (std::size_t k = 0; k < lanes; ++k) block->add(outline.scene.strands.front());
+  const Scene& scene = outline.scene;
+  const bool in_lanes = !no_lanes(scene, pack.number);
+  const std::unique_ptr<Head> block = few_strands(scene, pack, in_lanes);
+  const auto lanes = static_cast<std::size_t>(in_lanes ? pack.lanes : 1);
   const std::size_t blocks = (strands + lanes - 1) / lanes;
   std::size_t bytes = block->bytes() * blocks;
-  if (const Parameters* between = outline.scene.interaction()) {
-    const models::ContactLaw law(*between, outline.scene.name);
-    const auto& segments = outline.scene.strands.front().segments;
+  if (const Parameters* between = scene.interaction()) {
+    const models::ContactLaw law(*between, scene.name);
+    const auto& segments = scene.strands.front().segments;
     const std::size_t of_point =
         models::StrandPartners::bytes_of_point(segments.front().length, law.reach());
     // Places and velocities of the points, and what others keep of them.

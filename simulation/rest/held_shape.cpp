@@ -143,15 +143,16 @@ HeldShape held_shape(const Scene& scene, std::size_t k, const Effects& between) 
 
 std::vector<HeldShape> held_shapes(const Scene& scene,
                                    const std::function<Effects(std::size_t)>& between,
-                                   Crew& crew) {
+                                   Crew& crew, std::span<const std::size_t> numbers) {
   const Scene held_scene = still(scene);
   std::vector<HeldShape> all(scene.strands.size());
   in_parts(crew, 0, all.size(), all.size(), [&](std::size_t k, std::size_t) {
     try {
       all[k] = held_shape(held_scene, k, between(k));
     } catch (const std::runtime_error& error) {
-      throw InputError(fmt::format("strand {}: {}", k, error.what()), inverse_rest,
-                       "change its shape or what acts on it, or leave out rest");
+      throw InputError(
+          fmt::format("strand {}: {}", numbers.empty() ? k : numbers[k], error.what()),
+          inverse_rest, "change its shape or what acts on it, or leave out rest");
     }
   });
   return all;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -50,11 +51,12 @@ inline constexpr double stiffened = 2;
 /// O(n^3) for each strand, n its coordinates. Equilibria as unknowns of the natural
 /// shape: [Hadap 2006; Derouet-Jourdan et al. 2013].
 ///
-/// `between`: effects between strands, which know where all are. Throws InputError where
+/// `between`: effects between strands, which know where all are. `numbers`: of the
+/// strands in messages, if they are not all of a scene. Throws InputError where
 /// the model has no such natural strains, a root is free or a balance does not exist.
 std::vector<HeldShape> held_shapes(
     const Scene& scene, const std::function<models::Effects(std::size_t)>& between,
-    Crew& crew);
+    Crew& crew, std::span<const std::size_t> numbers = {});
 
 /// Root and tips of elements of all strands at t = 0, (3 points) m.
 std::vector<double> points_at_start(const Scene& scene);

@@ -19,12 +19,6 @@ namespace {
 constexpr std::size_t measured = 8;   // strands
 constexpr std::size_t small = 1'000;  // strands; smaller scenes are not measured
 
-/// Bytes in use on the heap.
-double held() {
-  const struct mallinfo2 info = ::mallinfo2();
-  return static_cast<double>(info.uordblks + info.hblkhd);
-}
-
 double elements(const Scene& scene) {
   double sum = 0;
   for (const Strand& strand : scene.strands) {
@@ -34,6 +28,11 @@ double elements(const Scene& scene) {
 }
 
 }  // namespace
+
+std::size_t heap_in_use() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
 
 double free_memory() {
   double bytes = std::numeric_limits<double>::infinity();
@@ -57,9 +56,10 @@ void refuse_too_large(const Scene& scene) {
   if (scene.strands.size() < small) return;
   Scene few = scene;
   few.strands.resize(measured);
-  const double before = held();
+  const auto before = static_cast<double>(heap_in_use());
   const World world(few);
-  const double needed = (held() - before) * elements(scene) / elements(few);
+  const double needed =
+      (static_cast<double>(heap_in_use()) - before) * elements(scene) / elements(few);
   const double free = free_memory();
   if (needed <= free) return;
   throw InputError(

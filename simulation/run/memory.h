@@ -9,6 +9,9 @@ namespace tress::simulation {
 /// scenes are not measured.
 void refuse_too_large(const Scene& scene);
 
+/// Bytes on the heap of this program.
+std::size_t heap_in_use();
+
 /// Bytes that are available: of the machine, and of the address space if it is limited.
 double free_memory();
 

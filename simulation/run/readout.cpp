@@ -35,7 +35,8 @@ Readout::Readout(const Scene& scene, const World& world)
   };
   add("t_s", "time");
   for (const char* axis : {"x", "y", "z"}) {
-    add(std::string("tip_") + axis + "_m", "tip, mean over the strands");
+    add(std::string("tip_") + axis + "_m",
+        "tip, mean over the strands that have not failed");
   }
   add("kinetic_j", "kinetic energy of all strands");
   if (scene.strands.empty()) {
@@ -56,6 +57,9 @@ Readout::Readout(const Scene& scene, const World& world)
         "of the control mesh, of " + std::to_string(world.mesh()->mesh().links.size()));
     add("mesh_contacts", "points near a strip of the control mesh");
     add("control_mesh_j", "energy of the links that hold");
+  }
+  if (scene.failed_strands == FailedStrands::stay) {
+    add("lost_strands", "strands that have failed and stay where they are");
   }
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
@@ -107,6 +111,9 @@ Frame3d Readout::read(World& world) {
     row.push_back(static_cast<double>(mesh->broken()));
     row.push_back(static_cast<double>(mesh->contacts()));
     row.push_back(mesh->energy());
+  }
+  if (scene_.failed_strands == FailedStrands::stay) {
+    row.push_back(static_cast<double>(world.lost().size()));
   }
   const Stats now = world.stats();
   const auto steps = static_cast<double>(now.steps - before_.steps);
@@ -203,7 +210,9 @@ void Readout::read_points(World& world, Frame3d& frame) {
     // Strands are separate lines.
     if (!scene_.strands.empty()) read_loads(world, k, end, contacts, frame);
     end += points;
-    tip = tip + (1.0 / static_cast<double>(world.strands())) * load3(&x[3 * (end - 1)]);
+    if (world.lost(k)) continue;
+    const std::size_t left = world.strands() - world.lost().size();
+    tip = tip + (1.0 / static_cast<double>(left)) * load3(&x[3 * (end - 1)]);
   }
   for (const double component : {tip.x, tip.y, tip.z}) frame.series.push_back(component);
 }

@@ -32,23 +32,18 @@ void World::restore(const Snapshot& snapshot) {
       all.v.insert(all.v.end(), one.v.begin(), one.v.end());
       all.memory.insert(all.memory.end(), one.memory.begin(), one.memory.end());
     }
-    body.system->recall(all.memory);
-    // Contact sets follow the state; if it was accepted before, nothing changes.
-    body.system->accept(t_, all.q, all.v);
-    body.status = body.integrator->start(t_, all.q, all.v);
-    body.before = {};
-    body.indicator = 0;
-    body.shortened = 0;
-    body.failed_work = 0;
-    body.gave_up = false;
+    body.start(t_, std::move(all));
+    const auto of_body = [&](const LostStrand& one) { return one.strand == body.first; };
+    if (std::ranges::any_of(snapshot.lost, of_body)) body.stay(body.integrator->q());
   }
+  lost_ = snapshot.lost;
   failure_.clear();
   x_.forget();
   u_.forget();
   if (rubbing_) rubbing_->restart(snapshot.rubs);
   if (mesh_) mesh_->recall(snapshot.mesh);
   exchange();
-  if (interaction_ && options_.tolerance > 0) start_control();
+  if (interaction_ && maker_.options().tolerance > 0) start_control();
   for (Body& body : bodies_) {
     if (!body.guard) continue;
     if (guards.empty()) {
@@ -61,12 +56,13 @@ void World::restore(const Snapshot& snapshot) {
 }
 
 Snapshot World::snapshot() {
-  Snapshot snapshot{.t = t_, .strands = {}, .guards = {}, .rubs = {}, .mesh = {}};
+  Snapshot snapshot{
+      .t = t_, .strands = {}, .guards = {}, .rubs = {}, .mesh = {}, .lost = lost_};
   if (rubbing_) snapshot.rubs = rubbing_->memory();
   if (mesh_) snapshot.mesh = mesh_->memory();
   for (const Body& body : bodies_) {
-    snapshot.add(body.integrator->q(), body.integrator->v(), body.system->memory(),
-                 body.coordinates, body.memory);
+    snapshot.add(body.seen_q(), body.seen_v(), body.system->memory(), body.coordinates,
+                 body.memory);
     if (!body.guard) continue;
     const auto gathered = body.guard->memory();
     snapshot.guards.insert(snapshot.guards.end(), gathered.begin(), gathered.end());
@@ -84,15 +80,15 @@ double World::error_indicator() const {
 
 Energies World::energies() {
   Energies sum;
-  sum.effects.resize(effects_.size());
+  sum.effects.resize(maker_.effects().size());
   for (const Body& body : bodies_) {
     Energetics* energetics = body.system->energetics();
-    if (energetics == nullptr) continue;
+    if (energetics == nullptr || body.stays()) continue;
     const In q = body.integrator->q(), v = body.integrator->v();
     const Energy one = energetics->energy(t_, q, v);
     double of_effects = 0;
     for (std::size_t i = 0; i < body.meters.size(); ++i) {
-      sum.effects[i % effects_.size()] += body.meters[i]->last();
+      sum.effects[i % maker_.effects().size()] += body.meters[i]->last();
       of_effects += body.meters[i]->last();
     }
     if (body.coupled != nullptr) of_effects += body.coupled->contact_potential(t_, q, v);
@@ -106,7 +102,7 @@ std::vector<ContactForce> World::contact_forces() {
   std::vector<ContactForce> all;
   for (const Body& body : bodies_) {
     Energetics* energetics = body.system->energetics();
-    if (energetics == nullptr) continue;
+    if (energetics == nullptr || body.stays()) continue;
     const auto look = [&](bool forces) {
       for (const auto& meter : body.meters) meter->look(forces && meter->contact());
     };
@@ -117,8 +113,9 @@ std::vector<ContactForce> World::contact_forces() {
       const Metered& meter = *body.meters[i];
       if (!meter.contact()) continue;
       for (std::size_t c = 0; c < meter.places().size(); c += 3) {
-        all.push_back({body.first + i / effects_.size(), i % effects_.size(),
-                       load3(&meter.places()[c]), load3(&meter.forces()[c])});
+        all.push_back({body.first + i / maker_.effects().size(),
+                       i % maker_.effects().size(), load3(&meter.places()[c]),
+                       load3(&meter.forces()[c])});
       }
     }
   }
@@ -129,7 +126,7 @@ double World::stretch() {
   double most = 0;
   for (const Body& body : bodies_) {
     MaterialPoints* points = body.system->material_points();
-    if (points == nullptr) continue;
+    if (points == nullptr || body.stays()) continue;
     most = std::max(most, points->stretch(t_, body.integrator->q()).value_or(0));
   }
   return most;
@@ -148,14 +145,14 @@ const std::vector<double>& World::velocities() {
 void World::read_positions(std::size_t k, double t) {
   if (std::exchange(x_.done[k], 1) != 0 || bodies_[k].points == 0) return;
   const Body& body = bodies_[k];
-  body.system->material_points()->positions(t, body.integrator->q(), x_.of(body));
+  body.system->material_points()->positions(t, body.seen_q(), x_.of(body));
 }
 
 void World::read_velocities(std::size_t k, double t) {
   if (std::exchange(u_.done[k], 1) != 0 || bodies_[k].points == 0) return;
   const Body& body = bodies_[k];
-  body.system->material_points()->velocities(t, body.integrator->q(),
-                                             body.integrator->v(), u_.of(body));
+  body.system->material_points()->velocities(t, body.seen_q(), body.seen_v(),
+                                             u_.of(body));
 }
 
 void World::exchange() {

@@ -14,9 +14,9 @@
 #include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/rest/held_shape.h"
-#include "simulation/run/guard.h"
-#include "simulation/run/metered.h"
+#include "simulation/run/lost_strand.h"
 #include "simulation/run/rubbing.h"
+#include "simulation/run/strand_maker.h"
 #include "simulation/scene/scene.h"
 #include "simulation/threads/crew.h"
 
@@ -25,14 +25,13 @@ namespace tress::simulation {
 /// State of a scene between two steps. New worlds of the same scene that are given the
 /// same snapshot continue identically, bit by bit.
 struct Snapshot {
-  struct OfStrand {
-    std::vector<double> q, v, memory;  // memory: of System::accept
-  };
+  using OfStrand = SteppedSystem::State;
   double t = 0;  // s
   std::vector<OfStrand> strands;
   std::vector<double> guards;  // their Guard::memory(); empty: they start here
   std::vector<double> rubs;    // StrandFriction::memory()
   std::vector<double> mesh;    // ControlMesh::memory()
+  std::vector<LostStrand> lost;
 
   /// Adds the strands of one system: parts of q and v of so many coordinates, and of its
   /// memory.
@@ -46,9 +45,6 @@ struct Exchanges {
   StepControl::Shortest shortest;  // interval; its cause may be a strand that failed
 };
 void add_exchanges(const Exchanges& from, Exchanges& to);
-
-/// Adds the work of one part of a run to that of the others.
-void add_work(const Stats& from, Stats& to);
 
 /// J, of all strands; `elastic` is the potential not due to effects, for a mechanism all.
 struct Energies {
@@ -67,6 +63,7 @@ struct Energies {
 /// coupling = monolithic they are one system. Exact contact between them acts by impulses
 /// at the ends of steps (Rubbing). Strands of equal
 /// discretisation run four at a time if the model supports it (ModelEntry::on_strands).
+/// Where failed strands stay (Scene::failed_strands), each is a system of its own.
 class World {
  public:
   /// Throws InputError if model, strand and effects are incompatible. `held`: that of an
@@ -76,14 +73,15 @@ class World {
   void restore(const Snapshot& snapshot);
   Snapshot snapshot();
 
-  /// Advances all strands to t_end. A strand's step without a solution is divided into 2,
-  /// 4 ... 64 shorter ones, after which the scene's step resumes. This may happen a
-  /// hundred times for each strand; beyond that, the step is too long for the scene.
-  /// stats().rejected counts every failed attempt. Not ok: failure() reports what
-  /// happened, where and when.
+  /// Advances all strands to t_end, as SteppedSystem. Not ok: failure() reports what
+  /// happened, where and when. Where failed strands stay, always ok: see lost().
   Status advance(double t_end);
   double time() const { return t_; }
   const std::string& failure() const { return failure_; }
+  /// Strands that have failed and stay where they were at the start of their last
+  /// advance(), in the order in which they did. Energies leave them out.
+  const std::vector<LostStrand>& lost() const { return lost_; }
+  bool lost(std::size_t strand) const { return stay_ && bodies_[strand].stays(); }
   /// Of all strands. Empty: without guards, or where what changes energy is not a power:
   /// impulses of rigid contact and of friction between strands, other strands that move.
   std::optional<MethodDissipation> dissipation() const;
@@ -130,31 +128,17 @@ class World {
 
  private:
   /// One strand, or several that are advanced as one system.
-  struct Body {
-    std::unique_ptr<System> system;
-    std::unique_ptr<Integrator> integrator;
+  struct Body : SteppedSystem {
+    explicit Body(SteppedSystem made) : SteppedSystem(std::move(made)) {}
+
     std::size_t first = 0;  // strand
     /// Sizes of each strand's coordinates and memory.
     std::vector<std::size_t> coordinates, memory;
     std::size_t first_point = 0, points = 0;
-    /// Effects of its first strand, of the second ...
-    std::vector<std::shared_ptr<const Metered>> meters;
     CoupledStrands* coupled = nullptr;  // the system, where it is one
-    std::optional<Guard> guard;
-    Status status = Status::ok;
-    // The state after the last successful step.
-    double t = 0;
-    std::vector<double> q, v;
-    // Work done before the integrator's last start.
-    Stats before;
-    Stats stats() const;     // including `before`
-    double failed_work = 0;  // of shorter steps that failed, as total_work() counts it
-    double indicator = 0;
-    int shortened = 0;     // steps divided into shorter ones since restore()
-    bool gave_up = false;  // shorter steps did not help
     // Where exchanges are under error control: the start of the interval.
     Rewindable* rewindable = nullptr;
-    Snapshot::OfStrand marked;
+    State marked;
     double marked_t = 0;
     Guard::Memory marked_guard{};
     PointNorm norm;
@@ -162,25 +146,17 @@ class World {
     void rewind();
     /// Its points among those of all strands.
     In part(In all) const { return all.subspan(3 * first_point, 3 * points); }
-
-    bool breached() const { return guard && guard->breach(); }
-    void keep(double at, In new_q, In new_v);
-    Observer observer();
   };
 
-  void add(std::unique_ptr<System> system, std::size_t strands);
-  void guard(std::vector<GuardedStrand> strands);
-  std::vector<GuardedStrand> guarded(std::span<const Strand> strands,
-                                     std::size_t first) const;
-  void add_effects_between(std::size_t strand, Effects& effects) const;
+  void add(SteppedSystem system, std::size_t strands);
+  Effects effects_between(std::size_t strand) const;
   void hold(const Scene& scene);
-  Effects effects_on(std::size_t strand) const;
   void build_strands(const Scene& scene, const Parameters* between);
   void build_coupled(const Scene& scene, const Parameters& between);
   void ready(const Scene& scene);
-  void advance(Body& body, double t, bool last);
-  double work_left(const Body& body) const;
-  Status shorter_steps(Body& body, double end);
+  void advance(Body& body, double t, bool last) {
+    body.advance(maker_.method(), maker_.options(), t, last);
+  }
   std::string name_of(const Body& body) const;
   std::string failure_of(const Body& body) const;
   /// Coordinates of all points at the present state.
@@ -213,9 +189,8 @@ class World {
   Difference difference(In y, In w);
   Status reject(const StepControl::Trial& failed, const Difference* found);
 
-  const IntegratorEntry& integrator_;
-  Options options_;
-  const Effects effects_;  // on each strand
+  const StrandMaker maker_;
+  const bool stay_;  // failed strands do
   std::unique_ptr<StrandInteraction> interaction_;
   std::unique_ptr<ControlMesh> mesh_;
   std::unique_ptr<Rubbing> rubbing_;
@@ -227,6 +202,7 @@ class World {
   Read x_, u_;
   double t_ = 0;
   std::string failure_;
+  std::vector<LostStrand> lost_;
   Crew crew_;
 };
 

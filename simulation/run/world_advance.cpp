@@ -1,55 +1,13 @@
-// Advances a World: strands in parallel, every step checked by their guards, and steps
-// without a solution repeated as shorter ones.
+// Advances a World: strands in parallel, with exchanges between them.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "contract/moving_history.h"
-#include "integrators/catalogue.h"
-#include "integrators/error_indicator.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {
-namespace {
-
-/// A step without a solution is divided into 2, 4 ... 2^halvings shorter ones.
-constexpr int halvings = 6;
-/// Per strand: a run that needs more has too long a step, and its time is unbounded.
-constexpr int most_shortened = 100;
-
-/// Steps that fail are repeated as shorter ones; methods that choose their steps have
-/// done that already.
-bool has_fixed_step(const IntegratorEntry& integrator, const Options& options) {
-  return !integrator.adaptive && options.tolerance == 0;
-}
-
-}  // namespace
-
-void add_work(const Stats& from, Stats& to) {
-  to.steps += from.steps;
-  to.rejected += from.rejected;
-  to.residuals += from.residuals;
-  to.linearizations += from.linearizations;
-  to.solves += from.solves;
-  to.newton_iterations += from.newton_iterations;
-  to.sweeps += from.sweeps;
-  to.solver = from.solver;
-  to.rank_deficiency = std::max(to.rank_deficiency, from.rank_deficiency);
-  to.condition = std::max(to.condition, from.condition);
-  to.rejected_by_error += from.rejected_by_error;
-  to.rejected_by_newton += from.rejected_by_newton;
-  to.contact_iterations += from.contact_iterations;
-  to.contact_unfinished += from.contact_unfinished;
-  to.contact_violation = std::max(to.contact_violation, from.contact_violation);
-  if (from.smallest_step == 0) return;
-  if (to.smallest_step != 0 && to.smallest_step <= from.smallest_step) return;
-  to.smallest_step = from.smallest_step;
-  to.smallest_step_at = from.smallest_step_at;
-  to.smallest_step_cause = from.smallest_step_cause;
-}
-
 void add_exchanges(const Exchanges& from, Exchanges& to) {
   to.accepted += from.accepted;
   to.rejected += from.rejected;
@@ -63,7 +21,7 @@ Status World::advance(double t_end) {
   const double span = t_end - t_;
   const bool exchanges = interaction_ || rubbing_ || mesh_;
   const double count =
-      exchanges ? std::max(1.0, std::ceil(span / options_.step - 1e-9)) : 1.0;
+      exchanges ? std::max(1.0, std::ceil(span / maker_.options().step - 1e-9)) : 1.0;
   const double begin = t_;
   for (long i = 1; i <= static_cast<long>(count); ++i) {
     const double t = i == static_cast<long>(count)
@@ -83,8 +41,14 @@ Status World::advance(double t_end) {
       if (rubbing_) rubbing_->prepare(k, h);
     });
     t_ = t;
-    for (const Body& body : bodies_) {
-      if (body.status == Status::ok) continue;
+    for (Body& body : bodies_) {
+      if (body.status == Status::ok || body.stays()) continue;
+      if (stay_) {
+        lost_.push_back({body.first, body.t, body.failure()});
+        body.stay(body.begun());
+        x_.done[body.first] = u_.done[body.first] = 0;
+        continue;
+      }
       failure_ = failure_of(body);
       return body.status;
     }
@@ -112,96 +76,14 @@ Status World::rub(double h) {
   return done;
 }
 
-/// The guard always checks the last state, even if the method failed there.
-void World::advance(Body& body, double t, bool last) {
-  if (body.status != Status::ok) return;
-  const double span = t - t_,
-               count = std::max(1.0, std::ceil(span / options_.step - 1e-9));
-  const bool again = has_fixed_step(integrator_, options_) &&
-                     count <= static_cast<double>(options_.max_steps);
-  Integrator& method = *body.integrator;
-  body.keep(t_, method.q(), method.v());
-  body.status = method.advance(t, body.observer());
-  while (again && body.status != Status::ok && !body.breached() && !body.gave_up &&
-         work_left(body) > 0 && body.shortened++ < most_shortened) {
-    const double end = body.t + span / count;
-    body.status = shorter_steps(body, end < t - 1e-6 * span / count ? end : t);
-    if (body.status == Status::ok) body.status = method.advance(t, body.observer());
-  }
-  if (!body.guard || body.breached() || (body.status == Status::ok && !last)) return;
-  if (!body.guard->judge(body.t, body.q, body.v)) body.status = Status::fatal;
-}
-
-/// Of Options::max_work, which bounds failed attempts too.
-double World::work_left(const Body& body) const {
-  if (options_.max_work == 0) return std::numeric_limits<double>::infinity();
-  const auto n = static_cast<int>(body.q.size());
-  return options_.max_work - body.failed_work - total_work(body.stats(), n);
-}
-
-/// From the last successful state to `end`, one step further, with as few shorter steps
-/// as needed; from there the method continues with its own step.
-Status World::shorter_steps(Body& body, double end) {
-  const double begin = body.t;
-  const std::vector<double> q = body.q, v = body.v, memory = body.system->memory();
-  const auto gathered = body.guard ? body.guard->memory() : Guard::Memory{};
-  Options shorter = options_;
-  for (int k = 0; k < halvings && work_left(body) > 0; ++k) {
-    ++body.before.rejected;
-    if (options_.max_work > 0) shorter.max_work = work_left(body);
-    shorter.step = (end - begin) / std::ldexp(2.0, k);
-    const auto method = make_integrator(integrator_.id, *body.system, shorter);
-    body.keep(begin, q, v);
-    body.system->recall(memory);
-    body.system->accept(begin, body.q, body.v);
-    if (body.guard) body.guard->recall(gathered);
-    Status status = method->start(begin, body.q, body.v);
-    if (status == Status::ok) status = method->advance(end, body.observer());
-    if (body.breached()) return Status::fatal;
-    if (status != Status::ok) {
-      body.failed_work +=
-          total_work(method->stats(), static_cast<int>(method->q().size()));
-      continue;
-    }
-    add_work(method->stats(), body.before);
-    add_work(body.integrator->stats(), body.before);
-    body.indicator =
-        std::max({body.indicator, indicator_of(*body.integrator), indicator_of(*method)});
-    return body.integrator->start(end, body.q, body.v);
-  }
-  body.gave_up = work_left(body) > 0;
-  return Status::fatal;
-}
-
-/// Stores every state and passes it to the guard.
-Observer World::Body::observer() {
-  return [this](double at, In new_q, In new_v) {
-    keep(at, new_q, new_v);
-    return !guard || (*guard)(at, new_q, new_v);
-  };
-}
-
-void World::Body::keep(double at, In new_q, In new_v) {
-  t = at;
-  q.assign(new_q.begin(), new_q.end());
-  v.assign(new_v.begin(), new_v.end());
-}
-
 std::string World::failure_of(const Body& body) const {
+  const IntegratorEntry& method = maker_.method();
   if (body.breached()) {
-    return fmt::format("{}: {}; guard = false lets it go on",
-                       body.guard->breach()->message(), remedy(integrator_.id, options_));
+    return fmt::format("{}: {}; guard = false lets it go on", body.failure(),
+                       remedy(method.id, maker_.options()));
   }
-  if (work_left(body) <= 0) {
-    return fmt::format("{}: {}; max_work used up by shorter steps: {}", name_of(body),
-                       body.integrator->failure(),
-                       remedy(integrator_.id, options_, Limit::work));
-  }
-  return fmt::format(
-      "{}: {}{}: {}", name_of(body), body.integrator->failure(),
-      body.gave_up ? fmt::format(", nor for {:g} in its place", std::ldexp(1.0, halvings))
-                   : "",
-      remedy(integrator_.id, options_, body.integrator->limit()));
+  return fmt::format("{}: {}: {}", name_of(body), body.failure(),
+                     remedy(method.id, maker_.options(), body.limit()));
 }
 
 std::string World::name_of(const Body& body) const {
@@ -233,12 +115,6 @@ std::string World::not_smooth() const {
     if (!why.empty()) return name_of(body) + ": " + why;
   }
   return {};
-}
-
-Stats World::Body::stats() const {
-  Stats sum = before;
-  add_work(integrator->stats(), sum);
-  return sum;
 }
 
 Stats World::stats() const {

@@ -45,15 +45,17 @@ void World::start_control() {
     body.norm.start(*body.system->material_points(), body.part(positions()));
     time = std::min(time, body.norm.typical_time());
   }
-  control_->start(first_interval * time * std::sqrt(exchange_share * options_.tolerance),
-                  std::max(options_.min_step, shortest_interval * time));
+  control_->start(
+      first_interval * time * std::sqrt(exchange_share * maker_.options().tolerance),
+      std::max(maker_.options().min_step, shortest_interval * time));
 }
 
 Status World::advance_controlled(double t_end) {
   for (long taken = 0; t_ < t_end; ++taken) {
-    if (taken >= options_.max_steps) {
-      failure_ = fmt::format("more than max_steps exchanges needed at t = {:.9g} s: {}",
-                             t_, remedy(integrator_.id, options_, Limit::steps));
+    if (taken >= maker_.options().max_steps) {
+      failure_ =
+          fmt::format("more than max_steps exchanges needed at t = {:.9g} s: {}", t_,
+                      remedy(maker_.method().id, maker_.options(), Limit::steps));
       return Status::fatal;
     }
     if (const Status s = next_interval(t_end); s != Status::ok) return s;
@@ -72,7 +74,8 @@ Status World::next_interval(double t_end) {
   // Two strands do not come nearer by more than the reach in an interval: they could pass
   // each other unseen.
   double longest = interaction_->reach() / (2 * spread(u));
-  if (options_.max_step > 0) longest = std::min(longest, options_.max_step);
+  if (maker_.options().max_step > 0)
+    longest = std::min(longest, maker_.options().max_step);
   for (;;) {
     const StepControl::Trial now = control_->next(stop - begin, longest);
     const double end = now.whole ? stop : begin + now.h;
@@ -121,7 +124,7 @@ World::Difference World::difference(In y, In w) {
   for (Body& body : bodies_) {
     const double size = body.norm.of(body.part(positions()), body.part(velocities()),
                                      body.part(y), body.part(w)) /
-                        (exchange_share * options_.tolerance);
+                        (exchange_share * maker_.options().tolerance);
     if (largest.body == nullptr || size > largest.over) largest = {size, &body};
   }
   return largest;
@@ -136,8 +139,9 @@ Status World::reject(const StepControl::Trial& failed, const Difference* found) 
     failure_ = fmt::format(
         "{}: tolerance {:g} needs exchanges with other strands less than {:.9g} s apart "
         "at t = {:.9g} s, for the error of the {}: {}",
-        name_of(*found->body), options_.tolerance, control_->least(), t_ - failed.h,
-        found->body->norm.where(), remedy(integrator_.id, options_));
+        name_of(*found->body), maker_.options().tolerance, control_->least(),
+        t_ - failed.h, found->body->norm.where(),
+        remedy(maker_.method().id, maker_.options()));
     return Status::fatal;
   }
   control_->unsolved(failed, "strand");

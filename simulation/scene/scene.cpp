@@ -109,6 +109,9 @@ class Reader {
     scene_.unstable = p.word("unstable") == "stiffen" ? Unstable::stiffen
                       : p.word("unstable") == "keep"  ? Unstable::keep
                                                       : Unstable::drop;
+    scene_.failed_strands =
+        p.word("failed_strands") == "stay" ? FailedStrands::stay : FailedStrands::end_run;
+    places_.failed_strands = top.place("failed_strands");
     if (scene_.rest == RestStrains::natural && top.given("unstable")) {
       throw InputError("unstable has no effect without rest = \"inverse\"",
                        top.place("unstable"), "leave it out");

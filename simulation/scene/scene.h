@@ -28,6 +28,9 @@ struct EffectChoice {
 /// fall, or are left out.
 enum class RestStrains { natural, inverse };
 enum class Unstable { stiffen, keep, drop };
+/// What a strand that fails does: it ends the run, or stays where it is while the others
+/// go on.
+enum class FailedStrands { end_run, stay };
 
 /// The contents of a scene file, checked and complete: everything a run needs, with
 /// nothing constructed yet.
@@ -64,6 +67,7 @@ struct Scene {
   bool guard = true;  // impossible states end the run (simulation/run/guard.h)
   RestStrains rest = RestStrains::natural;
   Unstable unstable = Unstable::stiffen;
+  FailedStrands failed_strands = FailedStrands::end_run;
 
   // Of effects between strands; null if the scene names none.
   const Parameters* interaction() const { return parameters_of("strand_interaction"); }

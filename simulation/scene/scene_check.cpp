@@ -103,6 +103,33 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
                    : "use one of: " + able);
 }
 
+/// Whether a strand of the scene can fail alone.
+void check_failed_strands(const Scene& scene, const ScenePlaces& places) {
+  if (scene.failed_strands == FailedStrands::end_run) return;
+  const auto refuse = [&](const std::string& why, const std::string& remedy) {
+    throw InputError("failed_strands = \"stay\" for " + why, places.failed_strands,
+                     remedy);
+  };
+  const std::string leave_out = "leave out failed_strands";
+  if (scene.model->on_strand == nullptr) {
+    refuse(std::string(scene.model->id) + ", which is one system", leave_out);
+  }
+  if (scene.friction() != nullptr) {
+    refuse("strands that rub, whose contacts are solved together",
+           leave_out + ", or [effects.strand_friction]");
+  }
+  const Parameters* interaction = scene.interaction();
+  if (interaction == nullptr) return;
+  if (interaction->word("coupling") == "monolithic") {
+    refuse("strands that are one system",
+           "use [effects.strand_interaction] coupling = \"lagged\"");
+  }
+  if (!places.tolerance.empty()) {
+    refuse("strands that touch and choose their steps, which share their intervals",
+           "give dt_s instead of tolerance, or " + leave_out);
+  }
+}
+
 }  // namespace
 
 NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System& system,
@@ -122,6 +149,7 @@ NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System
 }
 
 void check(const Scene& scene, const ScenePlaces& places) {
+  check_failed_strands(scene, places);
   if (scene.model->on_strand == nullptr && scene.rest == RestStrains::inverse) {
     throw InputError(fmt::format("rest = \"inverse\" for {}, which brings its own shape",
                                  scene.model->id),

@@ -14,7 +14,7 @@ struct ScenePlaces {
   std::string tolerance;             // empty: the step is given
   std::vector<std::string> strands;  // of each strand's table
   std::vector<std::string> effects;
-  std::string rest;
+  std::string rest, failed_strands;
 };
 
 /// The natural strains of a system for rest = "inverse". Throws InputError with `where`

@@ -40,10 +40,13 @@ constexpr Parameter top[] = {
              "half, a point faster than the energy allows, or more energy than at the "
              "start by m g L, a tenth of the initial kinetic and elastic energy, and 1.1 "
              "times the work of loads and root. Coarse but sound steps need that margin; "
-             "what the method created within it is printed. In a head of hair, whose "
-             "other strands go on, each strand that does so stops and the run fails in "
-             "the end",
+             "what the method created within it is printed. See failed_strands",
      .choices = "true|false"},
+    {.name = "failed_strands",
+     .help = "what a strand that fails, or that the guard stops, does: end the run, or "
+             "stay where it is while the others go on; the run then fails at its end. In "
+             "a batch it always stays",
+     .choices = "end_run|stay"},
     {.name = "rest",
      .help =
          "natural strains: those of the tables, or inverse: such that all strands are "

@@ -79,6 +79,9 @@ void add_top(std::string& text, const Scene& scene) {
     if (p.name == "frames_1_s") return number_text(scene.frame_rate);
     if (p.name == "checkpoint_s") return number_text(scene.checkpoint);
     if (p.name == "guard") return scene.guard ? "true" : "false";
+    if (p.name == "failed_strands") {
+      return scene.failed_strands == FailedStrands::stay ? "stay" : "end_run";
+    }
     if (p.name == "rest") {
       return scene.rest == RestStrains::inverse ? "inverse" : "natural";
     }

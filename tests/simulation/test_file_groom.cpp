@@ -287,7 +287,7 @@ TEST_F(FileGroomScene, IsThinnedCutAndGuided) {
   EXPECT_NEAR(inches.strands[0].length(), 0.0254 * scene(keys).strands[0].length(), 1e-9);
 }
 
-TEST_F(FileGroomScene, RunsAsAHeadWithEqualElements) {
+TEST_F(FileGroomScene, HasLanesWithEqualElements) {
   const auto outline = [&](const std::string& keys) {
     const std::string file = folder_ + "head.toml";
     replace_file(file, text(as_it_is + keys,
@@ -295,10 +295,10 @@ TEST_F(FileGroomScene, RunsAsAHeadWithEqualElements) {
                             "\"semi_implicit_euler\"\n"));
     return read_outline(file);
   };
-  const auto no = no_head(outline(""));
+  const auto no = no_lanes(outline("").scene);
   ASSERT_TRUE(no);
   EXPECT_THAT(no->remedy, HasSubstr("cuts = \"equal\""));
-  EXPECT_FALSE(no_head(outline("\ncuts = \"equal\"")));
+  EXPECT_FALSE(no_lanes(outline("\ncuts = \"equal\"").scene));
 }
 
 TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {

@@ -896,81 +896,132 @@ TEST_P(HeadRefused, InOneLine) {
   EXPECT_EQ(toy.files(), std::vector<std::string>{"head.toml"});
 }
 
+/// What has no SIMD lanes runs as replicated systems, and says why; for 32 bits it is
+/// refused.
+struct Replicated {
+  std::string name;
+  Hair hair;
+  std::string reason, remedy;
+};
+void PrintTo(const Replicated& r, std::ostream* out) { *out << r.name; }  // NOLINT
+class HeadReplicated : public testing::TestWithParam<Replicated> {};
+
+TEST_P(HeadReplicated, WithTheReasonInOneLine) {
+  Toy toy;
+  Hair hair = GetParam().hair;
+  hair.count = 3;
+  hair.top = "duration_s = 0.008\nframes_1_s = 250\n";
+  toy.write("head.toml", text(hair));
+  const std::string said = run(toy, "").err;
+  EXPECT_THAT(said, HasSubstr("replicated systems, each as slow as a single strand: no "
+                              "SIMD lanes for " +
+                              GetParam().reason));
+  EXPECT_THAT(said, HasSubstr(GetParam().remedy));
+  EXPECT_EQ(outcome(toy).at("engine"), "replicated");
+  Toy narrow;
+  narrow.write("head.toml", text(hair));
+  const Toy::Result refused = run(narrow, "--bits 32", 2);
+  EXPECT_THAT(refused.err, HasSubstr("no SIMD lanes for " + GetParam().reason));
+  EXPECT_EQ(refused.error_lines(), 1) << refused.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Heads, HeadReplicated,
+    testing::Values(
+        Replicated{"Der", {.model = "id = \"der\"\n"}, "der", "\"mass_spring\""},
+        Replicated{"SpringsExact",
+                   {.model = "id = \"mass_spring\"\n"},
+                   "tangent = \"exact\" with semi_implicit_euler",
+                   "give [model] tangent = \"filtered\""},
+        Replicated{"SpringsThatHoldCurls",
+                   {.model = "id = \"mass_spring\"\ntorsion = \"altitude\"\n"},
+                   "torsion = \"altitude\"",
+                   "torsion = \"none\""},
+        Replicated{"ChordSprings",
+                   {.model = "id = \"mass_spring\"\nbending = \"second_neighbour\"\n"},
+                   "bending = \"second_neighbour\"",
+                   "bending = \"angular\""},
+        Replicated{"Exact",
+                   {.model = "id = \"super_helix\"\n"},
+                   "tangent = \"exact\"",
+                   "tangent = \"stiff\""},
+        Replicated{"ChainPlanar",
+                   {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n"
+                             "modes = \"bend_planar\"\n",
+                    .groom = "shape = \"wavy\"\n"},
+                   "modes = \"bend_planar\"",
+                   "modes = \"bend_twist\""},
+        Replicated{"ChainSolver",
+                   {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n"
+                             "solver = \"sparse\"\n"},
+                   "solver = \"sparse\"",
+                   "leave out [model] solver"},
+        Replicated{"Points",
+                   {.model = "tangent = \"stiff\"\nquadrature = 24\n"},
+                   "24 points of an element",
+                   "2 to 16"},
+        Replicated{"Method",
+                   {.integrator = "id = \"bdf2\"\ndt_s = 0.004\n"},
+                   "bdf2",
+                   "\"linearly_implicit_midpoint\", \"backward_euler\" or \"tr_bdf2\""},
+        Replicated{"IteratedStiff",
+                   {.model = "tangent = \"stiff\"\n",
+                    .integrator = "id = \"backward_euler\"\ndt_s = 0.004\n"},
+                   "tangent = \"stiff\" with backward_euler",
+                   "tangent = \"exact\" to backward_euler"},
+        Replicated{
+            "ToleranceInSoManySteps",
+            {.model = "id = \"super_helix\"\n",
+             .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\nmax_steps = 1000\n"},
+            "max_steps with a tolerance",
+            "min_step_s instead of max_steps"},
+        Replicated{"KeptMatrix",
+                   {.model = "id = \"super_helix\"\n",
+                    .integrator = "id = \"tr_bdf2\"\ndt_s = 0.004\nrefresh = "
+                                  "\"every_step\"\n"},
+                   "kept matrices",
+                   "leave out [integrator] refresh"},
+        Replicated{"WindAtMidpoints",
+                   {.model = "id = \"super_helix\"\n",
+                    .integrator = "id = \"linearly_implicit_midpoint\"\ndt_s = 0.001\n",
+                    .more = "[effects.gravity]\n[effects.wind]\n"},
+                   "[effects.wind] with linearly_implicit_midpoint",
+                   "semi_implicit_euler"},
+        Replicated{"TwistWithoutInertia",
+                   {.model = "id = \"super_helix\"\nrotary_inertia = \"off\"\n",
+                    .integrator = "id = \"tr_bdf2\"\ndt_s = 0.004\n"},
+                   "tr_bdf2 and twist without inertia",
+                   "rotary_inertia = \"on\" or modes = \"bend\""},
+        Replicated{"Graded",
+                   {.groom = "grading = 1.5\n"},
+                   "elements of different lengths",
+                   "leave out grading"},
+        Replicated{"Free",
+                   {.root = "motion = \"free\"\n"},
+                   "free roots",
+                   "use another [root] motion"},
+        Replicated{"Coupled",
+                   {.more = "[effects.self_contact]\n"},
+                   "[effects.self_contact]",
+                   "leave it out"}),
+    [](const auto& of) { return of.param.name; });
+
+// Tables with different numbers of elements are a batch each.
+TEST(HeadOfHair, RunsEachNumberOfElementsAsABatch) {
+  Toy toy;
+  toy.write("head.toml", text({.count = 3}) + "[[strand]]\nelements = 7\n");
+  EXPECT_THAT(run(toy, "").err, HasSubstr("3 of 6 elements, 1 of 7 elements"));
+  EXPECT_TRUE(toy.exists("out/head.6.h5"));
+  EXPECT_TRUE(toy.exists("out/head.7.h5"));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Heads, HeadRefused,
     testing::Values(
-        Refused{"Der", {.model = "id = \"der\"\n"}, "", "der does not come as a head"},
-        Refused{"SpringsExact",
-                {.model = "id = \"mass_spring\"\n"},
-                "",
-                "give [model] tangent = \"filtered\""},
-        Refused{"SpringsThatHoldCurls",
-                {.model = "id = \"mass_spring\"\ntorsion = \"altitude\"\n"},
-                "",
-                "torsion = \"altitude\" does not come as a head"},
-        Refused{"ChordSprings",
-                {.model = "id = \"mass_spring\"\nbending = \"second_neighbour\"\n"},
-                "",
-                "bending = \"second_neighbour\" does not come as a head"},
         Refused{"SpringsIn32Bits",
                 {.model = "id = \"mass_spring\"\ntangent = \"filtered\"\n"},
                 "--bits 32",
                 "springs in 32 bits"},
-        Refused{"SpringsInWind",
-                {.model = "id = \"mass_spring\"\ntangent = \"filtered\"\n",
-                 .more = "[effects.gravity]\n[effects.wind]\n"},
-                "",
-                "[effects.wind] on a head of springs"},
-        Refused{"Exact", {.model = "id = \"super_helix\"\n"}, "", "tangent = \"stiff\""},
-        Refused{"ChainExact",
-                {.model = "id = \"articulated_chain\"\n"},
-                "",
-                "tangent = \"stiff\""},
-        Refused{"ChainPlanar",
-                {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n"
-                          "modes = \"bend_planar\"\n",
-                 .groom = "shape = \"wavy\"\n"},
-                "",
-                "bend in both directions"},
-        Refused{"ChainSolver",
-                {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n"
-                          "solver = \"sparse\"\n"},
-                "",
-                "solver = \"sparse\""},
-        Refused{"ChainMethod",
-                {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n",
-                 .integrator = "id = \"bdf2\"\n"},
-                "",
-                "\"linearly_implicit_midpoint\", \"backward_euler\" or \"tr_bdf2\""},
-        Refused{"Planar",
-                {.model = "tangent = \"stiff\"\nmodes = \"bend_planar\"\n",
-                 .groom = "shape = \"wavy\"\n"},
-                "",
-                "bend in both directions"},
-        Refused{"Solver",
-                {.model = "tangent = \"stiff\"\nsolver = \"composite\"\n"},
-                "",
-                "solver = \"composite\""},
-        Refused{"Points",
-                {.model = "tangent = \"stiff\"\nquadrature = 24\n"},
-                "",
-                "24 points of an element"},
-        Refused{
-            "Method", {.integrator = "id = \"bdf2\"\n"}, "", "bdf2 does not step a head"},
-        Refused{
-            "IteratedStiff",
-            {.model = "tangent = \"stiff\"\n", .integrator = "id = \"backward_euler\"\n"},
-            "",
-            "tangent = \"exact\" to backward_euler"},
-        Refused{"MidpointStiff",
-                {.integrator = "id = \"linearly_implicit_midpoint\"\n"},
-                "",
-                "tangent = \"exact\" to linearly_implicit_midpoint"},
-        Refused{"MidpointOfFilteredSprings",
-                {.model = "id = \"mass_spring\"\ntangent = \"filtered\"\n",
-                 .integrator = "id = \"linearly_implicit_midpoint\"\n"},
-                "",
-                "tangent = \"exact\" to linearly_implicit_midpoint"},
         Refused{"NarrowMidpointsOfChains",
                 {.model = "id = \"articulated_chain\"\n",
                  .integrator = "id = \"linearly_implicit_midpoint\"\n"},
@@ -981,48 +1032,24 @@ INSTANTIATE_TEST_SUITE_P(
                  .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n"},
                 "--bits 32",
                 "give --bits 64, or a larger tolerance"},
-        Refused{"ToleranceOfRounding",
-                {.model = "id = \"super_helix\"\n",
-                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-13\n"},
-                "",
-                "give a larger tolerance"},
-        Refused{"ToleranceInSoManySteps",
-                {.model = "id = \"super_helix\"\n",
-                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\nmax_steps = 100\n"},
-                "",
-                "min_step_s instead of max_steps"},
-        Refused{"KeptMatrix",
-                {.model = "id = \"super_helix\"\n",
-                 .integrator = "id = \"tr_bdf2\"\nrefresh = \"every_step\"\n"},
-                "",
-                "leave out [integrator] refresh"},
-        Refused{"WindAtMidpoints",
-                {.model = "id = \"super_helix\"\n",
-                 .integrator = "id = \"linearly_implicit_midpoint\"\n",
-                 .more = "[effects.gravity]\n[effects.wind]\n"},
-                "",
-                "[effects.wind] on a head by linearly_implicit_midpoint"},
-        Refused{"TwistWithoutInertia",
-                {.model = "id = \"super_helix\"\nrotary_inertia = \"off\"\n",
-                 .integrator = "id = \"tr_bdf2\"\n"},
-                "",
-                "rotary_inertia = \"on\" or modes = \"bend\""},
-        Refused{"Graded", {.groom = "grading = 1.5\n"}, "", "leave out grading"},
-        Refused{"Free", {.root = "motion = \"free\"\n"}, "", "free roots"},
         Refused{"Mesh",
                 {.more = "[effects.gravity]\n[effects.control_mesh]\n"},
                 "",
-                "does not know [effects.control_mesh]"},
-        Refused{
-            "Coupled", {.more = "[effects.self_contact]\n"}, "", "couples the points"},
+                "ties all strands into one mesh"},
+        Refused{"Rubbing",
+                {.more = "[effects.strand_friction]\n"},
+                "",
+                "solves the contacts of all strands together"},
         Refused{"Monolithic",
                 {.more = "[effects.strand_interaction]\ncoupling = \"monolithic\"\n"},
                 "",
                 "coupling = \"lagged\""},
-        Refused{"Elements",
-                {.more = "[[strand]]\nelements = 7\n"},
+        Refused{"TouchingWithTolerance",
+                {.model = "id = \"super_helix\"\n",
+                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n",
+                 .more = "[effects.strand_interaction]\ncoupling = \"lagged\"\n"},
                 "",
-                "equally many elements"},
+                "share their intervals"},
         Refused{"Hairs", {}, "--hairs 10", "--hairs cannot be combined with --as head"},
         Refused{"ErrorBars",
                 {},

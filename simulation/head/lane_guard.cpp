@@ -1,4 +1,4 @@
-#include "simulation/head/head_guard.h"
+#include "simulation/head/lane_guard.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +21,9 @@ constexpr double smooth_for = 20e-3;  // s
 }  // namespace
 
 /// Strands of a block at one time, with the points on which effects act.
-class HeadGuard::Reader {
+class LaneGuard::Reader {
  public:
-  Reader(const HeadGuard& guard, const models::Head& head, std::size_t block,
+  Reader(const LaneGuard& guard, const models::Head& head, std::size_t block,
          std::size_t first, double t)
       : guard_(guard),
         first_(first),
@@ -152,7 +152,7 @@ class HeadGuard::Reader {
     if (!guard_.own_.empty()) ask(guard_.own_[first_ + k_]);
   }
 
-  const HeadGuard& guard_;
+  const LaneGuard& guard_;
   std::size_t first_, k_ = 0;
   double t_;
   std::size_t numbers_;
@@ -163,7 +163,7 @@ class HeadGuard::Reader {
   std::vector<double> mass_, length_;               // (points)
 };
 
-HeadGuard::HeadGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest)
+LaneGuard::LaneGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest)
     : motion_(options.motion),
       effects_(make_effects(scene)),
       moves_(!options.motion.fixed()),
@@ -186,7 +186,7 @@ HeadGuard::HeadGuard(const Scene& scene, const models::HeadOptions& options, boo
   }
 }
 
-void HeadGuard::add(const Strand& strand, models::Effects own) {
+void LaneGuard::add(const Strand& strand, models::Effects own) {
   const GuardedStrand guarded = guarded_strand(strand, effects_);
   strands_.push_back({strand.segments.front().length, guarded.slack(), {}, {}});
   if (own.empty() && own_.empty()) return;
@@ -194,7 +194,7 @@ void HeadGuard::add(const Strand& strand, models::Effects own) {
   own_.back() = std::move(own);
 }
 
-void HeadGuard::potentials(const models::Head& head, std::size_t block, std::size_t first,
+void LaneGuard::potentials(const models::Head& head, std::size_t block, std::size_t first,
                            double t, std::span<double> each) const {
   std::ranges::fill(each, 0.0);
   if (!acts_somewhere_) return;
@@ -207,7 +207,7 @@ void HeadGuard::potentials(const models::Head& head, std::size_t block, std::siz
   }
 }
 
-void HeadGuard::start(const models::Head& head, std::size_t block, std::size_t first,
+void LaneGuard::start(const models::Head& head, std::size_t block, std::size_t first,
                       double t) {
   Reader reader(*this, head, block, first, t);
   for (std::size_t k = 0; k < reader.strands(); ++k) {
@@ -219,7 +219,7 @@ void HeadGuard::start(const models::Head& head, std::size_t block, std::size_t f
   }
 }
 
-bool HeadGuard::due(double t, double h) const {
+bool LaneGuard::due(double t, double h) const {
   if (!works_ || strands_.empty()) return false;
   // Of steps that are equal but for rounding.
   const double since = t - strands_.front().account.seen() + 1e-6 * h;
@@ -227,7 +227,7 @@ bool HeadGuard::due(double t, double h) const {
                                       : since >= std::min(guarded_every * h, guarded_for);
 }
 
-void HeadGuard::judge(const models::Head& head, std::size_t block, std::size_t first,
+void LaneGuard::judge(const models::Head& head, std::size_t block, std::size_t first,
                       double t) {
   Reader reader(*this, head, block, first, t);
   for (std::size_t k = 0; k < reader.strands(); ++k) {
@@ -247,10 +247,10 @@ void HeadGuard::judge(const models::Head& head, std::size_t block, std::size_t f
   }
 }
 
-void HeadGuard::keep(std::size_t place, std::span<double> to) const {
+void LaneGuard::keep(std::size_t place, std::span<double> to) const {
   std::ranges::copy(strands_[place].account.memory(), to.begin());
 }
-void HeadGuard::recall(std::size_t place, std::span<const double> from) {
+void LaneGuard::recall(std::size_t place, std::span<const double> from) {
   strands_[place].account.recall(from);
 }
 

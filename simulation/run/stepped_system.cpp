@@ -1,0 +1,174 @@
+#include "simulation/run/stepped_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "integrators/error_indicator.h"
+
+namespace tress::simulation {
+namespace {
+
+/// A step without a solution is divided into 2, 4 ... 2^halvings shorter ones.
+constexpr int halvings = 6;
+/// Per system: a run that needs more has too long a step, and its time is unbounded.
+constexpr int most_shortened = 100;
+
+/// Steps that fail are repeated as shorter ones; methods that choose their steps have
+/// done that already.
+bool has_fixed_step(const IntegratorEntry& method, const Options& options) {
+  return !method.adaptive && options.tolerance == 0;
+}
+
+}  // namespace
+
+void add_work(const Stats& from, Stats& to) {
+  to.steps += from.steps;
+  to.rejected += from.rejected;
+  to.residuals += from.residuals;
+  to.linearizations += from.linearizations;
+  to.solves += from.solves;
+  to.newton_iterations += from.newton_iterations;
+  to.sweeps += from.sweeps;
+  to.solver = from.solver;
+  to.rank_deficiency = std::max(to.rank_deficiency, from.rank_deficiency);
+  to.condition = std::max(to.condition, from.condition);
+  to.rejected_by_error += from.rejected_by_error;
+  to.rejected_by_newton += from.rejected_by_newton;
+  to.contact_iterations += from.contact_iterations;
+  to.contact_unfinished += from.contact_unfinished;
+  to.contact_violation = std::max(to.contact_violation, from.contact_violation);
+  if (from.smallest_step == 0) return;
+  if (to.smallest_step != 0 && to.smallest_step <= from.smallest_step) return;
+  to.smallest_step = from.smallest_step;
+  to.smallest_step_at = from.smallest_step_at;
+  to.smallest_step_cause = from.smallest_step_cause;
+}
+
+SteppedSystem::State SteppedSystem::initial_state() const {
+  const auto n = static_cast<std::size_t>(system->layout().coordinates);
+  State state{std::vector<double>(n), std::vector<double>(n), system->memory()};
+  system->initial_state(state.q, state.v);
+  return state;
+}
+
+void SteppedSystem::take_method(std::string_view method, const Options& options) {
+  integrator = make_integrator(method, *system, options);
+}
+
+void SteppedSystem::start(double begin, State state) {
+  system->recall(state.memory);
+  // Contact sets follow the state; if it was accepted before, nothing changes.
+  system->accept(begin, state.q, state.v);
+  status = integrator->start(begin, state.q, state.v);
+  before_ = {};
+  failed_work_ = 0;
+  indicator = 0;
+  shortened_ = 0;
+  gave_up_ = used_up_ = stays_ = false;
+}
+
+void SteppedSystem::advance(const IntegratorEntry& method, const Options& options,
+                            double end, bool last) {
+  if (status != Status::ok) return;
+  const double begin = integrator->time(), span = end - begin,
+               count = std::max(1.0, std::ceil(span / options.step - 1e-9));
+  const bool again =
+      has_fixed_step(method, options) && count <= static_cast<double>(options.max_steps);
+  keep(begin, integrator->q(), integrator->v());
+  begun_ = q;
+  status = integrator->advance(end, observer());
+  while (again && status != Status::ok && !breached() && !gave_up_ &&
+         work_left(options) > 0 && shortened_++ < most_shortened) {
+    const double next = t + span / count;
+    status =
+        shorter_steps(method, options, next < end - 1e-6 * span / count ? next : end);
+    if (status == Status::ok) status = integrator->advance(end, observer());
+  }
+  if (!guard || breached() || (status == Status::ok && !last)) return;
+  if (!guard->judge(t, q, v)) status = Status::fatal;
+}
+
+/// Of Options::max_work, which bounds failed attempts too.
+double SteppedSystem::work_left(const Options& options) const {
+  if (options.max_work == 0) return std::numeric_limits<double>::infinity();
+  const auto n = static_cast<int>(q.size());
+  return options.max_work - failed_work_ - total_work(stats(), n);
+}
+
+/// From the last successful state to `end`, one step further, with as few shorter steps
+/// as needed; from there the method continues with its own step.
+Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options& options,
+                                    double end) {
+  const double begin = t;
+  const std::vector<double> old_q = q, old_v = v, memory = system->memory();
+  const auto gathered = guard ? guard->memory() : Guard::Memory{};
+  Options shorter = options;
+  for (int k = 0; k < halvings && work_left(options) > 0; ++k) {
+    ++before_.rejected;
+    if (options.max_work > 0) shorter.max_work = work_left(options);
+    shorter.step = (end - begin) / std::ldexp(2.0, k);
+    const auto steps = make_integrator(method.id, *system, shorter);
+    keep(begin, old_q, old_v);
+    system->recall(memory);
+    system->accept(begin, q, v);
+    if (guard) guard->recall(gathered);
+    Status now = steps->start(begin, q, v);
+    if (now == Status::ok) now = steps->advance(end, observer());
+    if (breached()) return Status::fatal;
+    if (now != Status::ok) {
+      failed_work_ += total_work(steps->stats(), static_cast<int>(q.size()));
+      continue;
+    }
+    add_work(steps->stats(), before_);
+    add_work(integrator->stats(), before_);
+    indicator = std::max({indicator, indicator_of(*integrator), indicator_of(*steps)});
+    return integrator->start(end, q, v);
+  }
+  used_up_ = work_left(options) <= 0;
+  gave_up_ = !used_up_;
+  return Status::fatal;
+}
+
+void SteppedSystem::stay(In at) {
+  q.assign(at.begin(), at.end());
+  v.assign(q.size(), 0.0);
+  status = Status::fatal;
+  stays_ = true;
+}
+
+void SteppedSystem::keep(double at, In new_q, In new_v) {
+  t = at;
+  q.assign(new_q.begin(), new_q.end());
+  v.assign(new_v.begin(), new_v.end());
+}
+
+Observer SteppedSystem::observer() {
+  return [this](double at, In new_q, In new_v) {
+    keep(at, new_q, new_v);
+    return !guard || (*guard)(at, new_q, new_v);
+  };
+}
+
+std::string SteppedSystem::failure() const {
+  if (breached()) return guard->breach()->message();
+  return integrator->failure() +
+         (gave_up_ ? fmt::format(", nor for {:g} in its place", std::ldexp(1.0, halvings))
+          : used_up_ ? "; max_work used up by shorter steps"
+                     : "");
+}
+
+Limit SteppedSystem::limit() const {
+  return used_up_ ? Limit::work : integrator->limit();
+}
+
+Stats SteppedSystem::stats() const {
+  Stats sum = before_;
+  add_work(integrator->stats(), sum);
+  return sum;
+}
+
+}  // namespace tress::simulation

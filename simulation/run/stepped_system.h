@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integrators/catalogue.h"
+#include "simulation/run/guard.h"
+#include "simulation/run/metered.h"
+
+namespace tress::simulation {
+
+/// Adds the work of one part of a run to that of the others.
+void add_work(const Stats& from, Stats& to);
+
+/// A system with the integrator that advances it and the guard that checks its steps: one
+/// strand of a scene, or several that are one system.
+///
+/// A fixed step without a solution is divided into 2, 4 ... 64 shorter ones, after which
+/// the scene's step resumes. This may happen a hundred times; beyond that, the step is
+/// too long for the scene. stats().rejected counts every failed attempt.
+struct SteppedSystem {
+  explicit SteppedSystem(std::unique_ptr<System> made) : system(std::move(made)) {}
+
+  std::unique_ptr<System> system;
+  std::unique_ptr<Integrator> integrator;  // null before take_method()
+  std::optional<Guard> guard;
+  /// Effects of its first strand, of the second ...
+  std::vector<std::shared_ptr<const Metered>> meters;
+
+  Status status = Status::ok;
+  // The state after the last successful step.
+  double t = 0;
+  std::vector<double> q, v;
+  double indicator = 0;
+
+  /// The state of the model and an integrator at t = 0.
+  struct State {
+    std::vector<double> q, v, memory;  // memory: System::memory()
+  };
+  State initial_state() const;
+  /// A new integrator, to be started.
+  void take_method(std::string_view method, const Options& options);
+  /// Starts from a state; the guard is not started.
+  void start(double begin, State state);
+  /// To `end`, unless it has failed before. The guard also checks the last state: where
+  /// the integrator failed, and if `last`.
+  void advance(const IntegratorEntry& method, const Options& options, double end,
+               bool last);
+  /// It has failed, and stays at this state, at rest: readouts see it from now on.
+  void stay(In at);
+  /// q at the start of the last advance().
+  In begun() const { return begun_; }
+  /// Stores a state.
+  void keep(double at, In new_q, In new_v);
+
+  bool breached() const { return guard && guard->breach(); }
+  /// What ended it: the guard's finding, or the integrator's own words. No remedy.
+  std::string failure() const;
+  /// The bound that ended it.
+  Limit limit() const;
+  /// Since start().
+  Stats stats() const;
+  // What readouts see.
+  In seen_q() const { return stays_ ? In(q) : integrator->q(); }
+  In seen_v() const { return stays_ ? In(v) : integrator->v(); }
+  bool stays() const { return stays_; }
+
+ private:
+  double work_left(const Options& options) const;
+  Status shorter_steps(const IntegratorEntry& method, const Options& options, double end);
+  /// Stores every state and passes it to the guard.
+  Observer observer();
+
+  std::vector<double> begun_;
+  Stats before_;            // work done before the integrator's last start
+  double failed_work_ = 0;  // of shorter steps that failed, as total_work() counts it
+  int shortened_ = 0;       // steps divided into shorter ones since start()
+  bool gave_up_ = false;    // shorter steps did not help
+  bool used_up_ = false;    // they took all of Options::max_work
+  bool stays_ = false;
+};
+
+}  // namespace tress::simulation

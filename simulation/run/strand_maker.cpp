@@ -1,0 +1,93 @@
+#include "simulation/run/strand_maker.h"
+
+#include <utility>
+
+#include "contract/natural_strains.h"
+
+namespace tress::simulation {
+namespace {
+
+void hold(System& system, std::span<const StrandToMake> strands) {
+  if (strands.front().held == nullptr) return;
+  std::vector<double> natural;
+  for (const StrandToMake& strand : strands) {
+    natural.insert(natural.end(), strand.held->natural.begin(),
+                   strand.held->natural.end());
+  }
+  natural_strains(system)->set_natural(natural);
+}
+
+}  // namespace
+
+StrandMaker::StrandMaker(const Scene& scene)
+    : model_(scene.model),
+      model_options_(scene.model_options),
+      method_(&find_integrator(scene.integrator)),
+      options_(scene.options),
+      effects_(make_effects(scene)),
+      guard_(scene.guard) {}
+
+/// Those of the scene.
+Effects StrandMaker::effects_on(const StrandToMake& strand) const {
+  return strand.held == nullptr ? effects_ : supporting(effects_, *strand.held);
+}
+
+/// Wraps each effect of the scene in a Metered, stored in `meters`.
+Effects StrandMaker::acting(const StrandToMake& strand,
+                            std::vector<std::shared_ptr<const Metered>>& meters) const {
+  Effects all;
+  for (const auto& effect : effects_on(strand)) {
+    meters.push_back(std::make_shared<Metered>(effect));
+    all.push_back(meters.back());
+  }
+  all.insert(all.end(), strand.between.begin(), strand.between.end());
+  return all;
+}
+
+std::unique_ptr<System> StrandMaker::metered(
+    const StrandToMake& strand,
+    std::vector<std::shared_ptr<const Metered>>& meters) const {
+  return model_->on_strand(strand.strand, model_options_, acting(strand, meters));
+}
+
+SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) const {
+  std::vector<std::shared_ptr<const Metered>> meters;
+  SteppedSystem made(metered(strand, meters));
+  made.meters = std::move(meters);
+  hold(*made.system, {&strand, 1});
+  add_guard(made, {&strand, 1}, number);
+  return made;
+}
+
+std::optional<SteppedSystem> StrandMaker::together(std::span<const StrandToMake> strands,
+                                                   std::size_t first) const {
+  if (model_->on_strands == nullptr || strands.size() < 2) return {};
+  std::vector<std::shared_ptr<const Metered>> meters;
+  std::vector<Strand> each;
+  std::vector<Effects> effects;
+  for (const StrandToMake& strand : strands) {
+    each.push_back(strand.strand);
+    effects.push_back(acting(strand, meters));
+  }
+  auto system = model_->on_strands(each, model_options_, std::move(effects));
+  if (system == nullptr) return {};
+  SteppedSystem made(std::move(system));
+  made.meters = std::move(meters);
+  hold(*made.system, strands);
+  add_guard(made, strands, first);
+  return made;
+}
+
+void StrandMaker::add_guard(SteppedSystem& system, std::span<const StrandToMake> strands,
+                            std::size_t first) const {
+  if (!guard_) return;
+  std::vector<GuardedStrand> guarded;
+  for (const StrandToMake& strand : strands) {
+    Effects effects = effects_on(strand);
+    effects.insert(effects.end(), strand.between.begin(), strand.between.end());
+    guarded.push_back(guarded_strand(strand.strand, std::move(effects)));
+  }
+  system.guard.emplace(*system.system, std::move(guarded), first);
+}
+
+}  // namespace tress::simulation

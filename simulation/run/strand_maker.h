@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulation/rest/held_shape.h"
+#include "simulation/run/stepped_system.h"
+#include "simulation/scene/scene.h"
+
+namespace tress::simulation {
+
+/// A strand of a scene and what acts on it beside the scene's effects.
+struct StrandToMake {
+  const Strand& strand;             // stiffer(), if it is held
+  Effects between = {};             // on it alone, as those between strands
+  const HeldShape* held = nullptr;  // what holds it at rest, if its rest is inverse
+};
+
+/// Makes the strands of a scene as systems with their effects, guards and integrators,
+/// for a World and for a batch of strands alike. Keeps no reference to the scene.
+class StrandMaker {
+ public:
+  explicit StrandMaker(const Scene& scene);
+
+  const Effects& effects() const { return effects_; }  // make_effects()
+  const IntegratorEntry& method() const { return *method_; }
+  const Options& options() const { return options_; }
+
+  /// A strand as a system of its own; `number`: of it, in messages. Without integrator.
+  SteppedSystem one(const StrandToMake& strand, std::size_t number) const;
+  /// Several of equal discretisation as one system; empty: the model has no such form for
+  /// them.
+  std::optional<SteppedSystem> together(std::span<const StrandToMake> strands,
+                                        std::size_t first) const;
+  /// The scene's effects on a strand, each in a meter, and the model made with them.
+  std::unique_ptr<System> metered(
+      const StrandToMake& strand,
+      std::vector<std::shared_ptr<const Metered>>& meters) const;
+  /// A guard of strands that are this system, if the scene has guards.
+  void add_guard(SteppedSystem& system, std::span<const StrandToMake> strands,
+                 std::size_t first) const;
+
+ private:
+  Effects effects_on(const StrandToMake& strand) const;
+  Effects acting(const StrandToMake& strand,
+                 std::vector<std::shared_ptr<const Metered>>& meters) const;
+
+  const ModelEntry* model_;
+  Parameters model_options_;
+  const IntegratorEntry* method_;
+  Options options_;
+  Effects effects_;
+  bool guard_;
+};
+
+}  // namespace tress::simulation
