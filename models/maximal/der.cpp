@@ -1,6 +1,7 @@
 #include "contract/tangent_choice.h"
 #include "models/entry.h"
 #include "models/maximal/der_elasticity.h"
+#include "models/maximal/joint_strain.h"
 #include "models/maximal/maximal_system.h"
 #include "models/maximal/nodal_strand.h"
 

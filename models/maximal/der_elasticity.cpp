@@ -3,10 +3,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/instructions.h"
+#include "models/maximal/joint_strain.h"
+
 namespace tress::models {
 namespace {
 
 Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+using Rows = std::array<Pack, 3>;
+
+Pack row(const Vec& of_e, double of_theta) {
+  return Pack(of_e.x, of_e.y, of_e.z, of_theta);
+}
+
+/// Rotation of an edge, in components of its frame, by (e, theta).
+Rows rotation_of(const DerPlaced<double>& e) {
+  const Vec one = -e.inverse_length * e.frame.e2, two = e.inverse_length * e.frame.e1;
+  return {row(-e.p.y * one - e.p.z * two, 1), row(one, 0), row(two, 0)};
+}
+
+Pack combined(const Vec& weights, const Rows& rows) {
+  return weights.x * rows[0] + weights.y * rows[1] + weights.z * rows[2];
+}
+
+/// a^T f b.
+void add_product(const Rows& a, const Matrix3<double>& f, const Rows& b, Pack (&h)[4]) {
+  const Rows turned{combined(f.row[0], b), combined(f.row[1], b), combined(f.row[2], b)};
+  for (int i = 0; i < 4; ++i) {
+    h[i] += a[0][i] * turned[0] + a[1][i] * turned[1] + a[2][i] * turned[2];
+  }
+}
+
+/// x y^T.
+void add_dyad(const Pack& x, const Pack& y, Pack (&h)[4]) {
+  for (int i = 0; i < 4; ++i) h[i] += x[i] * y;
+}
 
 /// Converts a matrix over (e, theta) of neighbouring edges, one pack per row and edge, to
 /// one over (x, theta) of their nodes. The last node has no angle: its row 3 is
@@ -51,16 +83,18 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> 
       stiff_(std::ranges::any_of(edge_data_,
                                  [](const EdgeData& edge) { return edge.stretch > 0; })),
       angles_(3 * (edge_data_.size() + 1)),
-      edges_(edge_data_.size()),
-      joints_(joint_data_.size()),
-      placed_z_(4 * edge_data_.size() + 3),
-      placed_rate_(placed_z_.size()) {
+      factored_(edge_data_.size()),
+      now_(edge_data_.size()),
+      stiff_factors_(tangent == Tangent::exact ? 0 : edge_data_.size()),
+      exact_factors_(tangent == Tangent::exact ? edge_data_.size() : 0) {
   forget_turns();
 }
 
 void DerElasticity::forget_turns() {
   twist_.clear();
-  for (const RodJoint& joint : joint_data_) twist_.push_back(joint.rest.x);
+  for (std::size_t i = 0; i < edge_data_.size(); ++i) {
+    twist_.push_back(joint(i) == nullptr ? 0 : joint(i)->rest.x);
+  }
 }
 
 std::vector<std::vector<int>> DerElasticity::groups() const {
@@ -74,277 +108,318 @@ std::vector<std::vector<int>> DerElasticity::groups() const {
     }
   };
   nodes_and_angles(0, 2);
-  for (std::size_t i = 0; i + 1 < edges_.size(); ++i) nodes_and_angles(i, 3);
+  for (std::size_t i = 0; i + 1 < edge_data_.size(); ++i) nodes_and_angles(i, 3);
   return all;
 }
 
-bool DerElasticity::placed_at(const Placement& p) noexcept {
-  const auto same = [](const Vec& a, const Vec& b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-  };
-  const Frame &now = p.root.frame, &then = placed_root_.frame;
-  if (placed_ && std::ranges::equal(p.z, placed_z_) &&
-      std::ranges::equal(p.rate, placed_rate_) &&
-      same(p.root.omega, placed_root_.omega) && same(now.e0, then.e0) &&
-      same(now.e1, then.e1) && same(now.e2, then.e2)) {
-    return true;
-  }
-  std::ranges::copy(p.z, placed_z_.begin());
-  std::ranges::copy(p.rate, placed_rate_.begin());
-  placed_root_ = p.root;
-  placed_ = true;
-  return false;
+void DerElasticity::forget() {
+  factored_.at.forget();
+  now_.at.forget();
+  latest_ = nullptr;
 }
 
 void DerElasticity::reset() {
   edge_data_ = edges_at_start_;
   forget_turns();
-  placed_ = false;
+  forget();
 }
 
-void DerElasticity::place(const Placement& p) noexcept {
-  if (placed_at(p)) return;
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const Vec e = load3(&p.z[3 * i + 3]) - load3(&p.z[3 * i]);
-    const Vec rate = load3(&p.rate[3 * i + 3]) - load3(&p.rate[3 * i]);
-    Edge& edge = edges_[i];
-    edge.turn = EdgeTurn(edge_data_[i].reference.e0, e);
-    edge.frame = edge_frame(edge_data_[i].reference, e, theta(p.z, i));
-    edge.spin = edge.turn.spin(rate, theta(p.rate, i));
-    edge.moment = {};
+template <bool with_tangent, bool exact>
+TRESS_FLATTEN void DerElasticity::place_as(const Placement& p, Weights w,
+                                           Placed& to) noexcept {
+  using Forces = DerForces<double, exact>;
+  const Frame* frame_before = &p.root.frame;
+  DerMotion<double> before{p.root.frame.back(p.root.omega), 0};
+  for (std::size_t i = 0; i < edge_data_.size(); ++i) {
+    const EdgeData& data = edge_data_[i];
+    Edge& e = to.edges[i];
+    const auto along = [i](In x) { return load3(&x[3 * i + 3]) - load3(&x[3 * i]); };
+    e.motion =
+        Forces::edge(data.reference.e0, data.reference.e1, theta(p.z, i), along(p.z),
+                     along(p.rate), theta(p.rate, i), data.stretch, data.length, e);
+    if (const RodJoint* of = joint(i); of != nullptr) {
+      DerJoint<double> strain = Forces::strain(*frame_before, e);
+      e.twist = strain.value.x = wound(strain.value.x, twist_[i]);
+      e.strain = strain.value - of->rest;
+      const Vec relative = e.motion.spin - e.turn.back(before.spin);
+      e.rate = {dot(strain.twist, relative), dot(strain.curvature1, relative),
+                dot(strain.curvature2, relative)};
+      e.by_lengthening = {};
+      const auto joint_at = [&](auto... left_out) {
+        Forces::template joint<with_tangent>(
+            strain, e.strain, of->stiffness, of->friction.x, friction_, w, e.motion,
+            before, i > 0 ? &to.edges[i - 1] : nullptr, e, left_out...);
+      };
+      if constexpr (exact) {
+        joint_at(&e.by_lengthening);
+      } else {
+        joint_at();
+      }
+    }
+    frame_before = &e.frame;
+    before = e.motion;
   }
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const RodJoint& data = joint_data_[j];
-    Joint& joint = joints_[j];
-    Edge& behind = edges_[after(j)];
-    joint.strain = JointStrain(frame_before(p, j), behind.frame);
-    joint.strain.value.x = wound(joint.strain.value.x, twist_[j]);
-    const Vec relative = behind.spin - (clamp(j) ? p.root.omega : edges_[before(j)].spin);
-    const JointStrain& s = joint.strain;
-    joint.rate = {dot(s.twist, relative), dot(s.curvature1, relative),
-                  dot(s.curvature2, relative)};
-    joint.stress = entrywise(data.stiffness, s.value - data.rest) +
-                   entrywise(data.friction, joint.rate);
-    const Vec moment = joint.stress.x * s.twist + joint.stress.y * s.curvature1 +
-                       joint.stress.z * s.curvature2;
-    behind.moment = behind.moment + moment;
-    if (!clamp(j)) edges_[before(j)].moment = edges_[before(j)].moment - moment;
+}
+
+void DerElasticity::place(const Placement& p, Weights w, Placed& to) noexcept {
+  if (tangent_ == Tangent::exact) {
+    place_as<true, true>(p, w, to);
+  } else {
+    place_as<true, false>(p, w, to);
   }
+  to.at.take(p);
+  latest_ = &to;
+}
+
+const DerElasticity::Edges& DerElasticity::place(const Placement& p) noexcept {
+  if (factored_.at.is(p)) {
+    latest_ = &factored_;
+  } else if (!now_.at.is(p)) {
+    place_as<false, false>(p, {}, now_);
+    now_.at.take(p);
+    latest_ = &now_;
+  }
+  return latest_->edges;
+}
+
+Vec DerElasticity::moment(const Edges& edges, std::size_t i) const {
+  if (i + 1 == edges.size()) return edges[i].moment;
+  return edges[i].moment - edges[i + 1].turn * edges[i + 1].moment;
 }
 
 void DerElasticity::add_force(const Placement& p, InOut f) noexcept {
-  place(p);
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const Edge& edge = edges_[i];
-    const EdgeData& data = edge_data_[i];
-    const Vec force = edge.turn.force(edge.moment) +
-                      (data.stretch * (edge.turn.length - data.length)) * edge.turn.t;
+  const Edges& edges = place(p);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Vec on_it = moment(edges, i), force = edges[i].force_by(on_it);
     store3(load3(&f[3 * i]) - force, &f[3 * i]);
     store3(load3(&f[3 * i + 3]) + force, &f[3 * i + 3]);
-    f[angles_ + i] += dot(edge.moment, edge.turn.t);
+    f[angles_ + i] += on_it.x;
   }
 }
 
-/// T^T F T, with T the rotations of the two sides by (e, theta) before and behind the
-/// joint, and F the second derivative by those rotations; for the clamp's joint only the
-/// side behind.
-void DerElasticity::joint_tangent(const Placement& p, std::size_t joint, double pos,
-                                  double vel, Matrix& s) const noexcept {
-  const RodJoint& data = joint_data_[joint];
-  const JointStrain& strain = joints_[joint].strain;
-  const Frame& minus = frame_before(p, joint);
-  const Edge& behind = edges_[after(joint)];
-  const Edge* edges[2] = {clamp(joint) ? nullptr : &edges_[before(joint)], &behind};
-  const bool exact = tangent_ == Tangent::exact && pos != 0;
-
-  TwoVectorForm f = exact
-                        ? strain.second(minus, behind.frame, pos * joints_[joint].stress)
-                        : TwoVectorForm{};
-  const Vec slope[3] = {strain.twist, strain.curvature1, strain.curvature2};
-  const Vec weight = pos * data.stiffness + vel * data.friction;
-  f.add_relative(weight.x, slope[0]);
-  f.add_relative(weight.y, slope[1]);
-  f.add_relative(weight.z, slope[2]);
-
-  // A clamp does not follow from any coordinate.
-  std::array<Pack, 3> turn[2] = {};
-  for (int side = 0; side < 2; ++side) {
-    if (edges[side] != nullptr) turn[side] = edges[side]->turn.rows();
-  }
-  Pack turned[6][2];
-  for (int i = 0; i < 6; ++i) {
-    for (int side = 0; side < 2; ++side) {
-      const Pack& row = f.rows[i][side];
-      const auto& t = turn[side];
-      turned[i][side] = row[0] * t[0] + row[1] * t[1] + row[2] * t[2];
-    }
-  }
-  for (int i = 0; i < 8; ++i) {
-    const auto& t = turn[i / 4];
-    const Pack(*of_side)[2] = &turned[3 * (i / 4)];
-    for (int side = 0; side < 2; ++side) {
-      s[i][side] = t[0][i % 4] * of_side[0][side] + t[1][i % 4] * of_side[1][side] +
-                   t[2][i % 4] * of_side[2][side];
-    }
-  }
-  if (exact && friction_) add_slope_of_friction(p, joint, pos, s);
-}
-
-/// The rate of a strain changes with the place: second derivative along the motion.
-void DerElasticity::add_slope_of_friction(const Placement& p, std::size_t joint,
-                                          double pos, Matrix& s) const noexcept {
-  const JointStrain& strain = joints_[joint].strain;
-  const Frame& minus = frame_before(p, joint);
-  const Edge& behind = edges_[after(joint)];
-  const Edge* edges[2] = {clamp(joint) ? nullptr : &edges_[before(joint)], &behind};
-  const Vec slope[3] = {strain.twist, strain.curvature1, strain.curvature2};
-  const Vec& given = joint_data_[joint].friction;
-  const double friction[3] = {given.x, given.y, given.z};
-  const Vec before_spin = clamp(joint) ? p.root.omega : edges[0]->spin;
-  const double spins[6] = {before_spin.x, before_spin.y, before_spin.z,
-                           behind.spin.x, behind.spin.y, behind.spin.z};
-  for (int m = 0; m < 3; ++m) {
-    if (friction[m] == 0) continue;
-    const TwoVectorForm own = strain.second(
-        minus, behind.frame, {m == 0 ? 1.0 : 0, m == 1 ? 1.0 : 0, m == 2 ? 1.0 : 0});
-    Vec along[2];
-    for (int i = 0; i < 6; ++i) {
-      double sum = 0;
-      for (int j = 0; j < 6; ++j) sum += own.at(i, j) * spins[j];
-      double* of[3] = {&along[i / 3].x, &along[i / 3].y, &along[i / 3].z};
-      *of[i % 3] = sum;
-    }
-    double gradient[8] = {}, slope_of_rate[8] = {};
-    for (int side = 0; side < 2; ++side) {
-      if (edges[side] == nullptr) continue;
-      const EdgeTurn& turn = edges[side]->turn;
-      const double sign = side == 0 ? -1 : 1;
-      Pack h[4] = {};
-      turn.add_second(sign, slope[m], h);
-      const std::size_t edge = side == 0 ? before(joint) : after(joint);
-      const Vec de = load3(&p.rate[3 * edge + 3]) - load3(&p.rate[3 * edge]);
-      const double y[4] = {de.x, de.y, de.z, theta(p.rate, edge)};
-      for (int k = 0; k < 4; ++k) {
-        const Vec column = turn.column(k);
-        gradient[4 * side + k] = sign * dot(slope[m], column);
-        double& rate = slope_of_rate[4 * side + k];
-        rate = dot(column, along[side]);
-        rate += sum(h[k] * Pack::load(y));
-      }
-    }
-    for (int k = 0; k < 8; ++k) {
-      for (int side = 0; side < 2; ++side) {
-        s[k][side] +=
-            pos * friction[m] * gradient[k] * Pack::load(&slope_of_rate[4 * side]);
-      }
-    }
-  }
-}
-
-double DerElasticity::tension(const Placement& p, std::size_t i) const noexcept {
-  const EdgeTurn& turn = edges_[i].turn;
-  const EdgeData& data = edge_data_[i];
-  if (p.origin == nullptr) return data.stretch * (turn.length - data.length);
-  const Vec e = load3(&p.origin->z[3 * i + 3]) - load3(&p.origin->z[3 * i]);
-  const double length = norm(e);
-  return p.origin->stress(data.stretch, length - data.length,
-                          turn.length * dot(turn.t, e) / length - length);
+/// By (e, theta) before and behind the joint before edge i; for the clamp's joint only
+/// the side behind.
+void DerElasticity::joint_tangent(const Edges& edges, std::size_t i,
+                                  Matrix& s) const noexcept {
+  const Edge& e = edges[i];
+  const Rows own = rotation_of(e);
+  const bool exact = tangent_ == Tangent::exact;
+  const auto add = [&](const Rows& a, const Matrix3<double>& f, const Rows& b, int side_a,
+                       int side_b) {
+    Pack h[4] = {};
+    add_product(a, f, b, h);
+    for (int k = 0; k < 4; ++k) s[4 * side_a + k][side_b] += h[k];
+  };
+  const auto add_column = [&](const Vec& moment, const Rows& rows, const Edge& lengthened,
+                              int side_a, int side_b) {
+    Pack h[4] = {};
+    add_dyad(combined(moment, rows), row(lengthened.frame.e0, 0), h);
+    for (int k = 0; k < 4; ++k) s[4 * side_a + k][side_b] += h[k];
+  };
+  const bool rubbed = exact && friction_;
+  const Matrix3<double> stiff = full(e.stiff);
+  if (rubbed) add_column(e.by_lengthening.own, own, e, 1, 1);
+  add(own, exact ? e.ww : stiff, own, 1, 1);
+  if (i == 0) return;
+  // The rotation of the edge before, in components of this edge.
+  const Rows its = rotation_of(edges[i - 1]);
+  const Rows before{combined(e.turn.column(0), its), combined(e.turn.column(1), its),
+                    combined(e.turn.column(2), its)};
+  add(own, exact ? e.wo : -1.0 * stiff, before, 1, 0);
+  add(before, exact ? e.ow : -1.0 * stiff, own, 0, 1);
+  add(before, exact ? e.oo : stiff, before, 0, 0);
+  if (!rubbed) return;
+  const Vec &by_own = e.by_lengthening.own, &by_before = e.by_lengthening.before;
+  add_column(-1.0 * by_own, before, e, 0, 1);
+  add_column(by_before, own, edges[i - 1], 1, 0);
+  add_column(-1.0 * by_before, before, edges[i - 1], 0, 0);
 }
 
 /// Stretching, and the moments of the edge's joints times its second-order rotation.
-void DerElasticity::add_edge_tangent(const Placement& p, std::size_t i, double pos,
+void DerElasticity::add_edge_tangent(const Placement& p, const Edges& edges,
+                                     std::size_t i, double pos,
                                      Pack (&h)[4]) const noexcept {
-  const EdgeTurn& turn = edges_[i].turn;
-  const EdgeData& data = edge_data_[i];
-  const bool exact = tangent_ == Tangent::exact;
-  const double across = exact ? pos * tension(p, i) / turn.length : 0;
-  const Vec along = (pos * data.stretch - across) * turn.t;
-  const Pack t(turn.t.x, turn.t.y, turn.t.z, 0);
-  h[0] += along.x * t + Pack(across, 0, 0, 0);
-  h[1] += along.y * t + Pack(0, across, 0, 0);
-  h[2] += along.z * t + Pack(0, 0, across, 0);
-  if (exact) turn.add_second(pos, edges_[i].moment, h);
+  const Edge& e = edges[i];
+  const Pack lengthening = row(e.frame.e0, 0);
+  add_dyad(pos * edge_data_[i].stretch * lengthening, lengthening, h);
+  if (tangent_ != Tangent::exact) return;
+  const DerEdgeForm<double> second(e.p, e.inverse_length, pos * moment(edges, i));
+  Matrix3<double> by_omega = full(second.omega);
+  const double pull = pos * tension(p, edges, i) * e.length;
+  by_omega.row[1].y += pull;
+  by_omega.row[2].z += pull;
+  const Rows own = rotation_of(e);
+  add_product(own, by_omega, own, h);
+  const Pack across = combined(second.sigma, own);
+  add_dyad(lengthening, across, h);
+  add_dyad(across, lengthening, h);
+}
+
+template <class Elimination>
+TRESS_FLATTEN bool DerElasticity::eliminate(
+    const Placement& p, Weights w, const Others& others,
+    std::vector<typename Elimination::Factor>& factors) noexcept {
+  const Edges& edges = factored_.edges;
+  typename Elimination::Beyond beyond;
+  StrandPivots pivots;
+  for (std::size_t i = edges.size(); i-- > 0;) {
+    beyond.add_inertia(w.acc * others.mass[i + 1]);
+    if (!others.blocks.empty() && !add_block(&others.blocks[9 * (i + 1)], beyond)) {
+      return false;
+    }
+    const double along = w.pos * edge_data_[i].stretch,
+                 turning = w.acc * others.inertia[i];
+    if constexpr (std::is_same_v<Elimination, Exact>) {
+      Elimination::eliminate(edges[i], i == 0, w.pos, along, turning, moment(edges, i),
+                             tension(p, edges, i), beyond, factors[i], pivots);
+    } else {
+      Elimination::eliminate(edges[i], i == 0, along, turning, beyond, factors[i],
+                             pivots);
+    }
+  }
+  return pivots.kept();
+}
+
+bool DerElasticity::factor(const Placement& p, Weights w, const Others& others) noexcept {
+  place(p, w, factored_);
+  return tangent_ == Tangent::exact ? eliminate<Exact>(p, w, others, exact_factors_)
+                                    : eliminate<Stiff>(p, w, others, stiff_factors_);
+}
+
+/// x += sign times the solution for the right sides in `factors`. Returns the largest
+/// lengthening.
+template <class Elimination>
+double DerElasticity::substitute(std::vector<typename Elimination::Factor>& factors,
+                                 double sign, InOut x) noexcept {
+  Edges& edges = factored_.edges;
+  Vec node, omega;
+  double most = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    Edge& e = edges[i];
+    const auto own = der_change(e, factors[i], i == 0, node, omega);
+    omega = own.omega;
+    e.sigma = own.sigma;
+    most = std::max(most, std::abs(own.sigma));
+    node = node + e.change(omega, own.sigma);
+    store3(load3(&x[3 * i]) + sign * node, &x[3 * i]);
+    x[3 * edges.size() + i] += sign * dot(e.p, omega);
+  }
+  return most;
+}
+
+template <class Elimination>
+TRESS_FLATTEN void DerElasticity::solve_by(
+    std::vector<typename Elimination::Factor>& factors, In b, Out x) noexcept {
+  const Edges& edges = factored_.edges;
+  Vec f_x, f_omega;
+  for (std::size_t i = edges.size(); i-- > 0;) {
+    Elimination::reduce(edges[i], factors[i], load3(&b[3 * i]),
+                        b[3 * edges.size() + i] * edges[i].p, 0, f_x, f_omega);
+    f_omega = edges[i].turn * f_omega;
+  }
+  std::ranges::fill(x, 0.0);
+  const double most = substitute<Elimination>(factors, 1, x);
+  if constexpr (std::is_same_v<Elimination, Exact>) {
+    if (friction_) correct(most, x);
+  }
+}
+
+/// The solution x, with lengthenings of `most` at most, corrected by what elimination
+/// leaves out (ByLengthening): x - S^-1 R x + (S^-1 R)^2 x - ...
+TRESS_FLATTEN void DerElasticity::correct(double most, InOut x) noexcept {
+  constexpr double enough = 1e-9;
+  constexpr int most_corrections = 8;
+  const Edges& edges = factored_.edges;
+  double sign = 1, left = most;
+  for (int k = 0; k < most_corrections && left > enough * most; ++k) {
+    sign = -sign;
+    Vec f_x, f_omega;
+    for (std::size_t i = edges.size(); i-- > 0;) {
+      const Edge& e = edges[i];
+      Vec on_it = e.sigma * e.by_lengthening.own;
+      if (i > 0) on_it = on_it + edges[i - 1].sigma * e.by_lengthening.before;
+      Exact::reduce(e, exact_factors_[i], {}, on_it, 0, f_x, f_omega);
+      f_omega = e.turn * (f_omega - on_it);
+    }
+    left = substitute<Exact>(exact_factors_, sign, x);
+  }
+}
+
+void DerElasticity::solve(In b, Out x) noexcept {
+  if (tangent_ == Tangent::exact) {
+    solve_by<Exact>(exact_factors_, b, x);
+  } else {
+    solve_by<Stiff>(stiff_factors_, b, x);
+  }
 }
 
 /// Each joint with the edge behind it; the first edge, with its clamp, alone.
 void DerElasticity::add_tangent(const Placement& p, double pos, double vel,
                                 GroupSum& s) noexcept {
-  place(p);
-  Matrix joint;
-  // The lower right quarter, of the edge behind.
-  const auto behind = [&](int k) -> Pack& { return joint[4 + k][1]; };
-  const auto add_edge = [&](std::size_t edge) {
-    Pack h[4] = {behind(0), behind(1), behind(2), behind(3)};
-    add_edge_tangent(p, edge, pos, h);
-    for (int k = 0; k < 4; ++k) behind(k) = h[k];
-  };
-  for (int k = 0; k < 4; ++k) behind(k) = Pack(0);
-  if (walled_) joint_tangent(p, 0, pos, vel, joint);
-  add_edge(0);
-  const Pack first[4][1] = {{behind(0)}, {behind(1)}, {behind(2)}, {behind(3)}};
-  Pack of_first[8][2];
-  to_nodes<1>(first, of_first);
-  s.add(0, of_first);
-  for (std::size_t j = walled_ ? 1 : 0; j < joints_.size(); ++j) {
-    joint_tangent(p, j, pos, vel, joint);
-    add_edge(after(j));
-    Pack m[12][3];
-    to_nodes<2>(joint, m);
-    s.add(1 + before(j), m);
+  place(p, {0, vel, pos}, now_);
+  const Edges& edges = now_.edges;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    Matrix h = {};
+    if (joint(i) != nullptr) joint_tangent(edges, i, h);
+    Pack behind[4] = {};
+    add_edge_tangent(p, edges, i, pos, behind);
+    for (int k = 0; k < 4; ++k) h[4 + k][1] += behind[k];
+    if (i == 0) {
+      const Pack first[4][1] = {{h[4][1]}, {h[5][1]}, {h[6][1]}, {h[7][1]}};
+      Pack of_first[8][2];
+      to_nodes<1>(first, of_first);
+      s.add(0, of_first);
+    } else {
+      Pack m[12][3];
+      to_nodes<2>(h, m);
+      s.add(i, m);
+    }
   }
 }
 
 Vec DerElasticity::spin(const Placement& p, In inertia) noexcept {
-  place(p);
   Vec sum;
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const Vec& t = edges_[i].turn.t;
-    sum = sum + (inertia[i] * dot(edges_[i].spin, t)) * t;
+  const Edges& edges = place(p);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    sum = sum + (inertia[i] * edges[i].motion.spin.x) * edges[i].frame.e0;
   }
   return sum;
 }
 
 std::optional<Frame> DerElasticity::end_frame(const Placement& p) noexcept {
-  const std::size_t last = edges_.size() - 1;
+  const std::size_t last = edge_data_.size() - 1;
   const Vec e = load3(&p.z[3 * last + 3]) - load3(&p.z[3 * last]);
   return edge_frame(edge_data_[last].reference, e, theta(p.z, last));
 }
 
 double DerElasticity::energy(const Placement& p) noexcept {
-  place(p);
-  double e = 0;
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const double longer = edges_[i].turn.length - edge_data_[i].length;
-    e += edge_data_[i].stretch / 2 * longer * longer;
+  const Edges& edges = place(p);
+  double sum = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double longer = edges[i].length - edge_data_[i].length;
+    sum += edge_data_[i].stretch / 2 * longer * longer;
+    if (joint(i) == nullptr) continue;
+    const Vec& bent = edges[i].strain;
+    sum += dot(joint(i)->stiffness, entrywise(bent, bent)) / 2;
   }
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const Vec bent = joints_[j].strain.value - joint_data_[j].rest;
-    e += dot(joint_data_[j].stiffness, entrywise(bent, bent)) / 2;
-  }
-  return e;
+  return sum;
 }
 
 double DerElasticity::power(const Placement& p) noexcept {
-  place(p);
+  const Edges& edges = place(p);
   double sum = 0;
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const Joint& joint = joints_[j];
-    sum -= dot(joint_data_[j].friction, entrywise(joint.rate, joint.rate));
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (joint(i) == nullptr) continue;
+    sum -= dot(joint(i)->friction, entrywise(edges[i].rate, edges[i].rate));
   }
-  if (walled_) {
-    const Joint& joint = joints_[0];
-    const JointStrain& s = joint.strain;
-    sum -= dot(joint.stress.x * s.twist + joint.stress.y * s.curvature1 +
-                   joint.stress.z * s.curvature2,
-               p.root.omega);
-  }
+  if (walled_) sum -= dot(edges[0].frame * edges[0].moment, p.root.omega);
   return sum;
 }
 
 bool DerElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
   // The forces of the step have placed its joints near enough to count turns.
-  if (!placed_) place({root, z, rate});
-  for (std::size_t j = 0; j < joints_.size(); ++j) twist_[j] = joints_[j].strain.value.x;
+  if (latest_ == nullptr) place({root, z, rate});
+  for (std::size_t i = 0; i < twist_.size(); ++i) twist_[i] = latest_->edges[i].twist;
   replaced_.clear();
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
     const Vec e = load3(&z[3 * i + 3]) - load3(&z[3 * i]);
@@ -355,7 +430,7 @@ bool DerElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
       replaced_.push_back({i, before});
     }
   }
-  placed_ = placed_ && replaced_.empty();
+  if (!replaced_.empty()) forget();
   return !replaced_.empty();
 }
 
@@ -379,7 +454,7 @@ std::vector<double> DerElasticity::memory() const {
 }
 
 void DerElasticity::recall(In memory) {
-  placed_ = false;
+  forget();
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {
     edge_data_[i].reference = load9(&memory[9 * i]);
   }

@@ -3,15 +3,19 @@
 #include "math/pack.h"
 #include "models/maximal/edge_reference.h"
 #include "models/maximal/elasticity.h"
-#include "models/maximal/joint_strain.h"
-#include "models/maximal/rod_edge.h"
+#include "models/maximal/kernel/der_forces.h"
 #include "models/maximal/rod_joint.h"
+#include "models/maximal/strand_elimination.h"
 
 namespace tress::models {
 
 /// Stretching, bending and twisting of a discrete rod (der.cpp), coordinates z = (x_0,
-/// ..., x_n, theta_0, ..., theta_{n-1}).
-class DerElasticity final : public Elasticity, private NaturalStrains {
+/// ..., x_n, theta_0, ..., theta_{n-1}), by the kernel that heads use (kernel/): forces
+/// and, of clamped strands, S by elimination. Other strands, and constraints, need S
+/// assembled: from the same derivatives by rotations of edges.
+class DerElasticity final : public Elasticity,
+                            private NaturalStrains,
+                            private StrandElimination {
  public:
   struct EdgeData {
     Frame reference;
@@ -35,6 +39,7 @@ class DerElasticity final : public Elasticity, private NaturalStrains {
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
+  StrandElimination* elimination() override { return walled_ ? this : nullptr; }
   NaturalStrains* natural_strains() override { return this; }
   bool takes_stresses() const override { return tangent_ == Tangent::exact && stiff_; }
 
@@ -46,63 +51,86 @@ class DerElasticity final : public Elasticity, private NaturalStrains {
     for (std::size_t j = 0; j < joint_data_.size(); ++j) {
       joint_data_[j].rest = load3(&values[3 * j]);
     }
-    placed_ = false;
+    forget();
   }
   std::vector<double> natural_stiffness() const override {
     return of_joints(joint_data_, &RodJoint::stiffness);
   }
 
-  struct Edge {
-    EdgeTurn turn;
-    Frame frame;
-    Vec spin;    // world components, rad/s
-    Vec moment;  // exerted by the joints on the edge
+  bool factor(const Placement& p, Weights w, const Others& others) noexcept override;
+  void solve(In b, Out x) noexcept override;
+
+  /// An edge at a placement, and the joint before it.
+  struct Edge : DerExactPlaced<double> {
+    DerMotion<double> motion;
+    Vec strain;  // less that at rest
+    Vec rate;    // of the strain
+    double twist = 0;
+    DerForces<double, true>::ByLengthening by_lengthening;
+    double sigma = 0;  // of solve()
   };
-  struct Joint {
-    JointStrain strain;
-    Vec rate;    // rate of the strains
-    Vec stress;  // elastic and friction
+  using Edges = std::vector<Edge>;
+  /// Edges, and where they were computed.
+  struct Placed {
+    explicit Placed(std::size_t count) : edges(count), at(4 * count + 3) {}
+    Edges edges;
+    LastPlacement at;
   };
+  using Stiff = DerStiffElimination<double>;
+  using Exact = DerExactElimination<double>;
   /// Matrix over (e, theta) of the edges before and behind a joint; one pack per row for
   /// each edge.
   using Matrix = Pack[8][2];
 
-  bool clamp(std::size_t joint) const { return walled_ && joint == 0; }
-  /// Edge before a joint; undefined for the clamp's joint.
-  std::size_t before(std::size_t joint) const { return walled_ ? joint - 1 : joint; }
-  std::size_t after(std::size_t joint) const { return walled_ ? joint : joint + 1; }
+  /// Joint before an edge; the first edge of a free strand has none.
+  const RodJoint* joint(std::size_t edge) const {
+    const std::size_t j = walled_ ? edge : edge - 1;  // wraps around
+    return j < joint_data_.size() ? &joint_data_[j] : nullptr;
+  }
   double theta(In z, std::size_t edge) const { return z[angles_ + edge]; }
 
-  /// Computes edges_ and joints_ unless they belong to this placement already: a step
-  /// needs forces and tangent of the same one.
-  void place(const Placement& p) noexcept;
-  bool placed_at(const Placement& p) noexcept;  // and remembers p
+  /// The edges at a placement, computed unless they are known: Newton's method needs
+  /// matrix and force of the same.
+  const Edges& place(const Placement& p) noexcept;
+  /// Those of a matrix.
+  void place(const Placement& p, Weights w, Placed& to) noexcept;
+  template <bool with_tangent, bool exact>
+  void place_as(const Placement& p, Weights w, Placed& to) noexcept;
+  /// Of all joints on an edge.
+  Vec moment(const Edges& edges, std::size_t i) const;
+  void forget();
   void forget_turns();
-  const Frame& frame_before(const Placement& p, std::size_t joint) const {
-    return clamp(joint) ? p.root.frame : edges_[before(joint)].frame;
-  }
-  void joint_tangent(const Placement& p, std::size_t joint, double pos, double vel,
-                     Matrix& s) const noexcept;
-  void add_slope_of_friction(const Placement& p, std::size_t joint, double pos,
-                             Matrix& s) const noexcept;
+  void joint_tangent(const Edges& edges, std::size_t i, Matrix& s) const noexcept;
   /// Tension (N) in the tangent's terms of second order.
-  double tension(const Placement& p, std::size_t edge) const noexcept;
-  void add_edge_tangent(const Placement& p, std::size_t edge, double pos,
+  double tension(const Placement& p, const Edges& edges, std::size_t i) const noexcept {
+    if (p.origin == nullptr) return edges[i].tension;
+    return length_stress(edge_data_[i].stretch, edge_data_[i].length, p, i);
+  }
+  void add_edge_tangent(const Placement& p, const Edges& edges, std::size_t i, double pos,
                         Pack (&h)[4]) const noexcept;
+  template <class Elimination>
+  bool eliminate(const Placement& p, Weights w, const Others& others,
+                 std::vector<typename Elimination::Factor>& factors) noexcept;
+  template <class Elimination>
+  void solve_by(std::vector<typename Elimination::Factor>& factors, In b, Out x) noexcept;
+  template <class Elimination>
+  double substitute(std::vector<typename Elimination::Factor>& factors, double sign,
+                    InOut x) noexcept;
+  void correct(double most, InOut x) noexcept;
 
   std::vector<EdgeData> edges_at_start_, edge_data_;
   std::vector<Replaced> replaced_;
   std::vector<RodJoint> joint_data_;
-  std::vector<double> twist_;  // per joint, after the last accepted step: see wound()
+  std::vector<double> twist_;  // of the joint before every edge, after the last accepted
+                               // step: see wound()
   bool walled_;
   Tangent tangent_;
   bool friction_, stiff_;  // whether joints have friction, edges stretch
   std::size_t angles_;     // first angle in z
-  std::vector<Edge> edges_;
-  std::vector<Joint> joints_;
-  std::vector<double> placed_z_, placed_rate_;
-  RootPose placed_root_;
-  bool placed_ = false;  // at these, with the present references
+  Placed factored_, now_;  // of factor(), and of anything else
+  const Placed* latest_ = nullptr;
+  std::vector<Stiff::Factor> stiff_factors_;
+  std::vector<Exact::Factor> exact_factors_;
 };
 
 }  // namespace tress::models

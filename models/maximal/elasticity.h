@@ -32,6 +32,17 @@ struct Placement {
   const StressOrigin* origin = nullptr;
 };
 
+/// Stress in the tangent's terms of second order of a spring along the edge before node
+/// i + 1, from the origin of p.
+inline double length_stress(double stiffness, double rest, const Placement& p,
+                            std::size_t i) {
+  const auto along = [i](In z) { return load3(&z[3 * i + 3]) - load3(&z[3 * i]); };
+  const Vec from = along(p.origin->z);
+  const double length = norm(from);
+  return p.origin->stress(stiffness, length - rest,
+                          dot(from, along(p.z)) / length - length);
+}
+
 /// The energy and friction of an Elasticity in terms of strains s(z, clamp), for the
 /// ComplianceForm of contract/system.h.
 class StrainForm {
@@ -53,6 +64,8 @@ class StrainForm {
                       const double* /*origin*/, const double* /*z*/,
                       double* /*q*/) noexcept {}
 };
+
+class StrandElimination;  // models/maximal/strand_elimination.h
 
 /// Internal forces of a strand: an elastic energy E(z, clamp) and friction. Groups are
 /// sets of coordinates (indices into z) coupled by one term; the tangent is delivered as
@@ -94,6 +107,8 @@ class Elasticity {
   virtual void recall(In /*memory*/) {}
   /// Whether tangents look at Placement::origin.
   virtual bool takes_stresses() const { return false; }
+  /// Null if S cannot be eliminated along the strand, and must be assembled.
+  virtual StrandElimination* elimination() { return nullptr; }
   /// Null if the energy is not a function of strains.
   virtual StrainForm* strain_form() { return nullptr; }
   /// Null if it has no natural strain for every direction in which the strand bends.

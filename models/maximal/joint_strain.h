@@ -66,13 +66,6 @@ struct TwoVectorForm {
     add_both(1, pack({0, factor, 0}));
     add_both(2, pack({0, 0, factor}));
   }
-  /// += factor ((w - u) . a)^2.
-  void add_relative(double factor, const Vec& a) {
-    const Pack of_a = pack(a);
-    add_both(0, factor * a.x * of_a);
-    add_both(1, factor * a.y * of_a);
-    add_both(2, factor * a.z * of_a);
-  }
   /// += factor w . (u x a).
   void add_triple(double factor, const Vec& a) {
     // u x a = -[a]x u

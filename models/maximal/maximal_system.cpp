@@ -5,6 +5,7 @@
 
 #include "linear/finite.h"
 #include "linear/sparse_pattern.h"
+#include "models/maximal/strand_elimination.h"
 
 namespace tress::models {
 namespace {
@@ -43,6 +44,14 @@ void spread(const NodeMean& at, const Vec& force, InOut onto_nodes) {
   }
 }
 
+/// Whether mass point i is node i.
+bool nodal(const std::vector<MaximalStrand::MassPoint>& mass) {
+  int node = 0;
+  return std::ranges::all_of(mass, [&](const MaximalStrand::MassPoint& point) {
+    return point.at.nodes == 1 && point.at.weight[0] == 1 && point.at.first == node++;
+  });
+}
+
 }  // namespace
 
 MaximalSystem::MaximalSystem(MaximalStrand strand)
@@ -53,6 +62,7 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
                        return points(needs_);
                      }),
       needs_(needs(strand_.effects)),
+      nodal_(nodal(strand_.mass)),
       elastic_(strand_.elasticity->groups(), static_cast<int>(held())),
       massive_(groups_of_mass(strand_), static_cast<int>(held())),
       inert_(groups_of_others(strand_), static_cast<int>(held())),
@@ -73,6 +83,12 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
   }
   blocks_.resize(9 * count);
   scratch_.resize(static_cast<std::size_t>(pattern_.rows));
+  // Constraints need the matrix, and directed loads couple neighbouring nodes. A solver
+  // that is asked for by name solves the assembled equations.
+  if (nodal_ && strand_.clamped && !strand_.constraints && !directed() &&
+      strand_.solver == LinearKind::automatic) {
+    elimination_ = strand_.elasticity->elimination();
+  }
   if (!needs_.couplings) return;
   std::vector<Mean> means;
   for (const auto& point : strand_.mass) means.push_back(mean_of(point.at));
@@ -169,12 +185,17 @@ void MaximalSystem::forces(double t, In a) noexcept {
   loads(t);
   for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
     const auto& point = strand_.mass[i];
+    const auto of_node = [&](std::size_t k) {
+      const std::size_t node = 3 * (static_cast<std::size_t>(point.at.first) + k);
+      return node < held() ? pose_.a : load3(&a[node - held()]);
+    };
+    if (nodal_) {
+      store3(point.mass * of_node(0) - load3(&load_[3 * i]), &force_[3 * i]);
+      continue;
+    }
     Vec acceleration;
-    for (int k = 0; k < point.at.nodes; ++k) {
-      const std::size_t node = 3 * static_cast<std::size_t>(point.at.first + k);
-      const Vec of_node = node < held() ? pose_.a : load3(&a[node - held()]);
-      acceleration =
-          acceleration + point.at.weight[static_cast<std::size_t>(k)] * of_node;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.at.nodes); ++k) {
+      acceleration = acceleration + point.at.weight[k] * of_node(k);
     }
     spread(point.at, point.mass * acceleration - load3(&load_[3 * i]), force_);
   }
@@ -222,21 +243,24 @@ void MaximalSystem::add_directions(double t, const Points& p, double pos,
   directions_.add_tangent(x_, tangent_, blocks_, s);
 }
 
-/// `coupled_apart`: without the derivatives of effects that have couplings.
+/// blocks_ = derivatives of the loads. `coupled_apart`: without those of effects that
+/// have couplings.
+void MaximalSystem::find_blocks(double t, Weights w, bool coupled_apart) noexcept {
+  if (!needs_.derivatives && !directed()) return;  // they are 0 for good
+  std::ranges::fill(blocks_, 0.0);
+  if (w.pos == 0 && w.vel == 0) return;
+  const Points p = points(needs_);
+  for (const auto& effect : strand_.effects) {
+    if (coupled_apart && effect->needs().couplings) continue;
+    effect->add_derivatives(t, p, -w.pos, -w.vel, blocks_);
+  }
+}
+
 Status MaximalSystem::assemble(double t, In q, In v, Weights w, Out s,
                                bool coupled_apart) noexcept {
   place(t, q, v);
   std::ranges::fill(s, 0.0);
-  if (needs_.derivatives || directed()) {  // else they are 0 for good
-    std::ranges::fill(blocks_, 0.0);
-    if (w.pos != 0 || w.vel != 0) {
-      const Points p = points(needs_);
-      for (const auto& effect : strand_.effects) {
-        if (coupled_apart && effect->needs().couplings) continue;
-        effect->add_derivatives(t, p, -w.pos, -w.vel, blocks_);
-      }
-    }
-  }
+  find_blocks(t, w, coupled_apart);
   GroupSum of_mass(massive_, s), of_others(inert_, s), elastic(elastic_, s);
   add_mass(w, of_mass);
   for (std::size_t i = 0; i < strand_.inertia.size(); ++i) {
@@ -253,14 +277,27 @@ Status MaximalSystem::assemble(double t, In q, In v, Weights w, Out s,
   return all_finite(s) ? Status::ok : Status::retry;
 }
 
+bool MaximalSystem::eliminate(double t, Weights w) noexcept {
+  find_blocks(t, w, true);
+  Placement here = placement();
+  if (displaced_) here.origin = &origin_;
+  const In blocks = needs_.derivatives ? In(blocks_) : In();
+  if (!elimination_->factor(here, w, {mass_, strand_.inertia, blocks})) return false;
+  displaced_ = false;
+  return true;
+}
+
 Status MaximalSystem::linearize(double t, In q, In v, In, Weights w) noexcept {
-  const Status s = assemble(t, q, v, w, values_, true);
-  if (s != Status::ok) return s;
+  place(t, q, v);
   contacts_.clear();
   if (coupled_solver_) {
     const Points p = points(needs_);
     for (const auto& effect : strand_.effects) effect->add_couplings(t, p, contacts_);
   }
+  eliminated_ = elimination_ != nullptr && contacts_.empty() && eliminate(t, w);
+  if (eliminated_) return Status::ok;
+  const Status s = assemble(t, q, v, w, values_, true);
+  if (s != Status::ok) return s;
   if (contacts_.empty()) return solver_->factor(values_);
   coupled_solver_->touch(contacts_, points_of);
   coupled_solver_->clear();
@@ -270,6 +307,10 @@ Status MaximalSystem::linearize(double t, In q, In v, In, Weights w) noexcept {
 }
 
 Status MaximalSystem::solve(In b, Out x) noexcept {
+  if (eliminated_) {
+    elimination_->solve(b, x);
+    return all_finite(x) ? Status::ok : Status::retry;
+  }
   std::ranges::copy(b, x.begin());
   return contacts_.empty() ? solver_->solve(x) : coupled_solver_->solve(x);
 }

@@ -50,8 +50,10 @@ struct MaximalStrand {
 ///
 ///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
 ///
-/// M is constant. Loads of effects act on the mass points. linearize assembles S in a
-/// fixed sparse pattern and factors it with `solver`; O(nodes) for a strand. Couplings of
+/// M is constant. Loads of effects act on the mass points. linearize eliminates along the
+/// strand if its elasticity does (StrandElimination) and nothing else couples coordinates
+/// beyond a node; otherwise it assembles S in a fixed sparse pattern and factors it with
+/// `solver`. O(nodes) for a strand. Couplings of
 /// distant points (Coupling) are in linearize and solve only; SparseForm has only their
 /// diagonal blocks per point. If mass points are nodes and the elasticity has a
 /// StrainForm, the system has a ComplianceForm.
@@ -143,6 +145,8 @@ class MaximalSystem final : public System,
   void place(double t, In q, In v) noexcept;
   Placement placement() const { return {pose_, z_, rate_}; }
   Points points(Needs wanted) noexcept;
+  bool eliminate(double t, Weights w) noexcept;
+  void find_blocks(double t, Weights w, bool coupled_apart) noexcept;
   bool directed() const { return needs_.directions && strand_.tangent == Tangent::exact; }
   void add_directions(double t, const Points& p, double pos, Out s) noexcept;
   Status assemble(double t, In q, In v, Weights w, Out s, bool coupled_apart) noexcept;
@@ -155,10 +159,13 @@ class MaximalSystem final : public System,
   MaximalStrand strand_;
   HeldContacts held_contacts_;
   Needs needs_;
+  bool nodal_;  // mass point i is node i
   bool regular_mass_ = true;
   Groups elastic_, massive_, inert_;  // for energies, mass points, other coordinates
   PointDirections directions_;
   Pattern pattern_;
+  StrandElimination* elimination_ = nullptr;  // null: S is assembled
+  bool eliminated_ = false;                   // by the last linearize()
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Coupling> contacts_;
   std::unique_ptr<CoupledSolver> coupled_solver_;  // if effects have couplings

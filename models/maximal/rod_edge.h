@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include "contract/layers.h"
@@ -54,13 +53,6 @@ struct EdgeTurn {
     if (k == 3) return t;
     const Vec axis{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
     return spin(axis, 0);
-  }
-  /// Rows of that matrix: the derivatives of a component of w by (e, theta).
-  std::array<Pack, 3> rows() const {
-    const Vec u = (1 / length) * t;  // t x de/L = [u]x de
-    return {Pack(t.x * c.x, t.x * c.y - u.z, t.x * c.z + u.y, t.x),
-            Pack(t.y * c.x + u.z, t.y * c.y, t.y * c.z - u.x, t.y),
-            Pack(t.z * c.x - u.y, t.z * c.y + u.x, t.z * c.z, t.z)};
   }
   /// h += factor moment . Q as a symmetric matrix (4 x 4), one pack per row.
   void add_second(double factor, const Vec& moment, Pack (&h)[4]) const {

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <type_traits>
 
+#include "models/maximal/spring_chain.h"
+
 namespace tress::models {
 namespace {
 
@@ -20,7 +22,7 @@ template <class Strain>
 constexpr bool is_length = false;
 template <int n>
 constexpr bool is_length<Chord<n>> = true;
-/// Angles whose slope turns over where the joint is straight.
+/// Angles whose binormal turns over where the joint is straight.
 template <class Strain>
 constexpr bool is_bend =
     std::is_same_v<Strain, Hinge> || std::is_same_v<Strain, BendAngle>;
@@ -162,7 +164,9 @@ void at_number(All& springs, std::size_t number, Act act) {
 }  // namespace
 
 SpringElasticity::SpringElasticity(Springs springs, SpringTangent tangent)
-    : springs_(std::move(springs)), tangent_(tangent) {
+    : springs_(std::move(springs)),
+      tangent_(tangent),
+      chain_(spring_chain(springs_, tangent)) {
   std::vector<std::size_t> middle;  // in half edges
   for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t number) {
     along_.push_back(number);
@@ -170,6 +174,10 @@ SpringElasticity::SpringElasticity(Springs springs, SpringTangent tangent)
   });
   std::ranges::stable_sort(along_, {}, [&](std::size_t k) { return middle[k]; });
 }
+
+SpringElasticity::~SpringElasticity() = default;
+
+StrandElimination* SpringElasticity::elimination() { return chain_.get(); }
 
 std::vector<std::vector<int>> SpringElasticity::groups() const {
   std::vector<std::vector<int>> all;
@@ -182,6 +190,7 @@ std::vector<std::vector<int>> SpringElasticity::groups() const {
 }
 
 void SpringElasticity::add_force(const Placement& p, InOut f) noexcept {
+  if (chain_ != nullptr) return chain_->add_force(p, f);
   for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
     const Stretched<Strain> now(spring, p);
     for (int k = 0; k < Strain::edges; ++k) {
@@ -243,15 +252,22 @@ bool SpringElasticity::rebase(const RootPose& root, InOut z, InOut rate) {
   for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t) {
     if constexpr (is_bend<Strain> || is_dihedral<Strain>) {
       if (is_bend<Strain> && spring.rest == 0) return;  // smooth
-      const Stretched<Strain> now(spring, {root, z, rate});
+      Angle now{};
+      if constexpr (is_bend<Strain>) {
+        const Vec x[] = {load3(&z[3 * spring.first]), load3(&z[3 * spring.first + 3]),
+                         load3(&z[3 * spring.first + 6])};
+        now.binormal = cross(x[1] - x[0], x[2] - x[1]);
+      } else {
+        now.value = Stretched<Strain>(spring, {root, z, rate}).value;
+      }
       if (!known) {
-        angles_.push_back({now.value, now.slope[0]});
+        angles_.push_back(now);
         return;
       }
       Angle& last = angles_[seen++];
-      const bool jumped = is_bend<Strain> ? dot(now.slope[0], last.slope) < 0
+      const bool jumped = is_bend<Strain> ? dot(now.binormal, last.binormal) < 0
                                           : std::abs(now.value - last.value) > turned;
-      last = {now.value, now.slope[0]};
+      last = now;
       if (jumped && jumps_.count++ == 0) jumps_.joint = spring.first + 1;
     }
   });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -37,9 +38,12 @@ using Springs =
 /// terms that could make the matrix indefinite or, with friction, unsymmetric.
 enum class SpringTangent { exact, filtered };
 
+class SpringChain;
+
 class SpringElasticity final : public Elasticity, private StrainForm {
  public:
   SpringElasticity(Springs springs, SpringTangent tangent);
+  ~SpringElasticity() override;
 
   std::vector<std::vector<int>> groups() const override;
   void add_force(const Placement& p, InOut f) noexcept override;
@@ -57,6 +61,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
     jumps_ = {};
   }
   void recall(In /*memory*/) override { angles_.clear(); }
+  StrandElimination* elimination() override;
   StrainForm* strain_form() override { return this; }
   bool takes_stresses() const override {
     return tangent_ == SpringTangent::exact &&
@@ -72,10 +77,11 @@ class SpringElasticity final : public Elasticity, private StrainForm {
 
   Springs springs_;
   SpringTangent tangent_;
+  std::unique_ptr<SpringChain> chain_;  // null: springs that the kernel does not have
   /// A strain that can jump, at the last rebase().
   struct Angle {
-    double value;
-    Vec slope;  // over its first edge
+    double value;  // of a dihedral angle
+    Vec binormal;  // of a bend, whatever its length
   };
   std::vector<Angle> angles_;  // of those springs, in order; empty: not known
   Jumps jumps_;

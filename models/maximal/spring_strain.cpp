@@ -2,54 +2,91 @@
 
 namespace tress::models {
 
-Hinge::Parts::Parts(const Vec* e)
-    : length{std::sqrt(dot(e[0], e[0])), std::sqrt(dot(e[1], e[1]))},
-      along(dot(e[0], e[1])),
-      c(length[0] * length[1] + along),
-      x(cross(e[0], e[1])) {
-  xx = dot(x, x);
-  value = std::sqrt(4 * xx / (c * c) + delta * delta);
-  slope_x[0] = 2.0 * cross(e[1], x);
-  slope_x[1] = 2.0 * cross(x, e[0]);
-  slope_c[0] = (length[1] / length[0]) * e[0] + e[1];
-  slope_c[1] = (length[0] / length[1]) * e[1] + e[0];
+namespace {
+
+using Direction = SpringDirection<double>;
+
+Direction along(const Vec& edge) {
+  Direction to;
+  to.point(edge);
+  return to;
+}
+
+Vec slope(const Direction& edge, const double (&g)[2]) {
+  return g[0] * edge.frame.e1 + g[1] * edge.frame.e2;
+}
+
+/// Of a strain with slopes g by turns of edge i, which its length does not change.
+template <int edges>
+void add_by_one(int i, const Direction& edge, const double (&g)[2],
+                const TurnForm<double>& turns, EdgeMatrix<edges>& h) {
+  const Vec &t = edge.frame.e0, &m1 = edge.frame.e1, &m2 = edge.frame.e2;
+  const Vec longer = -edge.inverse_length * slope(edge, g);
+  h.add_outer(i, i, 1, t, longer);
+  h.add_outer(i, i, 1, m1,
+              turns.xx * m1 + turns.xy * m2 + (-edge.inverse_length * g[0]) * t);
+  h.add_outer(i, i, 1, m2,
+              turns.xy * m1 + turns.yy * m2 + (-edge.inverse_length * g[1]) * t);
+}
+
+/// A joint of two edges.
+struct HingeAt {
+  explicit HingeAt(const Vec* e)
+      : edge{along(e[0]), along(e[1])}, joint(edge[0], edge[1]) {}
+
+  /// += by(k, l) over turns k of edge i and l of edge j.
+  template <class By>
+  void add(int i, int j, By by, EdgeMatrix<2>& h) const {
+    const FrameOf<double>&f = edge[i].frame, &g = edge[j].frame;
+    h.add_outer(i, j, 1, f.e1, by(0, 0) * g.e1 + by(0, 1) * g.e2);
+    h.add_outer(i, j, 1, f.e2, by(1, 0) * g.e1 + by(1, 1) * g.e2);
+  }
+
+  Direction edge[2];
+  SpringHinge<double> joint;
+};
+
+}  // namespace
+
+double Hinge::gradient(const Vec* e, Vec* g) const {
+  const HingeAt at(e);
+  for (int i = 0; i < 2; ++i) g[i] = slope(at.edge[i], at.joint.g[i]);
+  return at.joint.value();
 }
 
 void Hinge::hessian(const Vec* e, EdgeMatrix<2>& h) const {
-  const Parts p(e);
-  const double c2 = p.c * p.c, v = p.value;
-  // Of Q = value^2 by xx and c, then of value = sqrt(Q).
-  const double q_x = 4 / c2, q_c = -8 * p.xx / (c2 * p.c);
-  const double q_xc = -8 / (c2 * p.c), q_cc = 24 * p.xx / (c2 * c2);
-  const double by_x = q_x / (2 * v), by_c = q_c / (2 * v), v3 = 4 * v * v * v;
-  h.add_product(-q_x * q_x / v3, p.slope_x, p.slope_x);
-  h.add_product(2 * (q_xc / (2 * v) - q_x * q_c / v3), p.slope_x, p.slope_c);
-  h.add_product(q_cc / (2 * v) - q_c * q_c / v3, p.slope_c, p.slope_c);
-  for (int i = 0; i < 2; ++i) {
-    const int j = 1 - i;
-    const double ratio = p.length[j] / p.length[i];
-    const Vec t = (1 / p.length[i]) * e[i];
-    h.add_identity(i, i, 2 * by_x * p.length[j] * p.length[j] + by_c * ratio);
-    h.add_outer(i, i, -2 * by_x, e[j], e[j]);
-    h.add_outer(i, i, -by_c * ratio, t, t);
-    h.add_identity(i, j, by_c - 2 * by_x * p.along);
-    h.add_outer(i, j, 4 * by_x + by_c / (p.length[0] * p.length[1]), e[i], e[j]);
-    h.add_outer(i, j, -2 * by_x, e[j], e[i]);
-  }
+  const HingeAt at(e);
+  const auto second = at.joint.second();
+  add_by_one(0, at.edge[0], at.joint.g[0], second.by_before, h);
+  add_by_one(1, at.edge[1], at.joint.g[1], second.by_after, h);
+  at.add(
+      0, 1, [&](int k, int l) { return second.mixed[k][l]; }, h);
+  at.add(
+      1, 0, [&](int k, int l) { return second.mixed[l][k]; }, h);
 }
 
 void Hinge::metric(const Vec* e, EdgeMatrix<2>& m) const {
-  const Parts p(e);
-  const double scale = 4 / (p.c * p.c);
+  const HingeAt at(e);
   for (int i = 0; i < 2; ++i) {
-    const int j = 1 - i;
-    m.add_identity(i, i, scale * p.length[j] * p.length[j]);
-    m.add_outer(i, i, -scale, e[j], e[j]);
-    m.add_identity(i, j, -scale * p.along);
-    m.add_outer(i, j, scale, e[i], e[j]);
+    for (int j = 0; j < 2; ++j) {
+      at.add(
+          i, j, [&](int k, int l) { return at.joint.metric(i, k, j, l); }, m);
+    }
   }
-  m.add_product(-scale / p.c, p.slope_x, p.slope_c);
-  m.add_product(scale * p.xx / (p.c * p.c), p.slope_c, p.slope_c);
+}
+
+double WallBend::gradient(const Vec* e, Vec* g) const {
+  const Direction edge = along(e[0]);
+  const auto strain = SpringWall<double>(t, edge).along(m);
+  g[0] = slope(edge, strain.g);
+  return strain.value;
+}
+
+void WallBend::hessian(const Vec* e, EdgeMatrix<1>& h) const {
+  const Direction edge = along(e[0]);
+  const SpringWall<double> joint(t, edge);
+  const auto strain = joint.along(m);
+  add_by_one(0, edge, strain.g, joint.second(strain), h);
 }
 
 namespace {
@@ -113,24 +150,6 @@ void WallAltitude::hessian(const Vec* e, EdgeMatrix<2>& h) const {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) h.m[i][j] += of_all.m[3 + i][3 + j];
   }
-}
-
-double WallBend::gradient(const Vec* e, Vec* g) const {
-  const double length = std::sqrt(dot(e[0], e[0])), w = length + dot(t, e[0]);
-  const double kappa = 2 * dot(m, e[0]) / w;
-  g[0] = (2 / w) * m - (kappa / w) * ((1 / length) * e[0] + t);
-  return kappa;
-}
-
-void WallBend::hessian(const Vec* e, EdgeMatrix<1>& h) const {
-  const double length = std::sqrt(dot(e[0], e[0])), w = length + dot(t, e[0]);
-  const double kappa = 2 * dot(m, e[0]) / w;
-  const Vec direction = (1 / length) * e[0];
-  const Vec slope = direction + t;  // of w
-  h.add_product(-4 / (w * w), &m, &slope);
-  h.add_product(2 * kappa / (w * w), &slope, &slope);
-  h.add_identity(0, 0, -kappa / (w * length));
-  h.add_product(kappa / (w * length), &direction, &direction);
 }
 
 }  // namespace tress::models

@@ -4,10 +4,12 @@
 
 #include "contract/layers.h"
 #include "math/frame.h"
+#include "models/maximal/kernel/spring_joint.h"
 
 /// Strains of the springs of a chain of points, each a function of neighbouring edges e
 /// (m). `value` is the definition, for any scalar; `gradient` and `hessian` are its
-/// closed-form derivatives. A strain that is the length of a vector b also has `metric`,
+/// closed-form derivatives, those of Hinge and WallBend by the kernel's joint
+/// (kernel/spring_joint.h). A strain that is the length of a vector b also has `metric`,
 /// J^T J with J = db/de, the second derivative of |b|^2/2 without that of b.
 namespace tress::models {
 
@@ -93,7 +95,7 @@ struct Chord {
 /// there, which delta rounds off. Not defined for antiparallel edges.
 struct Hinge {
   static constexpr int edges = 2;
-  static constexpr double delta = 1e-6;
+  static constexpr double delta = hinge_delta;
 
   template <class T>
   T value(const Vec3<T>* e) const {
@@ -102,23 +104,9 @@ struct Hinge {
     const T c = sqrt(dot(e[0], e[0]) * dot(e[1], e[1])) + dot(e[0], e[1]);
     return sqrt(4.0 * dot(x, x) / (c * c) + T(delta * delta));
   }
-  double gradient(const Vec* e, Vec* g) const {
-    const Parts p(e);
-    const double by_x = 2 / (p.c * p.c * p.value);
-    const double by_c = -4 * p.xx / (p.c * p.c * p.c * p.value);
-    for (int k = 0; k < 2; ++k) g[k] = by_x * p.slope_x[k] + by_c * p.slope_c[k];
-    return p.value;
-  }
+  double gradient(const Vec* e, Vec* g) const;
   void hessian(const Vec* e, EdgeMatrix<2>& h) const;
   void metric(const Vec* e, EdgeMatrix<2>& m) const;
-
- private:
-  /// value^2 = 4 xx/c^2 + delta^2 with xx = |e0 x e1|^2, and the slopes of xx and c.
-  struct Parts {
-    explicit Parts(const Vec* e);
-    double length[2], along, c, xx, value;
-    Vec x, slope_x[2], slope_c[2];
-  };
 };
 
 /// Altitude of the tetrahedron of three edges (m): the signed distance between its
@@ -158,8 +146,8 @@ struct WallAltitude {
   void hessian(const Vec* e, EdgeMatrix<2>& h) const;
 };
 
-/// Curvature binormal between a wall's tangent and the first edge, along the wall's axis
-/// e1 or e2: kappa = 2 m . e/(|e| + t . e) with m = -e2 for e1, m = e1 for e2.
+/// Curvature binormal between a wall's tangent t and the first edge, along the wall's
+/// axis m = e1 or e2: kappa = 2 m . (t x e)/(|e| + t . e).
 struct WallBend {
   static constexpr int edges = 1;
   enum class About { e1, e2 } about = About::e1;
@@ -167,13 +155,15 @@ struct WallBend {
 
   void place(const Frame& clamp) {
     t = clamp.e0;
-    m = about == About::e1 ? -1.0 * clamp.e2 : clamp.e1;
+    m = about == About::e1 ? clamp.e1 : clamp.e2;
   }
 
   template <class T>
   T value(const Vec3<T>* e) const {
     using std::sqrt;
-    return 2.0 * dot(Vec3<T>(m), e[0]) / (sqrt(dot(e[0], e[0])) + dot(Vec3<T>(t), e[0]));
+    const Vec3<T> wall(t);
+    return 2.0 * dot(Vec3<T>(m), cross(wall, e[0])) /
+           (sqrt(dot(e[0], e[0])) + dot(wall, e[0]));
   }
   double gradient(const Vec* e, Vec* g) const;
   void hessian(const Vec* e, EdgeMatrix<1>& h) const;

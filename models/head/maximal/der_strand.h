@@ -9,9 +9,26 @@
 #include "math/lanes.h"
 #include "models/head/lane_energies.h"
 #include "models/head/lane_root.h"
-#include "models/head/maximal/der_elimination.h"
+#include "models/maximal/kernel/der_forces.h"
 
 namespace tress::models {
+
+/// What the edges of a discrete rod have in common, in consistent units.
+template <class T>
+struct DerMaterial {
+  T length;           // of an edge at rest
+  T mass, drag;       // of a node: kg, force per velocity; half of it at the tip
+  T inertia;          // of an angle
+  T stretch;          // EA/l
+  Vec3<T> stiffness;  // of a joint between edges: diag(GJ, EI1, EI2)/l; clamp: twice
+  T friction;         // of a joint: gamma/l; clamp: twice
+  T rate;             // typical: speeds are of the order of `rate` lengths
+
+  /// Of node i + 1 of n.
+  T inertia_of_node(Weights w, int i, int n) const {
+    return T(i + 1 < n ? 1 : 0.5) * (T(w.acc) * mass + T(w.vel) * drag);
+  }
+};
 
 /// What an edge remembers.
 template <class T>
@@ -54,9 +71,9 @@ struct DerEdge {
 /// (x, theta) keeps 7 unknowns and has couplings of 11. In these unknowns the small
 /// entries of twist stay apart from the large ones of bending, which matters in 32 bits.
 ///
-/// `exact`: with the second derivatives of strains, edges and stretch, but without the
-/// slopes of rates of friction, which are not symmetric: Newton's iteration then
-/// converges linearly, by a factor of the order of the rotation in a step.
+/// `exact`: with the second derivatives of strains, edges and stretch, and the slopes of
+/// rates of friction, which are not symmetric, but for what they owe to lengthening
+/// (DerForces::ByLengthening).
 template <class T, bool exact>
 class DerStrand {
  public:
@@ -67,7 +84,11 @@ class DerStrand {
 
   using Elimination =
       std::conditional_t<exact, DerExactElimination<T>, DerStiffElimination<T>>;
-  using Placed = typename Elimination::Placed;
+  using Forces = DerForces<T, exact>;
+  struct Placed : Elimination::Placed {
+    Vec force;  // residual of the node at its end, without those of edges
+    T turning;  // inertia times theta''
+  };
   using Factor = typename Elimination::Factor;
 
   DerStrand(int edges, const Vec& gravity) : n_(edges), gravity_(gravity) {}
@@ -82,7 +103,28 @@ class DerStrand {
                          const T* a, T* correction, Placed* placed,
                          Factor* factors) const {
     place<true>(m, edges, clamp, w, q, v, a, placed);
-    Elimination::run(n_, m, w, placed, factors);
+    const T pos(w.pos), along = pos * m.stretch, turning = T(w.acc) * m.inertia;
+    typename Elimination::Beyond beyond;
+    Vec f_x{}, f_omega{}, moment_behind{};
+    for (int i = n_ - 1; i >= 0; --i) {
+      const Placed& e = placed[i];
+      beyond.add_inertia(m.inertia_of_node(w, i, n_));
+      if constexpr (exact) {
+        Elimination::eliminate(e, i == 0, pos, along, turning, e.moment - moment_behind,
+                               e.tension, beyond, factors[i], AnyPivots{});
+      } else {
+        Elimination::eliminate(e, i == 0, along, turning, beyond, factors[i],
+                               AnyPivots{});
+      }
+      Elimination::reduce(e, factors[i], e.force, e.turning * e.p + e.moment, e.tension,
+                          f_x, f_omega);
+      if constexpr (exact) {
+        moment_behind = e.turn * e.moment;
+        f_omega = e.turn * f_omega - moment_behind;
+      } else {
+        f_omega = e.turn * (f_omega - e.moment);
+      }
+    }
     return substitute(m, w, placed, factors, correction);
   }
 
@@ -99,16 +141,11 @@ class DerStrand {
       const Placed& e = now[i];
       const Vec moment =
           e.moment - (i + 1 < n_ ? now[i + 1].turn * now[i + 1].moment : Vec{});
-      // moment . omega = force . de + torque dtheta.
-      const Vec p = e.p;
-      const T along = moment.x;
-      const Vec force = e.tension * e.frame.e0 +
-                        (e.inverse_length * (moment.z - along * p.z)) * e.frame.e1 -
-                        (e.inverse_length * (moment.y - along * p.y)) * e.frame.e2;
+      const Vec force = e.force_by(moment);
       const Vec node = e.force + force - from_behind;
       from_behind = force;
-      Elimination::reduce(placed[i], factors[i], node, (e.turning + along) * placed[i].p,
-                          T(0), f_x, f_omega);
+      Elimination::reduce(placed[i], factors[i], node,
+                          (e.turning + moment.x) * placed[i].p, T(0), f_x, f_omega);
       f_omega = placed[i].turn * f_omega;
     }
     return substitute(m, w, placed, factors, correction);
@@ -130,16 +167,6 @@ class DerStrand {
       some = larger(some, far);
     }
     return some;
-  }
-
-  /// Frame of an edge as models/maximal/rod_edge.h's edge_frame().
-  static FrameOf<T> frame(const DerEdge<T>& edge, const Vec& t, const T& beside,
-                          const T& theta) {
-    const SineCosine<T> turn = sine_cosine(theta);
-    const Vec u =
-        turn.cosine * edge.direction + turn.sine * cross(edge.tangent, edge.direction);
-    const Vec m1 = u - (dot(u, t) * beside) * (edge.tangent + t);
-    return {t, m1, cross(t, m1)};
   }
 
   /// At (q, v); `at`: of the root, seen from the head's position.
@@ -165,7 +192,8 @@ class DerStrand {
       sum.first = sum.first + mass * at;
       sum.passes(node_v);
       const FrameOf<T> now =
-          frame(edges[i], t, T(1) / (T(1) + dot(edges[i].tangent, t)), q[4 * i + 3]);
+          der_frame(edges[i].tangent, edges[i].direction, t,
+                    T(1) / (T(1) + dot(edges[i].tangent, t)), q[4 * i + 3]);
       const Matrix turn{{now.back(before.e0), now.back(before.e1), now.back(before.e2)}};
       const DerJoint<T> joint(turn);
       const Vec strain = joint.value - edges[i].rest;
@@ -181,107 +209,31 @@ class DerStrand {
   }
 
  private:
-  struct Rate {
-    Vec spin;
-    T lengthening;
-  };
-
   template <bool with_tangent>
   void place(const DerMaterial<T>& m, const DerEdge<T>* edges, const LaneClamp<T>& clamp,
              Weights w, const T* q, const T* v, const T* a, Placed* placed) const {
-    Vec node_v{}, node_a{}, spin_before = clamp.frame.back(clamp.omega);
-    FrameOf<T> before = clamp.frame;
-    [[maybe_unused]] T lengthening_before(0);
+    Vec node_v{}, node_a{};
+    DerMotion<T> before{clamp.frame.back(clamp.omega), T(0)};
+    FrameOf<T> frame_before = clamp.frame;
     for (int i = 0; i < n_; ++i) {
       Placed& e = placed[i];
       const Vec edge = load3(q + 4 * i), given = load3(v + 4 * i);
       node_v = node_v + given;
       node_a = node_a + load3(a + 4 * i);
-      const Vec rate = i == 0 ? given - clamp.v : given;
-      const T square = dot(edge, edge);
-      e.inverse_length = inverse_sqrt(square);
-      e.length = square * e.inverse_length;
-      const Vec t = e.inverse_length * edge;
-      const Vec& reference = edges[i].tangent;
-      const T beside = T(1) / (T(1) + dot(reference, t));
-      e.frame = frame(edges[i], t, beside, q[4 * i + 3]);
-      e.p = {T(1), beside * dot(reference, e.frame.e1),
-             beside * dot(reference, e.frame.e2)};
-      // theta' = spin . p.
-      const T spin1 = -(e.inverse_length * dot(rate, e.frame.e2)),
-              spin2 = e.inverse_length * dot(rate, e.frame.e1);
-      const Vec spin{v[4 * i + 3] - spin1 * e.p.y - spin2 * e.p.z, spin1, spin2};
-      e.turn = {
-          {e.frame.back(before.e0), e.frame.back(before.e1), e.frame.back(before.e2)}};
-      const DerJoint<T> joint(e.turn);
-      const Vec relative = spin - e.turn.back(spin_before);
+      const DerMotion<T> own = Forces::edge(
+          edges[i].tangent, edges[i].direction, q[4 * i + 3], edge,
+          i == 0 ? given - clamp.v : given, v[4 * i + 3], m.stretch, m.length, e);
+      const DerJoint<T> joint = Forces::strain(frame_before, e);
       const T half(i == 0 ? 2 : 1);
-      const Vec stiffness = half * m.stiffness;
-      const T friction = half * m.friction;
-      const Vec strain = joint.value - edges[i].rest;
-      const Vec stress{
-          stiffness.x * strain.x + friction * dot(joint.twist, relative),
-          stiffness.y * strain.y + friction * dot(joint.curvature1, relative),
-          stiffness.z * strain.z + friction * dot(joint.curvature2, relative)};
-      e.moment = stress.x * joint.twist + stress.y * joint.curvature1 +
-                 stress.z * joint.curvature2;
-      e.tension = m.stretch * (e.length - m.length);
+      Forces::template joint<with_tangent>(
+          joint, joint.value - edges[i].rest, half * m.stiffness, half * m.friction, true,
+          w, own, before, i > 0 ? &placed[i - 1] : nullptr, e);
       e.turning = m.inertia * a[4 * i + 3];
       const T part(i + 1 < n_ ? 1 : 0.5);
       e.force = part * (m.mass * (node_a - gravity_) + m.drag * node_v);
-      if constexpr (with_tangent) {
-        const T damped = T(w.vel) * friction;
-        e.stiff = joint.stiff(T(w.pos) * stiffness + Vec{damped, damped, damped});
-        if constexpr (exact) {
-          second_of_joint(joint, T(w.pos) * stress, e);
-          const T lengthening = dot(t, rate);
-          add_friction(joint, T(w.pos) * friction, {spin, lengthening},
-                       {spin_before, lengthening_before},
-                       i > 0 ? &placed[i - 1] : nullptr, e);
-          lengthening_before = lengthening;
-        }
-      }
-      before = e.frame;
-      spin_before = spin;
+      frame_before = e.frame;
+      before = own;
     }
-  }
-
-  static void second_of_joint(const DerJoint<T>& joint, const Vec& stress, Placed& e) {
-    const auto form = joint.second(e.turn, stress);
-    e.ww = full(e.stiff + form.alike);
-    e.oo = e.ww;
-    e.ow = form.across - full(e.stiff);
-    e.wo = e.ow.transposed();
-  }
-
-  /// The rate of a strain changes with the place: its gradient times the second
-  /// derivative along the motion.
-  static void add_friction(const DerJoint<T>& joint, const T& friction, const Rate& own,
-                           const Rate& before, const Placed* edge_before, Placed& e) {
-    const Vec spin_before = e.turn.back(before.spin);
-    const T o(0), one(1);
-    const auto add = [&](const Vec& slope, const Vec& unit) {
-      const auto form = joint.second(e.turn, unit);
-      const DerEdgeForm<T> of_edge(e.p, e.inverse_length, slope);
-      const Vec by_w = form.across.back(spin_before) + form.alike * own.spin +
-                       of_edge.omega * own.spin + own.lengthening * of_edge.sigma;
-      Vec by_o = form.alike * spin_before + form.across * own.spin;
-      if (edge_before != nullptr) {
-        const DerEdgeForm<T> of_before(edge_before->p, edge_before->inverse_length,
-                                       Vec{} - e.turn * slope);
-        by_o = by_o + e.turn.back(of_before.omega * before.spin +
-                                  before.lengthening * of_before.sigma);
-      }
-      const Matrix w = dyad(friction * slope, by_w),
-                   turned = dyad(friction * slope, by_o);
-      e.ww = e.ww + w;
-      e.wo = e.wo + turned;
-      e.ow = e.ow - w;
-      e.oo = e.oo - turned;
-    };
-    add(joint.twist, {one, o, o});
-    add(joint.curvature1, {o, one, o});
-    add(joint.curvature2, {o, o, one});
   }
 
   T substitute(const DerMaterial<T>& m, Weights w, const Placed* placed,
@@ -290,14 +242,9 @@ class DerStrand {
     T most(0), angle(0), finite(0);  // the last: 0 or NaN
     for (int i = 0; i < n_; ++i) {
       const Placed& e = placed[i];
-      const Factor& f = factors[i];
-      Vec own = f.own - f.of_x * x;
-      if (i > 0) own = own + f.of_turn * e.turn.back(omega);
-      omega = own;
-      const T sigma =
-          f.by * (f.own_sigma - dot(f.sigma_x, x) - dot(f.sigma_omega, omega));
-      const Vec edge = sigma * e.frame.e0 + (e.length * omega.z) * e.frame.e1 -
-                       (e.length * omega.y) * e.frame.e2;
+      const DerChange<T> own = der_change(e, factors[i], i == 0, x, omega);
+      omega = own.omega;
+      const Vec edge = e.change(omega, own.sigma);
       const T theta = dot(e.p, omega);
       store3(edge, correction + 4 * i);
       correction[4 * i + 3] = theta;
@@ -316,7 +263,7 @@ class DerStrand {
     const T by_length = inverse_sqrt(dot(e, e));
     const Vec t = by_length * e;
     const T beside = T(1) / (T(1) + dot(edge.tangent, t));
-    const FrameOf<T> now = frame(edge, t, beside, theta);
+    const FrameOf<T> now = der_frame(edge.tangent, edge.direction, t, beside, theta);
     const T more = theta_rate + by_length * beside * dot(cross(t, edge.tangent), rate);
     const auto chosen = [&](const Vec& x, const Vec& y) {
       return Vec{where_up_to(far, 0, x.x, y.x), where_up_to(far, 0, x.y, y.y),

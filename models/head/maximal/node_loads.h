@@ -6,11 +6,18 @@
 
 #include "math/instructions.h"
 #include "models/head/head_units.h"
-#include "models/head/maximal/spring_elimination.h"
 #include "models/head/near_bodies.h"
+#include "models/head/point_loads.h"
 #include "models/head/semidefinite.h"
 
 namespace tress::models {
+
+/// What effects do to the node at an edge's end: PointLoad or ExactLoad.
+template <class T, template <class> class Load>
+struct NodeLoad {
+  Load<T> load;
+  T some;  // 1 in lanes with a load, 0 in others
+};
 
 /// Loads of bodies on the nodes of strands of edges, side by side; a node only if it is
 /// near in some lane. PointLoads are those of one step, ExactLoads those of a state.

@@ -9,9 +9,38 @@
 #include "math/lanes.h"
 #include "models/head/lane_energies.h"
 #include "models/head/lane_root.h"
-#include "models/head/maximal/spring_bending.h"
+#include "models/head/maximal/node_loads.h"
+#include "models/maximal/kernel/spring_forces.h"
 
 namespace tress::models {
+
+/// What the edges of a strand have in common, in consistent units.
+template <class T>
+struct SpringMaterial {
+  T length;    // of an edge
+  T mass;      // of an edge
+  T drag;      // force on an edge per velocity
+  T stretch;   // force per lengthening of an edge
+  T bending;   // moment per strain of a joint; the wall's has twice that
+  T friction;  // moment per rate of strain, likewise
+  T rate;      // typical: speeds are of the order of `rate` lengths
+
+  /// Of the node at the end of edge i of n.
+  T inertia_of_node(Weights w, int i, int n) const {
+    const T part(i + 1 < n ? 1 : 0.5);
+    return part * (T(w.acc) * mass + T(w.vel) * drag);
+  }
+};
+
+/// Strain at rest of the joint before an edge; of the wall, about its axes e1 and e2.
+template <class T>
+struct SpringEdge {
+  T rest, about_e2;
+
+  static constexpr std::size_t kept = 0;  // what steps change, of a lane
+  void keep(int /*lane*/, double* /*to*/) const {}
+  void recall(int /*lane*/, const double* /*from*/) {}
+};
 
 /// The strand of point masses and springs of models/maximal/mass_spring.cpp (clamped,
 /// edges of equal length, bending = angular, torsion = none) for as many strands as T has
@@ -35,10 +64,12 @@ class SpringStrand {
 
   using Elimination =
       std::conditional_t<exact, SpringExactElimination<T>, SpringStiffElimination<T>>;
-  using Placed = typename Elimination::Placed;
+  struct Placed : Elimination::Placed {
+    Vec force;  // residual of the node at its end, springs left out
+  };
   using Factor = typename Elimination::Factor;
-  using Load = typename Elimination::Load;
-  using Bending = SpringBending<T, exact>;
+  using Load = std::conditional_t<exact, NodeLoad<T, ExactLoad>, NodeLoad<T, PointLoad>>;
+  using Forces = SpringForces<T, exact>;
 
   SpringStrand(int edges, const Vec& gravity) : n_(edges), gravity_(gravity) {}
 
@@ -49,7 +80,18 @@ class SpringStrand {
                          const T* a, const Load* loads, T* correction, Placed* placed,
                          Factor* factors) const requires(!exact) {
     place<true>(m, edges, clamp, w, q, v, a, loads, placed);
-    Elimination::run(n_, m, w, loads, placed, factors);
+    typename Elimination::Beyond beyond;
+    typename Elimination::Right right;
+    for (int i = n_ - 1; i >= 0; --i) {
+      beyond.add_inertia(m.inertia_of_node(w, i, n_));
+      if (loads != nullptr) [[unlikely]] {
+        beyond.of_x = where_less(T(0), loads[i].some, beyond.of_x + loads[i].load.block,
+                                 beyond.of_x);
+      }
+      Elimination::eliminate(placed[i], i == 0, beyond, factors[i], AnyPivots{});
+      Elimination::reduce(placed[i], i == 0, factors[i], placed[i].force, placed[i].own,
+                          right);
+    }
     return substitute(m, w, placed, factors, correction);
   }
   /// The same with the exact tangent, in which edges resist turns by these `tensions`,
@@ -62,12 +104,26 @@ class SpringStrand {
                          const T* a, const Load* loads, T* correction, Placed* placed,
                          Factor* factors, T* tensions) const requires(exact) {
     place<true>(m, edges, clamp, w, q, v, a, loads, placed);
-    Elimination::run(n_, m, w, loads, tensions, placed, factors);
+    const T pos(w.pos), vel(w.vel), along = pos * m.stretch;
+    typename Elimination::Beyond beyond;
+    typename Elimination::Right right;
+    for (int i = n_ - 1; i >= 0; --i) {
+      beyond.add_inertia(m.inertia_of_node(w, i, n_));
+      if (loads != nullptr) [[unlikely]] {
+        const ExactLoad<T>& load = loads[i].load;
+        beyond.of_x =
+            where_less(T(0), loads[i].some,
+                       beyond.of_x + pos * load.by_x + vel * load.by_u, beyond.of_x);
+      }
+      Elimination::eliminate(placed[i], i == 0, pos, along, tensions[i], beyond,
+                             factors[i], AnyPivots{});
+      Elimination::reduce(placed[i], i == 0, factors[i], placed[i].force, placed[i].own,
+                          right);
+    }
     const T size = substitute(m, w, placed, factors, correction);
-    const T pos = T(w.pos) * m.stretch;
     for (int i = 0; i < n_; ++i) {
       const Placed& e = placed[i];
-      tensions[i] = e.own.x - pos * dot(e.frame.e0, load3(correction + 3 * i));
+      tensions[i] = e.own.x - along * dot(e.frame.e0, load3(correction + 3 * i));
     }
     return size;
   }
@@ -78,10 +134,10 @@ class SpringStrand {
                         const Placed* placed, Factor* factors, Placed* now) const
       requires(exact) {
     place<false>(m, edges, clamp, w, q, v, a, loads, now);
-    Vec f{}, g{};
+    typename Elimination::Right right;
     for (int i = n_ - 1; i >= 0; --i) {
-      Elimination::reduce(placed[i], factors[i], now[i].force,
-                          placed[i].frame.back(now[i].frame * now[i].own), f, g);
+      Elimination::reduce(placed[i], i == 0, factors[i], now[i].force,
+                          placed[i].frame.back(now[i].frame * now[i].own), right);
     }
     return substitute(m, w, placed, factors, correction);
   }
@@ -119,14 +175,14 @@ class SpringStrand {
       sum.passes(node_v);
       const T longer = dot(edge, t) - m.length;
       sum.elastic += T(0.5) * m.stretch * longer * longer;
-      const Vec kb = (T(2) / (T(1) + dot(before, t))) * cross(before, t);
+      const Vec kb = SpringBinormal<T>(before, t).value;
       if (i == 0) {
         const T one = dot(clamp.frame.e1, kb) - edges[0].rest,
                 two = dot(clamp.frame.e2, kb) - edges[0].about_e2;
         sum.elastic += m.bending * (one * one + two * two);
       } else {
         const T strain =
-            square_root(dot(kb, kb) + Bending::delta_squared()) - edges[i].rest;
+            square_root(dot(kb, kb) + SpringHinge<T>::delta_squared()) - edges[i].rest;
         sum.elastic += T(0.5) * m.bending * strain * strain;
       }
       before = t;
@@ -136,16 +192,6 @@ class SpringStrand {
   }
 
  private:
-  /// Two directions across t [Duff et al. 2017, Building an Orthonormal Basis,
-  /// Revisited].
-  static FrameOf<T> beside(const Vec& t) {
-    const T one(1), sign = where_less(t.z, T(0), -one, one);
-    const T a = -one / (sign + t.z), b = t.x * t.y * a;
-    return {t,
-            {one + sign * t.x * t.x * a, sign * b, -(sign * t.x)},
-            {b, sign + t.y * t.y * a, -t.y}};
-  }
-
   template <bool with_tangent>
   void place(const SpringMaterial<T>& m, const SpringEdge<T>* edges,
              const LaneClamp<T>& clamp, Weights w, const T* q, const T* v, const T* a,
@@ -156,24 +202,19 @@ class SpringStrand {
       const Vec edge = load3(q + 3 * i), given = load3(v + 3 * i);
       node_v = node_v + given;
       node_a = node_a + load3(a + 3 * i);
-      e.rate = i == 0 ? given - clamp.v : given;
-      const T square = dot(edge, edge);
-      e.inverse_length = inverse_sqrt(square);
-      e.frame = beside(e.inverse_length * edge);
-      e.own = {m.stretch * (square * e.inverse_length - m.length), T(0), T(0)};
-      if constexpr (!exact) {
-        e.along = T(w.pos) * m.stretch;
-        e.across = e.along * larger(T(0), T(1) - m.length * e.inverse_length);
-      }
+      Forces::stretch(m.stretch, m.length, w, edge, i == 0 ? given - clamp.v : given, e);
       const T part(i + 1 < n_ ? 1 : 0.5);
       e.force = part * (m.mass * (node_a - gravity_) + m.drag * node_v);
       if (loads != nullptr) [[unlikely]] {
         e.force = where_less(T(0), loads[i].some, e.force - loads[i].load.force, e.force);
       }
       if (i == 0) {
-        Bending::template wall<with_tangent>(m, edges[0], clamp, w, edge, e);
+        Forces::template wall<with_tangent>({T(2) * m.bending, T(2) * m.friction},
+                                            edges[0].rest, edges[0].about_e2, clamp.frame,
+                                            clamp.omega, w, edge, e);
       } else {
-        Bending::template hinge<with_tangent>(m, edges[i].rest, w, placed[i - 1], e);
+        Forces::template hinge<with_tangent>({m.bending, m.friction}, edges[i].rest, w,
+                                             placed[i - 1], e);
       }
     }
   }

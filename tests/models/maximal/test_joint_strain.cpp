@@ -109,12 +109,9 @@ TEST(EdgeTurn, IsTheTurnOfTheMaterialFrame) {
     const Frame frame = edge_frame(reference, e, theta);
     EXPECT_TRUE(is_rotation(frame));
     const Vec spin = turn.spin(de, dtheta);
-    for (int k = 0; k < 4; ++k) {
-      const Vec column = turn.column(k);
-      EXPECT_NEAR(turn.rows()[0][k], column.x, 1e-12);
-      EXPECT_NEAR(turn.rows()[1][k], column.y, 1e-12);
-      EXPECT_NEAR(turn.rows()[2][k], column.z, 1e-12);
-    }
+    Vec by_columns = dtheta * turn.column(3);
+    for (int k = 0; k < 3; ++k) by_columns = by_columns + (&de.x)[k] * turn.column(k);
+    EXPECT_NEAR(norm(by_columns - spin), 0, 1e-12);
     // y'' = w x (w x y) + Q x y for w(s) = spin s + Q s^2/2.
     Vec q;
     for (int k = 0; k < 3; ++k) {

@@ -2,7 +2,7 @@
 
 #include "models/head/matrix3.h"
 
-/// What the kernel of discrete rods does with 3 x 3 matrices beyond
+/// What the kernels of this folder do with 3 x 3 matrices beyond
 /// models/head/matrix3.h.
 namespace tress::models {
 
@@ -33,6 +33,21 @@ Symmetric3<T> less_square(const Symmetric3<T>& s, const T& w, const Vec3<T>& x) 
   Symmetric3<T> all = s;
   add_square(all, -w, x);
   return all;
+}
+
+/// Takes no notice of pivots. The System of one strand has Pivots that do
+/// (strand_elimination.h): it can solve its equations in another way.
+struct AnyPivots {
+  template <class T>
+  void operator()(const T& /*pivot*/, const T& /*entries*/) const {}
+};
+
+/// The pivots of inverse().
+template <class T, class Pivots>
+void check(const Matrix3<T>& m, Pivots&& pivots) {
+  const Vec3<T> minors = cross(m.row[1], m.row[2]);
+  pivots(minors.x, m.row[1].y * m.row[2].z);
+  pivots(dot(m.row[0], minors), m.row[0].x * minors.x);
 }
 
 }  // namespace tress::models

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "math/lane_math.h"
-#include "models/head/maximal/der_algebra.h"
+#include "math/scalar_math.h"
+#include "models/maximal/kernel/algebra.h"
 
 namespace tress::models {
 

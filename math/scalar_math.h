@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cmath>
+
+#include "math/lane_math.h"
+
+/// The functions of math/lane_math.h for one number, so that kernels over packs also take
+/// `double`. Include it before the kernel: templates do not find later overloads for a
+/// fundamental type.
+namespace tress {
+
+inline double inverse_sqrt(double x) { return 1 / std::sqrt(x); }
+
+inline SineCosine<double> sine_cosine(double x) {
+  if (!(std::abs(x) <= 1e4)) return {std::sin(x), std::cos(x)};
+  const auto both = sine_cosine(PackOf<double, 1>(x));
+  return {both.sine[0], both.cosine[0]};
+}
+
+inline double arc_tangent(double y, double x) {
+  return arc_tangent(PackOf<double, 1>(y), PackOf<double, 1>(x))[0];
+}
+
+}  // namespace tress
