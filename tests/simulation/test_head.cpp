@@ -570,11 +570,11 @@ TEST(HeadOfHair, IsTakenFromAThousandStrandsOnWhereTheSceneCanBeOne) {
   toy.write("head.toml", text({.count = 999, .elements = 1}));
   EXPECT_THAT(toy.run(automatic).err, testing::Not(HasSubstr("a head of")));
   toy.write("head.toml",
-            text({.count = 20000, .elements = 1, .groom = "grading = 1.5\n"}));
+            text({.count = 20000, .elements = 1, .more = "[effects.strand_friction]\n"}));
   const Toy::Result many = toy.run(automatic);
   EXPECT_EQ(many.code, 2);
   EXPECT_THAT(many.err, HasSubstr("20000 strands are too many"));
-  EXPECT_THAT(many.err, HasSubstr("leave out grading"));
+  EXPECT_THAT(many.err, HasSubstr("solves the contacts of all strands together"));
 }
 
 TEST(HeadOfHair, ThePageShowsSomeOfTheStrands) {

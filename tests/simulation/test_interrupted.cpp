@@ -168,11 +168,12 @@ TEST(Interrupted, AStateOfNoStrandsIsRefused) {
     return bytes;
   };
   EXPECT_THAT(message_after("out/scene.state", without_strands), HasSubstr("checksum"));
-  // Even where the checksum, 16 digits and a blank, fits.
+  // Even where the checksum, 16 digits and a blank, fits: what follows is out of place.
   const auto resealed = [&](const std::string& bytes) {
     return sealed(without_strands(bytes).substr(17));
   };
-  EXPECT_THAT(message_after("out/scene.state", resealed), HasSubstr("other strands"));
+  EXPECT_THAT(message_after("out/scene.state", resealed),
+              HasSubstr("the saved state is damaged"));
 }
 
 TEST(Interrupted, AStateOfAnotherCommitIsRefused) {
