@@ -48,11 +48,16 @@ function(tress_in_batches target)
                         UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# tress_library(name [BATCHES] source...): tress_<name>, also known as tress::<name>. Link
-# Eigen as $<BUILD_INTERFACE:Eigen3::Eigen>: users of the installed library do not need it.
+# tress_library(name [BATCHES] source... [ALONE source...]): tress_<name>, also known as
+# tress::<name>. ALONE: in no batch, so that a change of one is compiled soon and a new one
+# leaves the batches as they are. Link Eigen as $<BUILD_INTERFACE:Eigen3::Eigen>: users of the
+# installed library do not need it.
 function(tress_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "BATCHES" "" "")
-  add_library(tress_${name} STATIC ${arg_UNPARSED_ARGUMENTS})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "BATCHES" "" "ALONE")
+  add_library(tress_${name} STATIC ${arg_UNPARSED_ARGUMENTS} ${arg_ALONE})
+  if(arg_ALONE)
+    set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   if(arg_BATCHES)
     tress_in_batches(tress_${name})
   endif()

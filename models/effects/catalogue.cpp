@@ -17,6 +17,8 @@
 
 namespace tress::models {
 
+// Each is defined in its effect's file.
+
 namespace {
 
 // clang-format off

@@ -96,4 +96,18 @@ TEST(AddedIntegrators, AreRefusedWhereTheyCannotBeUsed) {
   }
 }
 
+TEST(BuiltInEntries, LeaveNothingOfASkeletonToFillIn) {
+  const auto check = [](const auto& entries) {
+    for (const auto& entry : entries) {
+      for (const std::string_view text : {entry.summary, entry.source}) {
+        EXPECT_EQ(text.find("FILL IN"), text.npos)
+            << "write summary and source of '" << entry.id << "' in its entry";
+      }
+    }
+  };
+  check(models::model_catalogue());
+  check(models::effects());
+  check(integrators::integrator_catalogue());
+}
+
 }  // namespace tress::test_open_catalogue
