@@ -5,7 +5,7 @@ set -euo pipefail
 cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.."
 
 sources() {
-  find math contract linear models integrators simulation experiments python tests -name node_modules -prune -o \
+  find math contract linear models integrators simulation experiments python tests cmake/new -name node_modules -prune -o \
     \( -name '*.h' -o -name '*.cpp' \) -print0
 }
 
