@@ -12,8 +12,8 @@ namespace tress::models {
 
 struct RootMotion;
 
-/// One line of the list of effects, which a scene names as [effects.id]. A new effect
-/// needs its own files, one line here and one CMake line.
+/// One line of the list of effects, which a scene names as [effects.id]. `./tress new
+/// effect` adds one.
 struct EffectEntry {
   std::string_view id;
   std::string_view summary;  // one line
