@@ -76,6 +76,25 @@ function(tress_library name)
   tress_warnings(tress_${name})
 endfunction()
 
+# tress_kernel(source... [FUSED] [LARGE]): sources of the target of this folder whose results
+# are the same bits for any number of lanes. Products are not fused with sums: which of them
+# are would depend on the number of lanes. Square roots of packs are one instruction, as they
+# need not set errno. FUSED: products may be fused; tests alone say that bits are the same.
+# LARGE: in functions as long as these GCC looks for what it has loaded already for a fifth to
+# a third of its time, and they are no faster for it.
+function(tress_kernel)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "FUSED;LARGE" "" "")
+  set(options -fno-math-errno)
+  if(NOT arg_FUSED)
+    list(APPEND options -ffp-contract=off)
+  endif()
+  if(arg_LARGE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    list(APPEND options -fno-gcse -fno-gcse-after-reload)
+  endif()
+  set_source_files_properties(${arg_UNPARSED_ARGUMENTS} PROPERTIES
+    COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # tress_program(target): what experiments are made of. Models and integrators do the work
 # and are optimised; programs and tests are not as much, which costs more than it brings.
 # All of it can be linked into the Python module, and precompiled headers want the same

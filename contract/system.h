@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contract/layers.h"
+#include "contract/weights.h"
 
 /// The contract between models (what moves) and integrators (how time advances).
 ///
@@ -40,12 +41,6 @@ struct Layout {
 struct Traits {
   bool constant_mass = false;  // dM/dt = 0 and dM/dq = 0
   bool regular_mass = true;    // M is invertible at every state
-};
-
-struct Weights {
-  double acc = 0;
-  double vel = 0;
-  double pos = 0;
 };
 
 /// Terms included in dr/dq and dr/dv: all (full Newton), or only mass, damping and

@@ -14,13 +14,6 @@ namespace {
 // An exact tangent costs as much as six of them, and two follow it.
 constexpr double most_to_come = 8;
 
-// Corrections that stop shrinking are rounding errors within this factor of a tight
-// tolerance, and below this size under a loose one.
-constexpr double stagnation = 1e4, largest_rounding = 1e-6;
-
-// After this many growing corrections the iteration counts as not converging.
-constexpr int most_grown = 2;
-
 }  // namespace
 
 Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
@@ -29,12 +22,9 @@ Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
       stresses_(dynamics.system().stress_form()),
       contact_tolerance_(options.contact_tolerance),
       contact_iterations_(options.contact_iterations),
-      tolerance_(options.newton_tolerance),
-      remaining_(ending.remaining * tolerance_),
+      rules_(NewtonRules::of(options.newton_tolerance, ending.remaining)),
       turned_(ending.turned),
-      foresees_(contacts_ != nullptr && remaining_ < tolerance_),
-      rounding_(
-          std::max(tolerance_, std::min(stagnation * tolerance_, largest_rounding))),
+      foresees_(contacts_ != nullptr && rules_.left < rules_.tolerance),
       iterations_(options.newton_iterations),
       refresh_(options.refresh),
       q_left_(static_cast<std::size_t>(dynamics.n())),
@@ -209,17 +199,17 @@ Status Stage::newton(double t, In q_bar, In v_bar, Weights w, Refresh refresh,
       expected = i > 0 ? std::min(next, rate) : next;
     }
     const double error_left = expected > 0 && expected < 1
-                                  ? correction * expected / (1 - expected)
+                                  ? NewtonRules::error_left(correction, expected)
                                   : correction;
     if (i > 0 && linearize && foresees_) {
       squared_ = std::max(i > 1 ? squared_ : 0.0, rate / previous);
     }
-    if (correction <= tolerance_) return Status::ok;
-    const bool near = error_left <= remaining_;
+    if (correction <= rules_.tolerance) return Status::ok;
+    const bool near = error_left <= rules_.left;
     if (near && contacts_ == nullptr) return Status::ok;
-    if (rate > 0.5 && i >= 2 && correction <= rounding_) return Status::ok;
+    if (rules_.stagnates(correction, rate, i)) return Status::ok;
     if (rate > 1 && i > 0 && ++grown == most_grown) return Status::retry;
-    const bool slow = i > 0 && (rate >= 1 || std::log(remaining_ / correction) <
+    const bool slow = i > 0 && (rate >= 1 || std::log(rules_.left / correction) <
                                                  most_to_come * std::log(rate));
     linearize = !near && (refresh == Refresh::every_iteration || slow ||
                           ((i == 0 || linearize) && correction > turned_));

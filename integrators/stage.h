@@ -6,6 +6,7 @@
 
 #include "integrators/control/effort.h"
 #include "integrators/formulation/dynamics.h"
+#include "integrators/newton_rules.h"
 #include "integrators/secant_updates.h"
 
 namespace tress::integrators {
@@ -45,7 +46,7 @@ namespace tress::integrators {
 class Stage {
  public:
   struct Ending {
-    double remaining = 0.1;
+    double remaining = NewtonRules::margin;
     /// Stages learn from those before that had the same matrix, which is improved
     /// (SecantUpdates). For smooth equations without multipliers. Only the matrix is
     /// taken over: a first correction is never the last one on the strength of the rate
@@ -186,9 +187,9 @@ class Stage {
   StressForm* stresses_;   // null: none
   double contact_tolerance_;
   int contact_iterations_;
-  double tolerance_, remaining_, turned_;
-  bool foresees_;    // with contacts, unless Newton's tolerance has its margin already
-  double rounding_;  // corrections below it may be rounding errors
+  NewtonRules rules_;
+  double turned_;
+  bool foresees_;  // with contacts, unless Newton's tolerance has its margin already
   int iterations_;
   Refresh refresh_;
   Weights factored_;  // of the matrix that newton() used last

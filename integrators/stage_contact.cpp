@@ -146,8 +146,8 @@ Status Stage::iterate_with_forces(double t, In q_bar, In v_bar, Weights w, InOut
     shifted(force_step_, force_kept_, -1, force_);
     std::ranges::copy(a, a_kept_.begin());
     std::ranges::copy(lambda, lambda_kept_.begin());
-    const bool rounding = size <= rounding_ && size >= before / 2;
-    if (size <= tolerance_ || rounding) {
+    const bool rounding = size <= rules_.rounding && size >= before / 2;
+    if (size <= rules_.tolerance || rounding) {
       if (violation > contact_tolerance_) return Status::retry;
       go(q_bar, v_bar, w, 1, a, lambda);
       return Status::ok;
@@ -223,7 +223,7 @@ Status Stage::halve_with_forces(double t, In q_bar, In v_bar, Weights w, double 
     double next = 0, violation = 0;
     const Status s = balanced_step(t, w, a, lambda, r_, c_, next, violation);
     if (s == Status::fatal) return s;
-    if (s == Status::ok && next <= (1 - part / 4) * size) {
+    if (s == Status::ok && shrinks_enough(next, part, size)) {
       go(q_bar, v_bar, w, part, a, lambda);
       return s;
     }

@@ -7,11 +7,6 @@
 namespace tress::integrators {
 namespace {
 
-// Damped steps are shorter, so more of them are allowed; a step this much shorter than
-// Newton's makes no progress.
-constexpr int damped_patience = 3;
-constexpr double shortest = 1e-4;
-
 // A gradually lengthened step: its initial part, and the limits below which it fails.
 constexpr double first_part = 0.1, shortest_part = 1e-3, least_growth = 1.05;
 
@@ -25,8 +20,8 @@ Status Stage::damped(double t, In q_bar, In v_bar, Weights w, InOut a,
     Status s = newton_step(t, w, a, lambda, a_step_, lambda_step_, size);
     if (s != Status::ok) return s;
     s = halve_until_smaller(t, q_bar, v_bar, w, size, a, lambda);
-    const bool rounding = s == Status::retry && size <= rounding_;
-    if (size <= tolerance_ || rounding) return Status::ok;
+    const bool rounding = s == Status::retry && size <= rules_.rounding;
+    if (size <= rules_.tolerance || rounding) return Status::ok;
     if (s != Status::ok) return s;
   }
   return Status::retry;
@@ -38,15 +33,15 @@ Status Stage::halve_until_smaller(double t, In q_bar, In v_bar, Weights w, doubl
                                   InOut a, InOut lambda) noexcept {
   std::ranges::copy(a, a_kept_.begin());
   std::ranges::copy(lambda, lambda_kept_.begin());
-  for (double part = 1; part >= shortest; part /= 2) {
+  for (double part = 1; part >= shortest_damped; part /= 2) {
     shifted(a, a_kept_, -part, a_step_);
     shifted(lambda, lambda_kept_, -part, lambda_step_);
     place(q_bar, v_bar, w, a);
-    if (size <= tolerance_) return Status::ok;
+    if (size <= rules_.tolerance) return Status::ok;
     Status s = dynamics_.residual(t, q_, v_, a, lambda, r_, c_);
     if (s == Status::ok) s = dynamics_.solve(r_, c_);
     if (s == Status::fatal) return s;
-    if (s == Status::ok && size_of(r_, w) <= (1 - part / 4) * size) return s;
+    if (s == Status::ok && shrinks_enough(size_of(r_, w), part, size)) return s;
   }
   return Status::retry;
 }

@@ -52,7 +52,7 @@ Status Stage::close_in(double t, In q_bar, In v_bar, Weights w) noexcept {
   const double largest = most_growth * std::max(here_.size, there_.size);
   double length = size_of(a_step_, w);
   if (length > 2 * largest) return Status::retry;
-  for (; length > tolerance_; length /= 2) {
+  for (; length > rules_.tolerance; length /= 2) {
     for (std::size_t i = 0; i < middle_.a.size(); ++i) {
       middle_.a[i] = (here_.a[i] + there_.a[i]) / 2;
     }
@@ -95,7 +95,7 @@ Status Stage::on_jump(double t, In q_bar, In v_bar, Weights w, InOut a,
         std::clamp(scaled_dot(here_.a_step, mean) / scaled_dot(mean, mean), 0.0, 1.0);
     shifted(mean, here_.a_step, -share, mean);
     const double size = size_of(mean, w);
-    if (size <= tolerance_) {
+    if (size <= rules_.tolerance) {
       shifted(a, here_.a, -1, mean);
       for (std::size_t k = 0; k < lambda.size(); ++k) {
         lambda[k] = here_.lambda[k] - (1 - share) * here_.lambda_step[k] -

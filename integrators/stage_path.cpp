@@ -98,7 +98,8 @@ Status Stage::correct_onto(double t, In q_bar, In v_bar, Weights w, const OnPath
     add(to.a, -1, r_);
     add(to.lambda, -1, c_);
     const double size = std::max(std::abs(change), size_of(r_, w));
-    if (size <= tolerance_ || (size <= rounding_ && size > before / 2)) return Status::ok;
+    if (size <= rules_.tolerance || (size <= rules_.rounding && size > before / 2))
+      return Status::ok;
     if (!(size < before) && i > 1) return Status::retry;
     before = size;
   }

@@ -10,8 +10,8 @@
 #include "experiments/benchmarks/fixture.h"
 #include "experiments/benchmarks/reference_strands.h"
 #include "models/effects/body.h"
-#include "models/head/head.h"
 #include "simulation/head/head_run.h"
+#include "simulation/head/make_head.h"
 #include "simulation/run/timing.h"
 
 namespace tress::experiments::benchmarks {
@@ -24,12 +24,12 @@ using models::HeadPack;
 constexpr int elements = reference_elements;
 constexpr double length = reference_length, h = reference_step;  // m, s
 
-using Make = std::unique_ptr<Head> (*)(const models::HeadOptions&, const HeadPack&);
+using Make = std::unique_ptr<Head> (*)(const simulation::HeadOptions&, const HeadPack&);
 
 std::unique_ptr<Head> head(
-    std::size_t strands, HeadPack pack, double drag, Make make = models::helix_head,
-    models::HeadMethod method = models::HeadMethod::semi_implicit_euler) {
-  models::HeadOptions options;
+    std::size_t strands, HeadPack pack, double drag, Make make = simulation::helix_head,
+    simulation::HeadMethod method = simulation::HeadMethod::semi_implicit_euler) {
+  simulation::HeadOptions options;
   options.method = method;
   options.elements = elements;
   options.drag = drag;
@@ -45,7 +45,7 @@ std::unique_ptr<Head> head(
 std::unique_ptr<Head> combed(std::size_t strands, HeadPack pack,
                              std::optional<double> away, Make make) {
   const Vec axes{0.08, 0.1, 0.12};
-  models::HeadOptions options;
+  simulation::HeadOptions options;
   options.elements = elements;
   options.drag = 5e-5;
   options.longest = length;
@@ -95,7 +95,7 @@ struct Line {
   std::size_t strands;
   double drag;
   double most;  // times the reference
-  Make make = models::helix_head;
+  Make make = simulation::helix_head;
 };
 constexpr Line lines[] = {
     {"4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.2},
@@ -104,21 +104,61 @@ constexpr Line lines[] = {
     {"8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 0.7},
     {"8 of 32 bits", {HeadNumber::float32, 8}, 64, 0, 0.55},
     {"16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 0.35},
-    {"chain, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 0.6, models::chain_head},
-    {"chain, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 0.6, models::chain_head},
-    {"chain, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 0.4, models::chain_head},
-    {"chain, 8 of 64 bits", {HeadNumber::float64, 8}, 4096, 0, 0.4, models::chain_head},
-    {"chain, 8 of 32 bits", {HeadNumber::float32, 8}, 64, 0, 0.3, models::chain_head},
-    {"chain, 8 of 32 bits", {HeadNumber::float32, 8}, 4096, 0, 0.3, models::chain_head},
-    {"chain, 16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 0.2, models::chain_head},
-    {"chain, 16 of 32 bits", {HeadNumber::float32, 16}, 4096, 0, 0.2, models::chain_head},
-    {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.5, models::der_head},
-    {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1.5, models::der_head},
-    {"der, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 1.5, models::der_head},
-    {"der, 16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 1.5, models::der_head},
-    {"springs, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1, models::spring_head},
-    {"springs, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1, models::spring_head},
-    {"springs, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 1, models::spring_head}};
+    {"chain, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 0.6, simulation::chain_head},
+    {"chain, 4 of 64 bits",
+     {HeadNumber::float64, 4},
+     4096,
+     0,
+     0.6,
+     simulation::chain_head},
+    {"chain, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 0.4, simulation::chain_head},
+    {"chain, 8 of 64 bits",
+     {HeadNumber::float64, 8},
+     4096,
+     0,
+     0.4,
+     simulation::chain_head},
+    {"chain, 8 of 32 bits", {HeadNumber::float32, 8}, 64, 0, 0.3, simulation::chain_head},
+    {"chain, 8 of 32 bits",
+     {HeadNumber::float32, 8},
+     4096,
+     0,
+     0.3,
+     simulation::chain_head},
+    {"chain, 16 of 32 bits",
+     {HeadNumber::float32, 16},
+     64,
+     0,
+     0.2,
+     simulation::chain_head},
+    {"chain, 16 of 32 bits",
+     {HeadNumber::float32, 16},
+     4096,
+     0,
+     0.2,
+     simulation::chain_head},
+    {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 64, 0, 1.5, simulation::der_head},
+    {"der, 4 of 64 bits", {HeadNumber::float64, 4}, 4096, 0, 1.5, simulation::der_head},
+    {"der, 8 of 64 bits", {HeadNumber::float64, 8}, 64, 0, 1.5, simulation::der_head},
+    {"der, 16 of 32 bits", {HeadNumber::float32, 16}, 64, 0, 1.5, simulation::der_head},
+    {"springs, 4 of 64 bits",
+     {HeadNumber::float64, 4},
+     64,
+     0,
+     1,
+     simulation::spring_head},
+    {"springs, 4 of 64 bits",
+     {HeadNumber::float64, 4},
+     4096,
+     0,
+     1,
+     simulation::spring_head},
+    {"springs, 8 of 64 bits",
+     {HeadNumber::float64, 8},
+     64,
+     0,
+     1,
+     simulation::spring_head}};
 
 void register_all() {
   benchmark::RegisterBenchmark("reference/64", [](benchmark::State& state) {
@@ -183,25 +223,25 @@ bool iterations_met() {
   struct Kind {
     std::string_view name;
     HeadPack pack;
-    Make make = models::helix_head;
+    Make make = simulation::helix_head;
   };
   struct Method {
-    models::HeadMethod method;
+    simulation::HeadMethod method;
     std::string_view what;
     double dt;  // s
   };
   bool met = true;
   for (const Method& method :
-       {Method{models::HeadMethod::backward_euler, "an iteration of backward_euler",
+       {Method{simulation::HeadMethod::backward_euler, "an iteration of backward_euler",
                1.0 / 300},
-        {models::HeadMethod::linearly_implicit_midpoint,
+        {simulation::HeadMethod::linearly_implicit_midpoint,
          "a step of linearly_implicit_midpoint", h},
-        {models::HeadMethod::tr_bdf2, "an iteration of tr_bdf2", 1.0 / 300}}) {
+        {simulation::HeadMethod::tr_bdf2, "an iteration of tr_bdf2", 1.0 / 300}}) {
     for (const Kind& kind :
          {Kind{"4 of 64 bits", {HeadNumber::float64, 4}},
           {"8 of 64 bits", {HeadNumber::float64, 8}},
           {"16 of 32 bits", {HeadNumber::float32, 16}},
-          {"chain, 4 of 64 bits", {HeadNumber::float64, 4}, models::chain_head}}) {
+          {"chain, 4 of 64 bits", {HeadNumber::float64, 4}, simulation::chain_head}}) {
       Stepping of{head(strands, kind.pack, 0, kind.make, method.method)};
       of.dt = method.dt;
       // Beyond those that iterate where others do not.
@@ -230,11 +270,11 @@ bool bodies_met() {
     Make make;
     double most = 1.3;
   };
-  for (const Kind& kind : {Kind{"4 of 64 bits", 4, models::helix_head},
-                           {"8 of 64 bits", 8, models::helix_head},
-                           {"chain, 4 of 64 bits", 4, models::chain_head, 1.9},
-                           {"chain, 8 of 64 bits", 8, models::chain_head, 2.2},
-                           {"springs, 4 of 64 bits", 4, models::spring_head}}) {
+  for (const Kind& kind : {Kind{"4 of 64 bits", 4, simulation::helix_head},
+                           {"8 of 64 bits", 8, simulation::helix_head},
+                           {"chain, 4 of 64 bits", 4, simulation::chain_head, 1.9},
+                           {"chain, 8 of 64 bits", 8, simulation::chain_head, 2.2},
+                           {"springs, 4 of 64 bits", 4, simulation::spring_head}}) {
     const HeadPack pack{HeadNumber::float64, kind.lanes};
     Stepping without{combed(strands, pack, {}, kind.make)},
         on{combed(strands, pack, 0.0, kind.make)},

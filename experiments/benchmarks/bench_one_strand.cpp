@@ -15,20 +15,20 @@
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
-#include "models/head/head.h"
+#include "simulation/head/make_head.h"
 
 namespace tress::experiments::benchmarks {
 namespace {
 
 using models::Head;
-using models::HeadMethod;
+using simulation::HeadMethod;
 
 constexpr int steps = 4000, rounds = 8;
 constexpr double most = 1.1;  // System over batch
 
 struct Model {
   std::string_view id;
-  std::unique_ptr<Head> (*batch)(const models::HeadOptions&, const models::HeadPack&);
+  std::unique_ptr<Head> (*batch)(const simulation::HeadOptions&, const models::HeadPack&);
   std::string_view approximate;  // tangent of the batch with semi_implicit_euler
 };
 struct Method {
@@ -37,8 +37,8 @@ struct Method {
   bool exact;
 };
 
-constexpr Model strand_models[] = {{"mass_spring", models::spring_head, "filtered"},
-                                   {"der", models::der_head, "stiff"}};
+constexpr Model strand_models[] = {{"mass_spring", simulation::spring_head, "filtered"},
+                                   {"der", simulation::der_head, "stiff"}};
 constexpr Method methods[] = {
     {"semi_implicit_euler", HeadMethod::semi_implicit_euler, false},
     {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint, true}};
@@ -65,7 +65,7 @@ std::function<void()> reference_steps() {
 }
 
 std::function<void()> batch_steps(const Model& model, const Method& method) {
-  models::HeadOptions options;
+  simulation::HeadOptions options;
   options.method = method.of_batch;
   options.elements = reference_elements;
   options.longest = reference_length;

@@ -13,9 +13,9 @@
 namespace tress::experiments::heads {
 namespace {
 
-using models::HeadMethod;
 using models::HeadNumber;
 using models::HeadPack;
+using simulation::HeadMethod;
 
 constexpr Column columns[] = {
     {"model", "of a hair"},
@@ -94,10 +94,11 @@ struct Model {
   // Whether it has numbers of 32 bits, and by linearly_implicit_midpoint.
   bool narrow, narrow_midpoint;
 };
-constexpr Model head_models[] = {{"super_helix", models::helix_head, true, true},
-                                 {"articulated_chain", models::chain_head, true, false},
-                                 {"der", models::der_head, true, false},
-                                 {"mass_spring", models::spring_head, false, false}};
+constexpr Model head_models[] = {
+    {"super_helix", simulation::helix_head, true, true},
+    {"articulated_chain", simulation::chain_head, true, false},
+    {"der", simulation::der_head, true, false},
+    {"mass_spring", simulation::spring_head, false, false}};
 
 /// All models by all methods, but what the head of the model refuses
 /// (models/head/head.h).

@@ -47,13 +47,13 @@ models::Strand hair(std::size_t k, std::size_t count, int elements) {
 
 /// A head without hairs.
 std::unique_ptr<Head> bald(const Work& work, models::HeadPack pack) {
-  models::HeadOptions options{.elements = work.elements,
-                              .points = 8,
-                              .drag = work.acting == Acting::none ? 0 : 5e-5,
-                              .longest = length,
-                              .motion = {},
-                              .method = work.kind.method,
-                              .effects = {}};
+  HeadOptions options{{.elements = work.elements,
+                       .points = 8,
+                       .drag = work.acting == Acting::none ? 0 : 5e-5,
+                       .longest = length,
+                       .motion = {},
+                       .effects = {}}};
+  options.method = work.kind.method;
   options.motion.rotations = {{{0, 0, 1}, models::one_minus_cosine(0.3, 2)}};
   if (work.acting == Acting::body) {
     options.effects = {std::make_shared<models::Body>(

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string_view>
 
-#include "models/head/head.h"
 #include "simulation/files/row.h"
+#include "simulation/head/make_head.h"
 
 namespace tress::experiments::heads {
 
@@ -13,9 +13,8 @@ using namespace simulation;
 /// A model's head with a method.
 struct Kind {
   std::string_view model, integrator;
-  std::unique_ptr<models::Head> (*make)(const models::HeadOptions&,
-                                        const models::HeadPack&);
-  models::HeadMethod method;
+  std::unique_ptr<models::Head> (*make)(const HeadOptions&, const models::HeadPack&);
+  HeadMethod method;
   bool narrow;  // in 32 bits, too
 };
 

@@ -252,7 +252,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
 int run_scenes(const Arguments& a, const CommandLine& line, Ranks& ranks,
                Interruption& interruption) {
   const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
-  static_cast<void>(models::helix_head({}, pack_of(a)));  // refuses other lanes
+  static_cast<void>(simulation::helix_head({}, pack_of(a)));  // refuses other lanes
   Heartbeat heartbeat(ranks.first() ? line.progress : ProgressMode::none, "simulate");
   std::vector<Job> jobs;
   std::set<std::string> names;

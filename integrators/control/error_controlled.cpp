@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "integrators/control/step_factors.h"
 #include "linear/finite.h"
 
 namespace tress::integrators {
@@ -17,15 +18,9 @@ constexpr double polynomial_factor = 0.7;
 // The polynomial may stretch the strand twice as much as the ends of its step (4 times
 // the strain energy), and by what a strand shows in rounding.
 constexpr double more_stretch = 2, least_stretch = 1e-9;
-// First step over the time in which the body falls about its size, at tolerance 1: its
-// estimate is far below any threshold for a motion that starts smoothly, and the control
-// needs few trials otherwise.
-constexpr double first_part = 0.1;
 // After so many steps without a solution, each a quarter of the one before, the first is
 // tried with more effort, which cost 40 to 100 ordinary steps on hairs without friction.
 constexpr int plain_steps = 3;
-// Steps below this part of that time are lost in rounding.
-constexpr double shortest_part = 1e-11;
 
 std::string text(double x) {
   char digits[32];
@@ -78,8 +73,8 @@ Status ErrorControlled::start(double t, In q, In v) {
   dynamics_.begin();
   norm_.start(t, q);
   const double time = norm_.typical_time();
-  control_.start(first_part * time * std::pow(threshold_, 1 / power_),
-                 std::max(options_.min_step, shortest_part * time));
+  control_.start(step_factors::first_part * time * std::pow(threshold_, 1 / power_),
+                 std::max(options_.min_step, step_factors::shortest_part * time));
   const Status s = restart();
   return s == Status::ok ? s : fail(s, "no acceleration at the initial state");
 }

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "integrators/control/step_factors.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
-namespace {
-
-// Of coordinates, whose error may be larger than that of points.
-constexpr double coordinate_weight = 1. / 15;
-
-}  // namespace
+using step_factors::coordinate_weight;
 
 ErrorNorm::ErrorNorm(Dynamics& dynamics)
     : dynamics_(dynamics),

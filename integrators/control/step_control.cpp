@@ -4,15 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "integrators/control/step_factors.h"
+
 namespace tress::integrators {
 namespace {
 
-constexpr double safety = 0.9;
-constexpr double least_factor = 0.2, most_factor = 5;
+using step_factors::safety;
+
 // A step within these factors of the one wanted is left alone.
 constexpr double dead_from = 0.95, dead_to = 1.2;
-// After a step without a solution.
-constexpr double unsolved_factor = 0.25, unsolved_ceiling = 0.5, ceiling_growth = 1.05;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void StepControl::accept(const Trial& taken, double error, double t) {
   // 1e-4: an estimate of 0 does not decide about the step after the next.
   const double now = std::max(error, 1e-4);
   double factor = safety * std::pow(now, -0.7 / k_) * std::pow(before_, 0.4 / k_);
-  factor = std::clamp(factor, least_factor, rejected_ ? 1 : most_factor);
+  factor = std::clamp(factor, step_factors::least, rejected_ ? 1 : step_factors::most);
   if (factor >= dead_from && factor <= dead_to) factor = 1;
   // A step that was cut says nothing against the length that the control had chosen.
   const double wanted = factor * taken.h;
@@ -50,17 +50,17 @@ void StepControl::accept(const Trial& taken, double error, double t) {
   h_ = std::max(h_, least_);  // unless that is rejected
   before_ = now;
   rejected_ = false;
-  ceiling_ *= ceiling_growth;
+  ceiling_ *= step_factors::ceiling_growth;
 }
 
 void StepControl::reject(const Trial& failed, double error) {
   const double factor = safety * std::pow(error, -1 / k_);
-  shorten(std::clamp(factor, least_factor, safety) * failed.h, "error");
+  shorten(std::clamp(factor, step_factors::least, safety) * failed.h, "error");
 }
 
 void StepControl::unsolved(const Trial& failed, std::string_view cause) {
-  ceiling_ = unsolved_ceiling * failed.h;
-  shorten(unsolved_factor * failed.h, cause);
+  ceiling_ = step_factors::unsolved_ceiling * failed.h;
+  shorten(step_factors::unsolved * failed.h, cause);
 }
 
 void StepControl::shorten(double h, std::string_view cause) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/newton_work.h"
 #include "math/instructions.h"
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
@@ -15,17 +17,8 @@
 
 namespace tress::models {
 
-/// How a step is computed, by the names of the integrators' catalogue: the equations are
-/// theirs (models/head/stepping/lane_method.h).
-enum class HeadMethod {
-  semi_implicit_euler,
-  linearly_implicit_midpoint,
-  backward_euler,
-  tr_bdf2
-};
-
 /// What acts on every strand of a head, and how strands are discretised.
-struct HeadOptions {
+struct LaneOptions {
   int elements = 10;           // of every strand
   int points = 4;              // Gauss-Legendre points of an element: quadrature_points()
   bool twist = true;           // false: strands bend only
@@ -36,15 +29,6 @@ struct HeadOptions {
   double longest = 0.2;        // m: sets the units of computation, any order of magnitude
   double line_density = 0;     // kg/m: the same; 0: that of the first strand
   RootMotion motion = {};      // of the head, `position` any point of it, at rest
-  HeadMethod method = HeadMethod::semi_implicit_euler;
-  // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
-  double newton_tolerance = 1e-10;
-  int newton_iterations = 20;
-  /// By tr_bdf2 every strand takes steps of its own, as long as its own error allows, as
-  /// Options::tolerance; 0: equal steps. Newton's tolerance follows from it. See
-  /// models/head/stepping/controlled_steps.h.
-  double tolerance = 0;
-  double min_step = 0;  // s, with a tolerance: strands that need less are lost
   /// On every strand, in addition: gravity and linear drag join the numbers above, bodies
   /// are computed for all lanes at once, others strand by strand. Refused: effects that
   /// couple points (self_contact) or hold contact forces (friction_law = exact).
@@ -58,7 +42,12 @@ struct HeadRefusal {
 std::optional<HeadRefusal> refused_by_heads(const Effect& effect);
 /// Effects that the other numbers say as well, uniform accelerations and linear drag,
 /// join them; the others are left.
-HeadOptions with_uniform_effects(HeadOptions options);
+void take_uniform_effects(LaneOptions& options);
+template <std::derived_from<LaneOptions> Options>
+Options with_uniform_effects(Options options) {
+  take_uniform_effects(options);
+  return options;
+}
 
 /// What holds the numbers of a head: strands side by side in packs. Wider packs and
 /// shorter numbers are faster on machines with registers of that size; the lanes of a
@@ -76,9 +65,6 @@ inline HeadPack widest_pack(HeadNumber number) {
   return {number, wide ? 16 : 8};
 }
 
-/// Whether numbers are long enough for strands that choose their steps by this tolerance.
-bool resolve(HeadNumber number, double tolerance);
-
 /// A strand without a solution: it stays where it was, the others go on.
 struct HeadLoss {
   std::size_t strand;
@@ -87,32 +73,7 @@ struct HeadLoss {
   std::string_view reason;
 };
 
-/// Newton's iterations of steps: of strands, and of lanes, those without a strand
-/// included.
-struct HeadWork {
-  long steps = 0;                              // of strands
-  long iterations = 0, lanes = 0;              // whole corrections, strands side by side
-  long retried = 0;                            // steps of strands on which they failed
-  long again_iterations = 0, again_lanes = 0;  // of these, damped
-  long in_parts = 0;                           // of the last, iterations of shorter steps
-  long shortened = 0;                          // steps of strands taken in shorter ones
-  // With a tolerance, steps of strands that were tried again with shorter ones.
-  long rejected_by_error = 0, rejected_by_newton = 0;
-
-  HeadWork& operator+=(const HeadWork& more) {
-    steps += more.steps;
-    iterations += more.iterations;
-    lanes += more.lanes;
-    retried += more.retried;
-    again_iterations += more.again_iterations;
-    again_lanes += more.again_lanes;
-    in_parts += more.in_parts;
-    shortened += more.shortened;
-    rejected_by_error += more.rejected_by_error;
-    rejected_by_newton += more.rejected_by_newton;
-    return *this;
-  }
-};
+using HeadWork = NewtonWork;
 
 /// Of a strand at one instant.
 struct HeadEnergy {
@@ -138,7 +99,7 @@ class Head {
   /// `own`: effects on this strand alone, as StrandInteraction::effect(k); they must not
   /// be shared, as blocks advance on several threads. Throws InputError unless the strand
   /// has `elements` segments of equal length and section, one after the other, and no
-  /// free root, and on effects as HeadOptions says. Its own root motion is not read but
+  /// free root, and on effects as LaneOptions says. Its own root motion is not read but
   /// for `position` and `frame` at rest.
   virtual void add(const Strand& strand, Effects own) = 0;
   void add(const Strand& strand) { add(strand, {}); }
@@ -219,34 +180,12 @@ class Head {
   virtual const HelixSource* source() const { return nullptr; }
 };
 
-/// A head of super-helices (models/head/helix_strand.h); coordinates are Darboux vectors
-/// (1/m), 3 per element; semi_implicit_euler with the stiff tangent, or the other methods
-/// with the exact one (models/head/exact/exact_kernel.h), which have gravity, linear drag
-/// and bodies. tr_bdf2 starts from the acceleration at the start, so that twist must have
-/// inertia. Throws InputError if the options or the pack make no sense.
-std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack);
-
-/// A head of chains of rigid links (models/head/chain_strand.h); coordinates are the
-/// rotation vectors of the joints (rad), 3 per link; methods as above, but
-/// linearly_implicit_midpoint needs numbers of 64 bits; `points` are those of a link at
-/// which effects act. Throws InputError as above.
-std::unique_ptr<Head> chain_head(const HeadOptions& options, const HeadPack& pack);
-
-/// A head of discrete elastic rods (models/head/maximal/der_strand.h), `elements` edges
-/// each: semi_implicit_euler with the stiff tangent, or the other methods with the exact
-/// one but for slopes of friction, linearly_implicit_midpoint in 64 bits. Coordinates
-/// are, per edge, the vector along it (m, world axes) and the angle of its frame; the
-/// rate of the first edge is the velocity of its end. Without rotary_inertia angles have
-/// no inertia, and there is no tr_bdf2; `points` is not read. Throws InputError as above.
-std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack);
-
-/// A head of point masses and springs (models/head/maximal/spring_strand.h), `elements`
-/// edges each: mass_spring with angular bending, without torsion, by semi_implicit_euler
-/// with the filtered tangent, or by the other methods with the exact one; of effects
-/// beyond gravity and linear drag it has bodies. Coordinates are the vectors along the
-/// edges (m, world axes); the rate of the first is the velocity of its end. `points`,
-/// `twist` and `rotary_inertia` are not read. Numbers have 64 bits: 32 do not resolve
-/// strains of some 1e-6. Throws InputError as above.
-std::unique_ptr<Head> spring_head(const HeadOptions& options, const HeadPack& pack);
+/// Heads of super-helices (models/head/helix_strand.h) and of chains of rigid links
+/// (models/head/chain_strand.h) whose steps are one linear solve with the stiff tangent,
+/// fused with the motion of the strand. Coordinates are Darboux vectors (1/m), or the
+/// rotation vectors of joints (rad), 3 per element. They throw InputError if the options
+/// or the pack make no sense.
+std::unique_ptr<Head> stiff_helix_head(const LaneOptions& options, const HeadPack& pack);
+std::unique_ptr<Head> stiff_chain_head(const LaneOptions& options, const HeadPack& pack);
 
 }  // namespace tress::models

@@ -16,7 +16,7 @@ std::optional<HeadRefusal> refused_by_heads(const Effect& effect) {
   return {};
 }
 
-HeadOptions with_uniform_effects(HeadOptions options) {
+void take_uniform_effects(LaneOptions& options) {
   std::erase_if(options.effects, [&](const auto& effect) {
     if (const auto acceleration = effect->uniform_acceleration()) {
       options.gravity = options.gravity + *acceleration;
@@ -28,7 +28,6 @@ HeadOptions with_uniform_effects(HeadOptions options) {
     options.mass_damping += viscosity->per_mass;
     return true;
   });
-  return options;
 }
 
 }  // namespace tress::models

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "contract/input_error.h"
 #include "math/lanes.h"
 #include "models/head/head.h"
+#include "models/head/head_losses.h"
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
 
@@ -20,48 +20,12 @@ namespace tress::models {
 inline constexpr const char* place_of_head = "head of hair";
 
 /// Throws InputError unless these numbers make sense.
-inline void check_for_head(const HeadOptions& options) {
+inline void check_for_head(const LaneOptions& options) {
   refuse_if(options.elements < 1, "no elements", place_of_head,
             "cut strands into at least one");
   refuse_if(!(options.longest > 0) || !std::isfinite(options.longest),
             "a length that is not positive", place_of_head,
             "give that of the longest strand, in m");
-  refuse_if(!(options.newton_tolerance > 0) || options.newton_iterations < 1,
-            "no tolerance or no iterations", place_of_head, "give positive ones");
-  refuse_if(!(options.tolerance >= 0 && options.tolerance < 1),
-            "a tolerance that is no part of a length", place_of_head,
-            "give one between 0 and 1");
-  refuse_if(!(options.min_step >= 0), "a shortest step below 0", place_of_head,
-            "give one in s, or leave it out");
-  refuse_if(options.tolerance > 0 && options.method != HeadMethod::tr_bdf2,
-            "a tolerance for equal steps", place_of_head,
-            "use tr_bdf2, or give no tolerance");
-}
-
-/// Throws InputError if the method starts from an acceleration that strands do not have.
-inline void check_start(const HeadOptions& options) {
-  refuse_if(
-      options.method == HeadMethod::tr_bdf2 && options.twist && !options.rotary_inertia,
-      "no acceleration from which tr_bdf2 starts: twist has no inertia", place_of_head,
-      "leave rotary_inertia on, or use backward_euler");
-}
-
-/// Throws InputError if numbers are too short for the tolerance.
-inline void check_resolved(const HeadOptions& options, const HeadPack& pack) {
-  refuse_if(options.tolerance > 0 && !resolve(pack.number, options.tolerance),
-            "a tolerance that " +
-                std::string(pack.number == HeadNumber::float32 ? "32" : "64") +
-                " bits do not resolve",
-            place_of_head, "give a larger one, or use 64 bits");
-}
-
-/// Throws InputError if steps are single corrections of numbers of 32 bits, for strands
-/// in which their rounding errors grow.
-inline void check_mended(const HeadOptions& options, const HeadPack& pack) {
-  refuse_if(options.method == HeadMethod::linearly_implicit_midpoint &&
-                pack.number == HeadNumber::float32,
-            "32 bits, whose rounding a single correction does not mend", place_of_head,
-            "use 64 bits, or tr_bdf2");
 }
 
 /// Throws InputError unless the strand has `elements` segments of equal length and
@@ -108,34 +72,10 @@ inline double largest_bulge(std::span<const double> x, double length) {
   return 0.5 * std::sqrt(square);
 }
 
-/// What several threads find.
-class HeadLosses {
- public:
-  /// In the step from t to t + h (s), after this part of it.
-  void add(std::size_t strand, double t, double h, std::string_view reason,
-           double part = 0) {
-    const std::scoped_lock lock(guard_);
-    all_.push_back({strand, std::lround(t / h) + 1, t + part * h, reason});
-  }
-  /// See Head::losses().
-  std::vector<HeadLoss> after(std::size_t known) const {
-    const std::scoped_lock lock(guard_);
-    std::vector<HeadLoss> rest(all_.begin() + static_cast<std::ptrdiff_t>(known),
-                               all_.end());
-    std::ranges::sort(rest, {}, &HeadLoss::strand);
-    return rest;
-  }
-
- private:
-  mutable std::mutex guard_;
-  std::vector<HeadLoss> all_;
-};
-
-/// The Head of this pack: made<T>(instructions) for the type T of the pack's numbers.
-/// Throws InputError if there is no such pack. `short_numbers`: whether there are those
-/// of 32 bits.
-template <bool short_numbers = true, class Made>
-std::unique_ptr<Head> on_pack(const HeadPack& pack, Made made) {
+/// What made<T>(instructions) is for the type T of this pack's numbers. Throws InputError
+/// if there is no such pack. `short_numbers`: whether there are those of 32 bits.
+template <class Result, bool short_numbers = true, class Made>
+Result on_pack(const HeadPack& pack, Made made) {
   const Instructions set = pack.instructions.value_or(widest_instructions());
   refuse_if(!available(set),
             std::string("no instructions ") + name(set) + " on this machine",

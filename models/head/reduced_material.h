@@ -1,7 +1,7 @@
 #pragma once
 
-#include "models/head/head.h"
 #include "models/head/head_units.h"
+#include "models/head/lane_head.h"
 #include "models/head/reduced_kernel.h"
 #include "models/strand/strand.h"
 
@@ -9,7 +9,7 @@ namespace tress::models {
 
 /// What elements of this Kind of a strand have in common, of a lane.
 template <class Kind>
-void set_material(const Strand& strand, const HeadOptions& options,
+void set_material(const Strand& strand, const LaneOptions& options,
                   const HeadUnits& units, int lane,
                   ReducedMaterial<typename Kind::Real>& m) {
   const Segment& first = strand.segments.front();
@@ -35,13 +35,21 @@ struct ReducedStart {
   Vec rest, initial;
 };
 template <class Kind>
-ReducedStart start_of(const Strand& strand, const HeadOptions& options,
+ReducedStart start_of(const Strand& strand, const LaneOptions& options,
                       const HeadUnits& units, std::size_t i) {
   const double unit = Kind::unit(units.length);
   const Vec rest = unit * Kind::at_rest(strand, i, &Segment::natural);
   Vec initial = unit * Kind::at_rest(strand, i, &Segment::initial);
   if (!options.twist) initial.x = rest.x;  // held
   return {rest, initial};
+}
+
+/// Throws InputError unless these numbers make sense.
+inline void check_for_reduced_head(const LaneOptions& options) {
+  check_for_head(options);
+  refuse_if(options.points < 2 || options.points > most_points_of_element,
+            std::to_string(options.points) + " points of an element", place_of_head,
+            "use 2 to 16");
 }
 
 }  // namespace tress::models

@@ -163,7 +163,7 @@ class LaneGuard::Reader {
   std::vector<double> mass_, length_;               // (points)
 };
 
-LaneGuard::LaneGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest)
+LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_rest)
     : motion_(options.motion),
       effects_(make_effects(scene)),
       moves_(!options.motion.fixed()),

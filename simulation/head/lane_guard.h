@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/head/head_guard.h"
+#include "simulation/head/make_head.h"
 #include "simulation/run/energy_account.h"
 #include "simulation/scene/scene.h"
 
@@ -29,7 +30,7 @@ class LaneGuard final : public HeadGuard {
  public:
   /// Of a head with these options; `at_rest`: whether what acts beside gravity and drag
   /// does no work in the frame of the head.
-  LaneGuard(const Scene& scene, const models::HeadOptions& options, bool at_rest);
+  LaneGuard(const Scene& scene, const HeadOptions& options, bool at_rest);
 
   void reserve(std::size_t strands) { strands_.reserve(strands); }
   /// The strand at the next place, with the effects on it alone.

@@ -24,7 +24,7 @@ NoHead no_option(const Parameters& p, const char* key, std::string remedy) {
 /// Whether steps are solved with all derivatives of the residual.
 bool has_exact_tangent(const Scene& scene) {
   const auto method = head_method(scene);
-  return method && *method != models::HeadMethod::semi_implicit_euler;
+  return method && *method != HeadMethod::semi_implicit_euler;
 }
 
 /// The tangent of the scene's method: all derivatives, or `of_one` for one correction.
@@ -166,7 +166,7 @@ std::optional<NoHead> no_number(const Scene& scene, models::HeadNumber number) {
         "give --bits 64, or [integrator] id = \"tr_bdf2\""};
   }
   const double tolerance = scene.options.tolerance;
-  if (tolerance == 0 || models::resolve(number, tolerance)) return {};
+  if (tolerance == 0 || resolve(number, tolerance)) return {};
   return NoHead{
       fmt::format("tolerance = {:g} in {} bits, which do not resolve it", tolerance,
                   narrow ? 32 : 64),
@@ -210,7 +210,7 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
 bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
 
-std::optional<models::HeadMethod> head_method(const Scene& scene) {
+std::optional<HeadMethod> head_method(const Scene& scene) {
   for (const auto& [id, method] : head_methods) {
     if (scene.integrator == id) return method;
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "models/head/head.h"
+#include "simulation/head/make_head.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {
@@ -29,13 +30,13 @@ std::optional<NoHead> no_head(const SceneOutline& outline,
 /// Of a scene that has lanes: of springs, of rigid links, or else of super-helices.
 bool steps_springs(const Scene& scene);
 bool steps_chains(const Scene& scene);
-/// Methods that lanes have, by the ids of integrators.
-inline constexpr std::pair<std::string_view, models::HeadMethod> head_methods[] = {
-    {"semi_implicit_euler", models::HeadMethod::semi_implicit_euler},
-    {"linearly_implicit_midpoint", models::HeadMethod::linearly_implicit_midpoint},
-    {"backward_euler", models::HeadMethod::backward_euler},
-    {"tr_bdf2", models::HeadMethod::tr_bdf2}};
+/// Methods that heads have, by the ids of integrators.
+inline constexpr std::pair<std::string_view, HeadMethod> head_methods[] = {
+    {"semi_implicit_euler", HeadMethod::semi_implicit_euler},
+    {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint},
+    {"backward_euler", HeadMethod::backward_euler},
+    {"tr_bdf2", HeadMethod::tr_bdf2}};
 /// The one of a scene's integrator, if there is one.
-std::optional<models::HeadMethod> head_method(const Scene& scene);
+std::optional<HeadMethod> head_method(const Scene& scene);
 
 }  // namespace tress::simulation

@@ -20,8 +20,6 @@
 namespace tress::simulation {
 namespace {
 
-using models::HeadOptions;
-
 constexpr std::size_t parts = 64;  // of strands that are made at the same time
 
 /// Whether what acts beside gravity and drag does no work in the frame of the head.

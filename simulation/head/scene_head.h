@@ -8,6 +8,7 @@
 #include "simulation/head/halo.h"
 #include "simulation/head/head_division.h"
 #include "simulation/head/head_guard.h"
+#include "simulation/head/make_head.h"
 #include "simulation/head/no_head.h"
 #include "simulation/head/ranks.h"
 #include "simulation/rest/held_shape.h"

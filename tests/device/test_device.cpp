@@ -247,7 +247,7 @@ TEST_F(Device, RefusesWhatItsCodeDoesNotKnow) {
     return models::Effects{std::make_shared<models::Gravity>(Vec{0, 0, 1})};
   };
   EXPECT_THAT(refusal(testing_support::head(c, pack, 4)), HasSubstr("single strands"));
-  for (const auto& make : {models::der_head, models::chain_head}) {
+  for (const auto& make : {simulation::der_head, simulation::chain_head}) {
     EXPECT_THAT(refusal(make(testing_support::options({"Others"}), pack)),
                 HasSubstr("super-helices only"));
   }

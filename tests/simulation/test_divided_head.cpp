@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "contract/input_error.h"
 #include "simulation/head/head_balance.h"
 #include "simulation/head/head_run.h"
 #include "simulation/scene/scene.h"
@@ -259,10 +260,8 @@ INSTANTIATE_TEST_SUITE_P(Scalps, DividedHead, testing::ValuesIn(scalps()),
 // A step looks where rates lead from here: x + h v but for terms of h^2.
 TEST(HeadAhead, IsWhereRatesLeadTo) {
   const SceneOutline outline = scene({"free", ""}, 11);
-  models::HeadOptions options{
-      .elements = 4, .longest = 0.1, .motion = outline.scene.head};
-  for (const auto& make :
-       {models::helix_head, models::chain_head, models::der_head, models::spring_head}) {
+  HeadOptions options{{.elements = 4, .longest = 0.1, .motion = outline.scene.head}};
+  for (const auto& make : {helix_head, chain_head, der_head, spring_head}) {
     const auto head = make(options, {models::HeadNumber::float64, 4});
     for (std::size_t k = 0; k < outline.series->size(); ++k) {
       head->add(outline.series->strand(k));
@@ -286,7 +285,7 @@ TEST(HeadAhead, IsWhereRatesLeadTo) {
     EXPECT_GT(most[0], 1e-9);  // m, or this says little
     EXPECT_NEAR(most[0] / most[1], 4, 0.4);
     // Arcs lie beside their chords, edges on them.
-    EXPECT_EQ(bulge[0] > 1e-5, make == models::helix_head);
+    EXPECT_EQ(bulge[0] > 1e-5, make == helix_head);
   }
 }
 

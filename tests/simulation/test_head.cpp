@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "contract/input_error.h"
-#include "models/head/stepping/lane_method.h"
+#include "integrators/block/block_method.h"
 #include "models/motion/root_motion.h"
 #include "simulation/export/head_frames.h"
 #include "simulation/files/csv.h"
@@ -392,9 +392,8 @@ TEST(HeadWithATolerance, MovesAsTheWorldOfTheSceneDoes) {
     constexpr double change = 1e-6;
     const double grown =
         std::max(1.0, apart(by_world(scene, change), want) / (change * length));
-    const double left = models::lane_stages::tr_bdf2_estimate.threshold(tolerance) *
-                        length * grown *
-                        static_cast<double>(std::ranges::max(world.steps()));
+    const double left = integrators::tr_bdf2_estimate.threshold(tolerance) * length *
+                        grown * static_cast<double>(std::ranges::max(world.steps()));
     const Toy::Result result = run(toy, "--frames 64 --threads 2");
     EXPECT_THAT(result.err, HasSubstr("rejected by their error"));
     const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);

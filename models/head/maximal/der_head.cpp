@@ -1,16 +1,16 @@
 #include <cmath>
 #include <vector>
 
+#include "models/head/lane_block.h"
 #include "models/head/maximal/der_strand.h"
 #include "models/head/maximal/edge_model.h"
-#include "models/head/stepping/stepping_head.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"
 
 namespace tress::models {
 namespace {
 
-/// DerStrand as a Model of models/head/stepping/stepped_model.h.
+/// DerStrand as a LaneModel.
 template <class Pack, bool exact>
 class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
  public:
@@ -19,7 +19,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   using Base = EdgeModel<Real, Kernel::per_element>;
   using Base::clamp, Base::elements;
   using V = Vec3<Real>;
-  static constexpr bool iterates = true, takes_bodies = false, takes_stresses = false;
+  static constexpr bool iterates = exact, takes_bodies = false, takes_stresses = false;
   static constexpr double newton_part = 1e-2;
   struct Strand {
     LaneRoot<Real> root;
@@ -34,7 +34,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     std::vector<typename Kernel::Factor> factors;
   };
 
-  DerModel(const HeadOptions& options, const HeadUnits& units, Instructions instructions)
+  DerModel(const LaneOptions& options, const HeadUnits& units, Instructions instructions)
       : Base(options),
         instructions_(instructions),
         turning_(options.rotary_inertia),
@@ -114,25 +114,20 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   Kernel kernel_;
 };
 
+template <class T>
+using StiffRods = DerModel<T, false>;
+template <class T>
+using ExactRods = DerModel<T, true>;
+
 }  // namespace
 
-std::unique_ptr<Head> der_head(const HeadOptions& options, const HeadPack& pack) {
+AnyLaneKernel der_lanes(const LaneOptions& options, const HeadPack& pack,
+                        Tangent tangent) {
   check_for_head(options);
   refuse_if(!options.twist, "a discrete elastic rod without twist", place_of_head,
             "leave twist on");
-  check_start(options);
-  // Stretching keeps what rounding puts into it: in a second strands are off by 6e-4 of
-  // their length.
-  check_mended(options, pack);
-  check_resolved(options, pack);
-  if (options.method == HeadMethod::semi_implicit_euler) {
-    return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-      return std::make_unique<SteppingHead<DerModel<T, false>>>(options, set);
-    });
-  }
-  return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-    return std::make_unique<SteppingHead<DerModel<T, true>>>(options, set);
-  });
+  return tangent == Tangent::exact ? lanes_of<ExactRods>(options, pack)
+                                   : lanes_of<StiffRods>(options, pack);
 }
 
 }  // namespace tress::models

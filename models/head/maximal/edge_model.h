@@ -15,7 +15,7 @@
 
 namespace tress::models {
 
-/// What Models of models/head/stepping/stepped_model.h have in common whose strands are
+/// What LaneModels (models/head/lane_model.h) have in common whose strands are
 /// chains of edges from the root on: `per_element` numbers of an edge, the first three
 /// the vector along it, in axes of the world. The rate of the first edge is that of its
 /// end. Flat as ReducedLoads.
@@ -29,7 +29,7 @@ class EdgeModel {
   static constexpr const char* use_others =
       "use super_helix, or run the strands one by one";
 
-  explicit EdgeModel(const HeadOptions& options)
+  explicit EdgeModel(const LaneOptions& options)
       : n_(static_cast<std::size_t>(options.elements)),
         drag_(options.drag),
         mass_damping_(options.mass_damping) {}

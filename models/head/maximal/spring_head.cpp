@@ -1,16 +1,16 @@
 #include <cmath>
 #include <vector>
 
+#include "models/head/lane_block.h"
 #include "models/head/maximal/edge_model.h"
 #include "models/head/maximal/node_loads.h"
 #include "models/head/maximal/spring_strand.h"
-#include "models/head/stepping/stepping_head.h"
 #include "models/maximal/nodal_strand.h"
 
 namespace tress::models {
 namespace {
 
-/// SpringStrand as a Model of models/head/stepping/stepped_model.h.
+/// SpringStrand as a LaneModel.
 template <class Pack, bool exact>
 class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_element> {
  public:
@@ -54,7 +54,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   using Scratch = std::conditional_t<exact, ExactScratch, StiffScratch>;
 
   /// `units`, which are whole with the first strand, must outlive it.
-  SpringModel(const HeadOptions& options, const HeadUnits& units,
+  SpringModel(const LaneOptions& options, const HeadUnits& units,
               Instructions instructions)
       : Base(options),
         units_(units),
@@ -174,23 +174,22 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   Kernel kernel_;
 };
 
+template <class T>
+using StiffSprings = SpringModel<T, false>;
+template <class T>
+using ExactSprings = SpringModel<T, true>;
+
 }  // namespace
 
-std::unique_ptr<Head> spring_head(const HeadOptions& options, const HeadPack& pack) {
+AnyLaneKernel spring_lanes(const LaneOptions& options, const HeadPack& pack,
+                           Tangent tangent) {
   check_for_head(options);
   // The strain of a hair under its weight is some 1e-6: 32 bits know it to 6 %.
   refuse_if(pack.number != HeadNumber::float64,
             "springs in 32 bits, which do not resolve their strains", place_of_head,
             "use 64 bits");
-  check_resolved(options, pack);
-  if (options.method == HeadMethod::semi_implicit_euler) {
-    return on_pack<false>(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-      return std::make_unique<SteppingHead<SpringModel<T, false>>>(options, set);
-    });
-  }
-  return on_pack<false>(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-    return std::make_unique<SteppingHead<SpringModel<T, true>>>(options, set);
-  });
+  return tangent == Tangent::exact ? lanes_of<ExactSprings, false>(options, pack)
+                                   : lanes_of<StiffSprings, false>(options, pack);
 }
 
 }  // namespace tress::models

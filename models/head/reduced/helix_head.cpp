@@ -55,8 +55,8 @@ class HelixHead final : public ReducedHead<HelixKind<T>>, public HelixSource {
 
 }  // namespace
 
-std::unique_ptr<Head> helix_head(const HeadOptions& options, const HeadPack& pack) {
-  return reduced_head<HelixHead>(options, pack, other_helix_head);
+std::unique_ptr<Head> stiff_helix_head(const LaneOptions& options, const HeadPack& pack) {
+  return reduced_head<HelixHead>(options, pack);
 }
 
 }  // namespace tress::models

@@ -9,7 +9,6 @@
 
 #include "models/head/head_motion.h"
 #include "models/head/lane_head.h"
-#include "models/head/reduced/other_methods.h"
 #include "models/head/reduced_energies.h"
 #include "models/head/reduced_kernel.h"
 #include "models/head/reduced_loads.h"
@@ -27,7 +26,7 @@ class ReducedHead : public Head {
  public:
   using T = typename Kind::Real;
 
-  ReducedHead(const HeadOptions& options, Instructions instructions)
+  ReducedHead(const LaneOptions& options, Instructions instructions)
       : options_(with_uniform_effects(options)),
         instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
@@ -360,7 +359,7 @@ class ReducedHead : public Head {
             units_.speed()};
   }
 
-  HeadOptions options_;
+  LaneOptions options_;
   Instructions instructions_;
   std::size_t n_;
   ReducedKernel<Kind> kernel_;
@@ -378,26 +377,14 @@ class ReducedHead : public Head {
   std::vector<Effects> own_;  // of each strand, or empty
 };
 
-/// Throws InputError unless such a head can have these options.
-inline void check_for_reduced_head(const HeadOptions& options) {
-  check_for_head(options);
-  refuse_if(options.points < 2 || options.points > most_points_of_element,
-            std::to_string(options.points) + " points of an element", place_of_head,
-            "use 2 to 16");
-  check_start(options);
-}
-
-/// A head by the method of the options: `Stepped` where one linear solve is a step, and
-/// else by `others`.
+/// A ReducedHead of valid options.
 template <template <class> class Stepped>
-std::unique_ptr<Head> reduced_head(const HeadOptions& options, const HeadPack& pack,
-                                   decltype(other_helix_head)& others) {
+std::unique_ptr<Head> reduced_head(const LaneOptions& options, const HeadPack& pack) {
   check_for_reduced_head(options);
-  check_resolved(options, pack);
-  if (options.method != HeadMethod::semi_implicit_euler) return others(options, pack);
-  return on_pack(pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-    return std::make_unique<Stepped<T>>(options, set);
-  });
+  return on_pack<std::unique_ptr<Head>>(
+      pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
+        return std::make_unique<Stepped<T>>(options, set);
+      });
 }
 
 }  // namespace tress::models

@@ -11,13 +11,12 @@
 #include "models/head/reduced_kernel.h"
 #include "models/head/reduced_loads.h"
 #include "models/head/reduced_material.h"
-#include "models/head/stepping/stepping_head.h"
+#include "models/motion/root_motion.h"
 #include "models/reduced/reduced_strand.h"
 
 namespace tress::models {
 
-/// ReducedKernel as a Model of models/head/stepping/stepped_model.h, for methods that
-/// iterate.
+/// ReducedKernel with its exact Jacobian as a LaneModel.
 template <class Kind>
 class ReducedModel {
  public:
@@ -29,7 +28,7 @@ class ReducedModel {
   static constexpr double most_stretched = 1;
   static constexpr double newton_part = 0.03;
   static constexpr const char* use_others =
-      "use semi_implicit_euler, or run the strands one by one";
+      "use a method of one linear solve, or run the strands one by one";
 
   struct Strand {
     LaneRoot<Real> root;
@@ -59,7 +58,7 @@ class ReducedModel {
   };
 
   /// `units`, which are whole with the first strand, must outlive it.
-  ReducedModel(const HeadOptions& options, const HeadUnits& units,
+  ReducedModel(const LaneOptions& options, const HeadUnits& units,
                Instructions instructions)
       : options_(options),
         units_(units),
@@ -227,7 +226,7 @@ class ReducedModel {
     }
   }
 
-  HeadOptions options_;
+  LaneOptions options_;
   const HeadUnits& units_;
   Instructions instructions_;
   std::size_t n_;

@@ -5,8 +5,8 @@
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/head/head.h"
 #include "models/strand/strand.h"
+#include "simulation/head/make_head.h"
 
 namespace tress::testing_support {
 
@@ -24,13 +24,13 @@ struct RodCase {
 };
 inline void PrintTo(const RodCase& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
-inline models::HeadOptions rod_options(const RodCase& c) {
-  models::HeadOptions o{.elements = c.elements,
-                        .gravity = {0.5, 1, -9.81},
-                        .drag = c.drag,
-                        .mass_damping = c.mass_damping,
-                        .longest = 0.25,
-                        .motion = {}};
+inline simulation::HeadOptions rod_options(const RodCase& c) {
+  simulation::HeadOptions o{{.elements = c.elements,
+                             .gravity = {0.5, 1, -9.81},
+                             .drag = c.drag,
+                             .mass_damping = c.mass_damping,
+                             .longest = 0.25,
+                             .motion = {}}};
   o.motion.position = {0.01, 0.02, 1.5};
   if (c.moves) {
     o.motion.translations = {{{0, 1, 0.5}, models::one_minus_cosine(0.01, 3 * c.speed)}};
@@ -55,7 +55,7 @@ inline models::Strand rod(const RodCase& c, std::size_t k) {
       {.elements = c.elements, .length = 0.25 / (1 + x / 20), .grading = 1},
       models::uniform_shape(c.curl * natural),
       models::uniform_shape(c.curl * (c.sprung ? initial : natural)));
-  const models::HeadOptions o = rod_options(c);
+  const simulation::HeadOptions o = rod_options(c);
   made.root = o.motion;
   made.root.centre = o.motion.position;
   made.root.position = o.motion.position + Vec{0.01 * x, 0.1 - 0.02 * x, 0.003};
@@ -69,7 +69,7 @@ inline std::unique_ptr<System> rod_alone(const RodCase& c, std::size_t k,
   const models::ModelEntry& entry = models::find_model("der");
   Parameters parameters(entry.parameters, "test");
   parameters.set("tangent", tangent);
-  const models::HeadOptions o = rod_options(c);
+  const simulation::HeadOptions o = rod_options(c);
   return entry.on_strand(rod(c, k), parameters,
                          {std::make_shared<models::Gravity>(o.gravity),
                           std::make_shared<models::LinearDrag>(o.drag, o.mass_damping)});

@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "contract/integrator.h"
-#include "models/head/head.h"
+#include "simulation/head/make_head.h"
 
 namespace tress::testing_support {
 
-using models::HeadMethod;
+using integrators::HeadMethod;
 
 /// A method of heads, and the integrator of its strands by themselves.
 struct HairMethod {

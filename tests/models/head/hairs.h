@@ -11,14 +11,14 @@
 #include "integrators/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/head/head.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/super_helix.h"
+#include "simulation/head/make_head.h"
 #include "tests/models/head/exact_methods.h"
 
 namespace tress::testing_support {
 
-using namespace models;
+using namespace simulation;
 using integrators::make_integrator;
 
 inline constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
@@ -70,16 +70,16 @@ inline Case exact(Case c, const HairMethod& method) {
 }
 
 inline HeadOptions options(const Case& c) {
-  HeadOptions o{.elements = c.elements,
-                .points = c.points,
-                .twist = c.twist,
-                .gravity = {0.5, 1, -9.81},
-                .drag = c.drag,
-                .mass_damping = c.mass_damping,
-                .longest = 0.25,
-                .motion = {},
-                .method = c.method->method,
-                .effects = c.effects};
+  HeadOptions o{{.elements = c.elements,
+                 .points = c.points,
+                 .twist = c.twist,
+                 .gravity = {0.5, 1, -9.81},
+                 .drag = c.drag,
+                 .mass_damping = c.mass_damping,
+                 .longest = 0.25,
+                 .motion = {},
+                 .effects = c.effects}};
+  o.method = c.method->method;
   o.motion.position = {0.01, 0.02, 1.5};
   if (c.moves) {
     o.motion.translations = {{{0, 1, 0.5}, one_minus_cosine(0.01, 3)}};

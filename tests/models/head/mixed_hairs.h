@@ -6,23 +6,23 @@
 
 #include "contract/constants.h"
 #include "models/effects/body.h"
-#include "models/head/head.h"
+#include "simulation/head/make_head.h"
 
 namespace tress::testing_support {
 
 /// Makes a head of one of the models that have tr_bdf2.
 struct HeadMaker {
   const char *name, *model;
-  std::unique_ptr<models::Head> (*make)(const models::HeadOptions&,
+  std::unique_ptr<models::Head> (*make)(const simulation::HeadOptions&,
                                         const models::HeadPack&);
   bool stretches, narrow;  // elements; whether numbers may have 32 bits
 };
 inline void PrintTo(const HeadMaker& m, std::ostream* out) { *out << m.name; }  // NOLINT
-inline constexpr HeadMaker helix_hairs{"Helices", "super_helix", models::helix_head,
+inline constexpr HeadMaker helix_hairs{"Helices", "super_helix", simulation::helix_head,
                                        false, true},
-    linked_hairs{"Chains", "articulated_chain", models::chain_head, false, true},
-    rods{"Rods", "der", models::der_head, true, true},
-    spring_masses{"Springs", "mass_spring", models::spring_head, true, false};
+    linked_hairs{"Chains", "articulated_chain", simulation::chain_head, false, true},
+    rods{"Rods", "der", simulation::der_head, true, true},
+    spring_masses{"Springs", "mass_spring", simulation::spring_head, true, false};
 inline constexpr HeadMaker controlled_heads[] = {helix_hairs, linked_hairs, rods,
                                                  spring_masses};
 
@@ -65,18 +65,18 @@ inline models::Strand lively_hair() {
 }
 
 /// By equal steps, if the tolerance is 0.
-inline models::HeadOptions mixed_options(double tolerance) {
-  models::HeadOptions o{.elements = mixed_elements,
-                        .points = 4,
-                        .drag = 2e-5,
-                        .mass_damping = 0.5,
-                        .longest = 0.25,
-                        .line_density = 5e-6,
-                        .motion = {},
-                        .method = models::HeadMethod::tr_bdf2,
-                        .newton_tolerance = 1e-13,
-                        .tolerance = tolerance,
-                        .effects = {}};
+inline simulation::HeadOptions mixed_options(double tolerance) {
+  simulation::HeadOptions o{{.elements = mixed_elements,
+                             .points = 4,
+                             .drag = 2e-5,
+                             .mass_damping = 0.5,
+                             .longest = 0.25,
+                             .line_density = 5e-6,
+                             .motion = {},
+                             .effects = {}}};
+  o.method = integrators::HeadMethod::tr_bdf2;
+  o.newton_tolerance = 1e-13;
+  o.tolerance = tolerance;
   o.motion.rotations = {{{0, 0.6, 0.8}, models::one_minus_cosine(0.4, 2)}};
   return o;
 }

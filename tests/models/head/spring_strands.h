@@ -17,10 +17,10 @@ inline std::unique_ptr<models::Head> springs(const RodCase& c, const HairMethod&
                                              const models::HeadPack& pack,
                                              std::size_t strands,
                                              const models::Effects& effects = {}) {
-  models::HeadOptions options = rod_options(c);
+  simulation::HeadOptions options = rod_options(c);
   options.method = method.method;
   options.effects = effects;
-  auto all = models::spring_head(options, pack);
+  auto all = simulation::spring_head(options, pack);
   for (std::size_t k = 0; k < strands; ++k) all->add(rod(c, k));
   return all;
 }
@@ -38,7 +38,7 @@ inline void advance_springs(models::Head& all, int steps, double h,
 
 /// A strand by itself, with the tangent of the method's heads.
 inline std::unique_ptr<System> spring_alone(const models::Strand& strand,
-                                            const models::HeadOptions& o,
+                                            const simulation::HeadOptions& o,
                                             const HairMethod& method,
                                             const models::Effects& more = {}) {
   const models::ModelEntry& entry = models::find_model("mass_spring");

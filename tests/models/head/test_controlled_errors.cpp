@@ -4,19 +4,19 @@
 #include <tuple>
 
 #include "contract/integrator.h"
+#include "integrators/block/block_method.h"
 #include "integrators/catalogue.h"
 #include "integrators/tr_bdf2.h"
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
-#include "models/head/stepping/lane_method.h"
 #include "tests/models/head/mixed_hairs.h"
 
 /// Errors of heads whose strands choose their steps by a tolerance, against equal steps
 /// that are so short that their own errors do not count, and what both cost.
 namespace tress::test_controlled_errors {
 
-using namespace models;
+using namespace simulation;
 using namespace testing_support;
 
 /// Of an interval: equal steps of 0.2 ms, of what stretches 0.05 ms.
@@ -84,7 +84,7 @@ Found with_tolerance(const Alone& alone, HeadOptions options, const HeadPack& pa
   options.tolerance = tolerance;
   const Course own = course(*alone(options, pack), 1);
   return {off(own, want, length), static_cast<double>(own.steps) * by_motion *
-                                      lane_stages::tr_bdf2_estimate.threshold(tolerance)};
+                                      integrators::tr_bdf2_estimate.threshold(tolerance)};
 }
 
 class ControlledErrors : public testing::TestWithParam<HeadMaker> {
@@ -222,7 +222,7 @@ TEST_P(ControlledErrors, AreThoseOfAStrandAloneInAboutAsManySteps) {
     const auto [steps, end] = by_integrator(GetParam(), strand);
     EXPECT_LE(off(own.at.back(), end, 0, strand.length()),
               static_cast<double>(own.steps + steps) *
-                  lane_stages::tr_bdf2_estimate.threshold(1e-3));
+                  integrators::tr_bdf2_estimate.threshold(1e-3));
     all += own.steps;
     all_alone += steps;
   }
@@ -268,9 +268,9 @@ TEST_P(ControlledErrors, TakeNoMoreIterationsThanEqualStepsThatLeaveNoLess) {
 INSTANTIATE_TEST_SUITE_P(All, ControlledErrors, testing::ValuesIn(controlled_heads),
                          [](const auto& of) { return std::string(of.param.name); });
 
-TEST(LaneEstimate, IsThatOfTheIntegratorsTable) {
+TEST(BlockEstimate, IsThatOfTheIntegratorsTable) {
   const integrators::EsdirkTable& table = integrators::tr_bdf2_table();
-  const LaneEstimate& estimate = lane_stages::tr_bdf2_estimate;
+  const BlockEstimate& estimate = integrators::tr_bdf2_estimate;
   for (std::size_t j = 0; j < 3; ++j) {
     double drift = 0;
     for (std::size_t i = 0; i < 3; ++i) {

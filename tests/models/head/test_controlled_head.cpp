@@ -10,7 +10,7 @@
 /// Heads whose strands choose their steps by a tolerance.
 namespace tress::test_controlled_head {
 
-using namespace models;
+using namespace simulation;
 using namespace testing_support;
 using testing::HasSubstr;
 

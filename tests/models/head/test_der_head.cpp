@@ -9,7 +9,7 @@
 
 namespace tress::test_der_head {
 
-using namespace models;
+using namespace simulation;
 using namespace testing_support;
 using integrators::make_integrator;
 

@@ -12,7 +12,7 @@
 /// themselves with the exact tangent (models/reduced/exact_tangent.h).
 namespace tress::test_exact_head {
 
-using namespace models;
+using namespace simulation;
 using testing_support::Case;
 using testing_support::chains;
 using testing_support::HairModel;

@@ -19,7 +19,7 @@
 
 namespace tress::test_head_effects {
 
-using namespace models;
+using namespace simulation;
 using testing_support::advance;
 using testing_support::Alone;
 using testing_support::alone;

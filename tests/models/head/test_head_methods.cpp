@@ -12,7 +12,7 @@
 /// hard to solve, and where they are refused.
 namespace tress::test_head_methods {
 
-using namespace models;
+using namespace simulation;
 using testing::HasSubstr;
 using testing_support::advance;
 using testing_support::alone;

@@ -6,7 +6,7 @@
 
 namespace tress::test_reduced_head {
 
-using namespace models;
+using namespace simulation;
 using testing_support::advance;
 using testing_support::Alone;
 using testing_support::alone;

@@ -7,14 +7,14 @@
 
 #include "integrators/catalogue.h"
 #include "models/effects/gravity.h"
-#include "models/head/head.h"
 #include "models/reduced/articulated_chain.h"
+#include "simulation/head/make_head.h"
 #include "tests/models/head/hairs.h"
 
 namespace tress::test_soft_chain {
 namespace {
 
-using namespace models;
+using namespace simulation;
 
 constexpr int elements = 2, steps = 60;
 constexpr double step = 1.75e-3;  // s
@@ -50,7 +50,7 @@ Energy alone(const Strand& strand, int dofs, TreeMethod method) {
 }
 
 HeadEnergy in_head(const Strand& strand, int dofs, const HeadPack& pack) {
-  HeadOptions options{.elements = elements, .twist = dofs == 3, .longest = 0.6};
+  HeadOptions options{{.elements = elements, .twist = dofs == 3, .longest = 0.6}};
   options.gravity = gravity;
   const auto head = chain_head(options, pack);
   head->add(strand);

@@ -10,7 +10,7 @@
 /// test_spring_methods.cpp.
 namespace tress::test_spring_head {
 
-using namespace models;
+using namespace simulation;
 using namespace testing_support;
 
 std::unique_ptr<Head> head(const RodCase& c, const HeadPack& pack, std::size_t strands,

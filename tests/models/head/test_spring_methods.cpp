@@ -11,7 +11,7 @@
 /// test_spring_head.cpp.
 namespace tress::test_spring_methods {
 
-using namespace models;
+using namespace simulation;
 using namespace testing_support;
 
 /// Single corrections need shorter steps, in the head or alone: a tenth of `h`.

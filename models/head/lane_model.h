@@ -2,30 +2,29 @@
 
 namespace tress::models {
 
-/// What SteppingHead steps. A Model has
+/// What a Block steps (models/head/lane_block.h). A Model has
 ///
 ///     Real                                  // PackOf
 ///     Strand, Element                       // Real only: what is known of them
 ///     Clamp, Scratch(Model)
 ///     elements(), unknowns()                // of a strand
-///     describe(strand, units, lane, Strand&, Element*, q, v)
+///     describe(strand, centre, units, lane, Strand&, Element*, q, v)
 ///     clamp(Strand, RootPose)
 ///     renew(Element*, Clamp, q, v)          // reference frames, before a step; > 0 in
 ///                                           // lanes with new ones, whose accelerations
 ///                                           // before mean nothing then
 ///     predict(Strand, RootPose, RootPose, h, q, v, q_bar)   // q + h v
 ///     newton(Strand, Element*, Clamp, Weights, q, v, a, correction, Scratch&)
-///     again(the same)                       // with the matrix of the last newton()
 ///     resolved(Strand, Weights, lane)       // size of corrections that are rounding
 ///     positions(Strand, Frame, q, use(i, Vec3<Real>))
 ///     velocities(Strand, RootPose, q, v, use(i, Vec3<Real>))
 ///     energies(Strand, Element*, RootPose, q, v)   // LaneEnergies
 ///     mass(Strand, lane)
-///     iterates                              // whether it has methods beyond
-///                                           // semi_implicit_euler, and
-///     newton_part                           // of a strand's tolerance, Newton's
+///     newton_part                           // Block::newton_part()
 ///     coordinate_size(Strand, dq)           // over those of System::scale
 ///     use_others                            // remedy for effects that it has not
+///     iterates                              // whether its Jacobian is exact, and it has
+///     again(as newton)                      // with the matrix of the last newton()
 ///     takes_stresses                        // whether it has
 ///     take_stresses(Strand, q, which, Scratch&)   // from where terms of second order of
 ///                                           // the next newton() have stresses, in lanes
@@ -45,7 +44,7 @@ namespace tress::models {
 ///
 /// all without units; poses are HeadUnits' multiples.
 template <class Model>
-concept SteppedModel = requires {
+concept LaneModel = requires {
   typename Model::Real;
   typename Model::Strand;
   typename Model::Element;

@@ -5,15 +5,17 @@
 #include <cstddef>
 #include <limits>
 
-namespace tress::models {
+#include "integrators/control/step_factors.h"
+
+namespace tress::integrators {
 
 /// The length of a strand's next step, such that an estimated error that falls as h^falls
 /// stays below its threshold: the elementary control of [Hairer, Wanner 1996, section
-/// IV.8]. Steps are powers of two parts of an interval, the largest that are
-/// no longer, so that most are shorter than this length by up to a half: that is the dead
-/// band of integrators/control/step_control.h, whose proportional part would take a step
-/// that is left alone for one that the error asks for. A step without a solution sets a
-/// ceiling as there: the estimate does not see why there was none. Without units.
+/// IV.8]. Steps are powers of two parts of an interval, the largest that are no longer,
+/// so that most are shorter than this length by up to a half: that is the dead band of
+/// StepControl, whose proportional part would take a step that is left alone for one that
+/// the error asks for. A step without a solution sets a ceiling as there: the estimate
+/// does not see why there was none. In the block's units.
 class StepLength {
  public:
   double next() const { return std::min(next_, ceiling_); }
@@ -22,20 +24,20 @@ class StepLength {
 
   /// A step of h was taken with this estimate over its threshold, at most 1.
   void accept(double h, double error, double falls) {
-    const double factor = safety * std::pow(error, -1 / falls);
+    const double factor = factor_of(error, falls);
     // A step that was cut says nothing against more than it allows.
-    next_ = factor > most_factor ? std::max(next_, most_factor * h)
-                                 : std::max(factor, least_factor) * h;
-    ceiling_ *= ceiling_growth;
+    next_ = factor > step_factors::most ? std::max(next_, step_factors::most * h)
+                                        : std::max(factor, step_factors::least) * h;
+    ceiling_ *= step_factors::ceiling_growth;
   }
   /// `error`: as above, more than 1 or not a number.
   void reject(double h, double error, double falls) {
-    const double factor = safety * std::pow(error, -1 / falls);
-    next_ = (factor > least_factor ? factor : least_factor) * h;
+    const double factor = factor_of(error, falls);
+    next_ = (factor > step_factors::least ? factor : step_factors::least) * h;
   }
   void unsolved(double h) {
-    next_ = unsolved_factor * h;
-    ceiling_ = unsolved_ceiling * h;
+    next_ = step_factors::unsolved * h;
+    ceiling_ = step_factors::unsolved_ceiling * h;
   }
 
   static constexpr std::size_t kept = 2;
@@ -51,13 +53,12 @@ class StepLength {
   }
 
  private:
-  // Those of integrators/control/step_control.cpp.
-  static constexpr double safety = 0.9, least_factor = 0.2, most_factor = 5;
-  static constexpr double unsolved_factor = 0.25, unsolved_ceiling = 0.5,
-                          ceiling_growth = 1.05;
+  static double factor_of(double error, double falls) {
+    return step_factors::safety * std::pow(error, -1 / falls);
+  }
 
   double next_ = 0;  // 0: the first is not chosen yet
   double ceiling_ = std::numeric_limits<double>::max();
 };
 
-}  // namespace tress::models
+}  // namespace tress::integrators

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/head/stepping/lane_method.h"
+#include "integrators/block/block_method.h"
+#include "integrators/control/step_factors.h"
 
-namespace tress::models {
+namespace tress::integrators {
 
 /// Of steps with error control, over the time sqrt(L/g) in which a strand falls by its
 /// length.
@@ -19,18 +20,17 @@ struct StepLimits {
   ///
   ///     h sum |rate_i| epsilon L/(gamma h)^2 sqrt(L/g)/L.
   ///
-  /// Where that is above the threshold shorter steps are worse. The first part and the
-  /// shortest one of any numbers are those of integrators/control/error_controlled.cpp.
-  static StepLimits of(const LaneMethod& method, double tolerance, double epsilon) {
-    constexpr double first_part = 0.1, shortest_part = 1e-11;
-    const LaneEstimate& estimate = *method.estimate;
+  /// Where that is above the threshold shorter steps are worse.
+  static StepLimits of(const BlockMethod& method, double tolerance, double epsilon) {
+    const BlockEstimate& estimate = *method.estimate;
     const double threshold = estimate.threshold(tolerance),
                  gamma = method.stages.back().gamma;
     double seen = 0;
     for (const double rate : estimate.rate) seen += std::abs(rate);
-    return {first_part * std::pow(threshold, 1 / estimate.falls),
-            std::max(shortest_part, seen * epsilon / (gamma * gamma * threshold))};
+    return {step_factors::first_part * std::pow(threshold, 1 / estimate.falls),
+            std::max(step_factors::shortest_part,
+                     seen * epsilon / (gamma * gamma * threshold))};
   }
 };
 
-}  // namespace tress::models
+}  // namespace tress::integrators

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace tress {
+
+/// Of S(w) = w.acc dr/da + w.vel dr/dv + w.pos dr/dq (contract/system.h).
+struct Weights {
+  double acc = 0;
+  double vel = 0;
+  double pos = 0;
+};
+
+}  // namespace tress

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "integrators/block/block_work.h"
+
+namespace tress::integrators {
+
+/// Size of the estimated error of steps, per lane, by the points that it moves: the
+/// largest of |dx|/L and |du| sqrt(L/g)/L over the root and the tips of elements, L the
+/// strand's length along its elements and g = 9.81 m/s^2, and of coordinates over their
+/// typical sizes as much as ErrorNorm takes. So that measures a strand by itself, but for
+/// its L, the sum of the chords at the start, which is shorter for elements that are
+/// arcs.
+template <class N>
+class BlockError {
+ public:
+  explicit BlockError(const Block<N>& block);
+
+  /// Of `work` at the end of a step; not a number where something is not. Valid until the
+  /// next call.
+  const N* of(BlockWork<N>& work);
+
+ private:
+  std::size_t unknowns_, points_;
+  LaneVector<N> x_, u_, next_x_, next_u_;  // (points, 3)
+  LaneVector<N> dq_, dv_, q_, v_;
+  LaneVector<N> far_, fast_, finite_, of_coordinates_;  // (lanes)
+};
+
+extern template class BlockError<double>;
+extern template class BlockError<float>;
+
+}  // namespace tress::integrators

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace tress::integrators {
+
+/// A stage of a step of length h from (q_n, v_n) at t_n, of a diagonally implicit
+/// Runge-Kutta method for q' = v, v' = a, without the velocities of its stages:
+///
+///     r(t_n + time h, q, v, a) = 0
+///     v = v_bar + gamma h a,        v_bar = v_n + h (rate[0] a_0 + rate[1] a_1)
+///     q = q_bar + (gamma h)^2 a,    q_bar = q_n + time h u,
+///                                   u = v_n + h (drift[0] a_0 + drift[1] a_1)
+///
+/// a_0: the acceleration at t_n, a_1: that of the stage before.
+struct BlockStage {
+  double time = 1, gamma = 1;
+  std::array<double, 2> rate{}, drift{};
+};
+
+/// What the last stage's state is off one of higher order from the same stages: h^2 times
+/// the sum of drift[i] a_i in q, h times that of rate[i] a_i in v. It falls as h^falls,
+/// and a step may have share tolerance^power of it in the norm of BlockError.
+struct BlockEstimate {
+  std::array<double, 3> rate, drift;
+  double falls, share, power;
+
+  double threshold(double tolerance) const { return share * std::pow(tolerance, power); }
+};
+
+/// A method by its stages. Where the first has gamma = 0 it is the last one of the step
+/// before, and is solved in a strand's first step alone. The step ends with the last
+/// stage's (q, v) if that is at its end, and else with
+///
+///     q_n + h v,    v_n + h a
+struct BlockMethod {
+  std::span<const BlockStage> stages;
+  bool iterates;  // in every step; false: one correction solves a stage
+  /// So many steps of a strand differ from those that follow: they solve the first stage
+  /// that others have from the step before, or iterate where others do not.
+  std::size_t first_steps = 0;
+  /// So many last accelerations are kept of a strand, with two the lengths of both steps.
+  std::size_t accelerations = 0;
+  const BlockEstimate* estimate = nullptr;  // null: it has none
+
+  /// The first stage that every step solves.
+  std::size_t first() const { return stages[0].gamma == 0 ? 1 : 0; }
+  /// Whether a step is one correction from a = 0 with the matrix there.
+  bool linear() const { return !iterates && accelerations == 0; }
+  /// Numbers of state of a strand of so many unknowns.
+  std::size_t of_state(std::size_t unknowns) const {
+    return (2 + accelerations) * unknowns + (accelerations == 2 ? 2 : 0);
+  }
+};
+
+/// Methods that blocks have, by the ids of their integrators.
+enum class HeadMethod {
+  semi_implicit_euler,
+  linearly_implicit_midpoint,
+  backward_euler,
+  tr_bdf2
+};
+BlockMethod block_method(HeadMethod method);
+
+/// The estimate of tr_bdf2, the method whose steps a tolerance chooses.
+extern const BlockEstimate tr_bdf2_estimate;
+
+}  // namespace tress::integrators

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "integrators/block/block_work.h"
+#include "integrators/block/step_length.h"
+
+namespace tress::integrators {
+
+/// Strands that wait for a lane: a range, or those of a list.
+struct LaneQueue {
+  std::size_t next, end;
+  const std::vector<std::size_t>* list = nullptr;
+  std::size_t strand() const { return list == nullptr ? next : (*list)[next]; }
+};
+
+/// Many strands in blocks of as many as there are lanes, and their ways into lanes of
+/// BlockWork and back. Strands of one block must not be put back by several threads at
+/// once.
+template <class N>
+class BlockStore {
+ public:
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  using Home = std::vector<std::size_t>;  // the strand in each lane, or none
+
+  /// `controlled`: whether strands choose their steps.
+  BlockStore(std::unique_ptr<StrandMemory> memory, int lanes, std::size_t unknowns,
+             const BlockMethod& method, bool controlled);
+
+  void reserve(std::size_t strands);
+  /// write(place, memory, q, v) of another strand, whose numbers are those of its block.
+  template <class Write>
+  void add(Write write) {
+    const LanePlace to = place(size());
+    if (to.lane == 0) {
+      memory_->resize(to.block + 1);
+      state_.resize(state_.size() + of_block_, N(0));
+    }
+    write(to, *memory_, q(to.block), v(to.block));
+    if (to.lane == 0) fill_block(to.block);
+    lost_.push_back(0);
+    if (controlled_) lengths_.emplace_back();
+  }
+  /// Another strand, as `strand` of others is, without its rates and steps.
+  void add(const BlockStore& others, std::size_t strand);
+  /// What steps have changed of others' strand.
+  void take(std::size_t strand, const BlockStore& others, std::size_t from);
+  void clear();
+
+  std::size_t size() const { return lost_.size(); }
+  std::size_t blocks() const { return memory_->blocks(); }
+  /// Strands of a block.
+  std::size_t of(std::size_t block) const {
+    return std::min(width_, size() - width_ * block);
+  }
+  std::size_t bytes() const {
+    return memory_->bytes() + blocks() * of_block_ * sizeof(N) + size() +
+           lengths_.size() * sizeof(StepLength);
+  }
+
+  LanePlace place(std::size_t strand) const {
+    return {strand / width_, static_cast<int>(strand % width_)};
+  }
+  StrandMemory& memory() { return *memory_; }
+  const StrandMemory& memory() const { return *memory_; }
+  N* q(std::size_t block) { return &state_[of_block_ * block]; }
+  const N* q(std::size_t block) const { return &state_[of_block_ * block]; }
+  N* v(std::size_t block) { return q(block) + size_ * width_; }
+  const N* v(std::size_t block) const { return q(block) + size_ * width_; }
+
+  bool lost(std::size_t strand) const { return lost_[strand] != 0; }
+  bool some_lost(std::size_t block) const;
+  /// It rests from now on.
+  void lose(std::size_t strand);
+
+  /// Whether it takes one of its first steps.
+  bool fresh(std::size_t strand) const {
+    const LanePlace at = place(strand);
+    return q(at.block)[(4 * size_ + needed_ - 1) * width_ +
+                       static_cast<std::size_t>(at.lane)] == N(0);
+  }
+  /// Reference frames for a step: strands with new ones, which it returns, have no steps
+  /// behind them.
+  Lanes renew(Block<N>& by, std::size_t block);
+
+  /// The step of h that it was to take ends here: the last known acceleration, a_1, is
+  /// that of the stage that ends at `time` of it, from which the next trial's is
+  /// interpolated.
+  void interrupt(std::size_t strand, double h, double time);
+  /// Of a strand that chooses its steps.
+  StepLength& length(std::size_t strand) { return lengths_[strand]; }
+
+  /// Numbers that steps change of a strand: state, what else its model knows, whether it
+  /// is lost, and the length of its next step.
+  std::size_t kept() const {
+    return of_state_ + memory_->kept() + 1 + (controlled_ ? StepLength::kept : 0);
+  }
+  void keep(std::size_t block, double* to) const;
+  void recall(std::size_t block, const double* from);
+
+  /// Takes the next strands that are neither lost nor among `but` (sorted) into free
+  /// lanes; into all lanes of a whole block at once.
+  void fill(Home& home, LaneQueue& queue, const std::vector<std::size_t>& but,
+            BlockWork<N>& work) const;
+  /// What steps have made of a strand in a lane: `which` of work's, and its state.
+  void put_home(const BlockWork<N>& work, std::size_t which, int lane,
+                std::size_t strand);
+
+ private:
+  void fill_block(std::size_t block);
+  void copy_state(const N* from, int lane, N* to, int to_lane) const;
+
+  std::unique_ptr<StrandMemory> memory_;
+  std::size_t width_, size_, of_state_, of_block_;  // lanes; unknowns and numbers of
+                                                    // state of a strand; of a block
+  std::size_t needed_;  // steps behind a strand that is not fresh
+  bool controlled_;
+  LaneVector<N> state_;              // (blocks; as BlockWork's)
+  std::vector<char> lost_;           // of each strand
+  std::vector<StepLength> lengths_;  // of each strand's next step, if it is controlled
+};
+
+extern template class BlockStore<double>;
+extern template class BlockStore<float>;
+
+}  // namespace tress::integrators

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <memory>
+
+#include "contract/block.h"
+#include "integrators/block/block_method.h"
+#include "math/lane_vector.h"
+
+namespace tress::integrators {
+
+/// Whence Newton's iteration begins: from the guess, from zero acceleration, or from the
+/// acceleration that ends all motion.
+enum class NewtonStart { guess, zero, standstill };
+
+/// The equations of a stage (BlockStage) of the strands in the lanes of a Block.
+template <class N>
+class BlockWork {
+ public:
+  /// `block` and `method` must outlive it.
+  BlockWork(Block<N>& block, const BlockMethod& method);
+
+  Block<N>& block() { return block_; }
+  /// The strands: those in lanes, and the same with what a step has made of them.
+  static constexpr std::size_t now = 0, renewed = 1;
+  std::unique_ptr<StrandMemory> strands;
+
+  // At t_n what is known of the strands, as far as the method keeps it: q, v, the
+  // acceleration a_0 of the last step and the one before, a_1; the lengths of both steps,
+  // 0: none. `after`: once the stage is solved.
+  LaneVector<N> state, after;
+  LaneVector<N> q_bar, q, v, step;  // q, v: at a
+  LaneVector<N> size;               // of the step, per lane
+  Weights weights;
+
+  int lanes() const { return lanes_; }
+  std::size_t numbers() const { return numbers_; }  // of a vector: unknowns times lanes
+  N* a() { return a_.data(); }
+  /// Lengths of the last two steps, of the strands at `from`.
+  N* lengths(LaneVector<N>& from) const { return from.data() + 4 * numbers_; }
+
+  /// States the equations of a stage of a step of h, and finds the loads of it, of gamma
+  /// h = `loads` (s). `starts`: lanes that need a guess of a; others have come closer.
+  /// Lanes that start do so from `from`.
+  void begin(std::size_t stage, double h, double loads, Lanes starts, NewtonStart from);
+  /// Writes `after`.
+  void end();
+  /// After end() of the last stage, of the method's estimate.
+  void difference(N* dq, N* dv) const;
+
+  /// The size of corrections that are rounding errors of places.
+  double resolved(int lane) const { return block_.resolved(weights, lane); }
+  /// step = S^-1 r, and `size`. Where corrections are `whole`, the stresses that the last
+  /// one has found serve this one; at first those at the start of the step.
+  void newton(bool whole);
+  /// The same with the matrix of the last newton().
+  void again();
+  /// a -= by.
+  void move(const N* by);
+  /// The same of a part of it in each lane.
+  void move(const N* part, const N* by);
+
+ private:
+  void guess(Lanes starts);
+  void start_from(NewtonStart from, Lanes starts);
+  void place();
+
+  Block<N>& block_;
+  const BlockMethod& method_;
+  int lanes_;
+  std::size_t size_, numbers_, stage_ = 0;
+  double h_ = 0;
+  LaneVector<N> v_bar_, a_, guess_;
+};
+
+extern template class BlockWork<double>;
+extern template class BlockWork<float>;
+
+}  // namespace tress::integrators

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "integrators/block/block_work.h"
+#include "integrators/newton_rules.h"
+
+namespace tress::integrators {
+
+enum class NewtonVerdict { go_on, converged, failed };
+
+/// How Newton's iterations of strands in lanes go on and end: each lane by the sizes of
+/// its own corrections, so that no strand depends on its neighbours.
+template <class N>
+class NewtonCourse {
+ public:
+  using Verdicts = std::span<NewtonVerdict>;
+
+  virtual ~NewtonCourse() = default;
+  /// Whether it goes on by whole corrections (BlockWork::newton).
+  virtual bool whole() const = 0;
+  /// Of a strand that has come into this lane.
+  virtual void start(int lane, const BlockWork<N>& work) = 0;
+  /// After a correction of all lanes: moves a.
+  virtual void go_on(BlockWork<N>& work, Verdicts all) = 0;
+};
+
+/// One whole correction, as Stage::single_step().
+template <class N>
+class SingleCourse final : public NewtonCourse<N> {
+ public:
+  bool whole() const override { return false; }  // there is none before
+  void start(int /*lane*/, const BlockWork<N>& /*work*/) override {}
+  void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
+};
+
+/// Whole corrections, as Stage::newton().
+template <class N>
+class PlainCourse final : public NewtonCourse<N> {
+ public:
+  /// `left`: the part of the tolerance that may be left.
+  PlainCourse(double tolerance, double left, int iterations)
+      : tolerance_(tolerance), left_(left), iterations_(iterations) {}
+
+  bool whole() const override { return true; }
+  void start(int lane, const BlockWork<N>& work) override;
+  void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
+
+ private:
+  struct OfLane {
+    NewtonRules rules{};
+    int done = 0, grown = 0;
+    double previous = std::numeric_limits<double>::infinity();
+
+    NewtonVerdict judge(double size, int iterations);
+  };
+
+  double tolerance_, left_;
+  int iterations_;
+  std::array<OfLane, 32> of_lane_{};
+};
+
+/// Damped corrections: the whole one, or the largest halving of it after which the next
+/// one with the same matrix is smaller [Deuflhard 2011, section 3.3], as Stage::damped().
+/// Lanes wait for the one that halves most.
+template <class N>
+class DampedCourse final : public NewtonCourse<N> {
+ public:
+  DampedCourse(double tolerance, int iterations)
+      : tolerance_(tolerance), iterations_(damped_patience * iterations) {}
+
+  bool whole() const override { return false; }
+  void start(int lane, const BlockWork<N>& work) override;
+  void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
+
+  long iterations = 0, lanes = 0;  // with kept matrices
+
+ private:
+  struct OfLane {
+    NewtonRules rules{};
+    int done = 0;
+    bool runs = false;
+
+    NewtonVerdict judge(double size, int iterations);
+  };
+
+  double tolerance_;
+  int iterations_;
+  LaneVector<N> from_, step_;
+  std::vector<N> sizes_, part_;
+  std::array<OfLane, 32> of_lane_{};
+};
+
+extern template class SingleCourse<double>;
+extern template class SingleCourse<float>;
+extern template class PlainCourse<double>;
+extern template class PlainCourse<float>;
+extern template class DampedCourse<double>;
+extern template class DampedCourse<float>;
+
+}  // namespace tress::integrators

@@ -1,0 +1,23 @@
+#pragma once
+
+namespace tress::integrators {
+
+/// An interval of time, or a part of one, whose length over the whole is a power of two:
+/// products with it are exact.
+struct TimeSpan {
+  double t = 0, h = 0;           // s; of the whole
+  const TimeSpan* of = nullptr;  // of which this is a part, if it is one:
+  double begin = 0, part = 1;    // from begin on, of its length
+
+  static TimeSpan part_of(const TimeSpan& whole, double begin, double part) {
+    return {.of = &whole, .begin = begin, .part = part};
+  }
+  /// After x of it, 0 to 1, s.
+  double at(double x) const {
+    return of == nullptr ? t + x * h : of->at(begin + x * part);
+  }
+  /// Length of x of it, s.
+  double length(double x) const { return of == nullptr ? x * h : of->length(x * part); }
+};
+
+}  // namespace tress::integrators
