@@ -34,7 +34,7 @@ def after_last(text, pattern, line, path):
     found = list(re.finditer(pattern, text, re.M))
     if not found:
         refuse("no place for a new line", path,
-               f"restore the line that matches '{pattern}': git checkout -- {path}")
+               f"restore the line that matches '{pattern}': git diff {path} shows changes")
     end = found[-1].end()
     return text[:end] + "\n" + line + text[end:]
 
@@ -46,7 +46,7 @@ def with_method(text, name, path):
     while start >= 0 and end < start:
         end = text.find("\n\n", end + 1)
     if start < 0 or not lines:
-        refuse("no list of methods", path, f"git checkout -- {path}")
+        refuse("no list of methods", path, f"restore it: git diff {path} shows changes")
     lines = ["#define TRESS_METHODS(METHOD)", *lines, f"  METHOD({name})"]
     width = max(map(len, lines[:-1]))
     listing = " \\\n".join([*(line.ljust(width) for line in lines[:-1]), lines[-1]])
@@ -66,7 +66,7 @@ def entry(kind, name, pattern):
         # The list is the only one that ends so.
         end = text.find("\n  };\n}\n// clang-format on")
         if end < 0:
-            refuse("no list of entries", path, f"git checkout -- {path}")
+            refuse("no list of entries", path, f"restore it: git diff {path} shows changes")
         return text[:end] + f"\n      {name}_entry()," + text[end:]
 
     return change
@@ -167,6 +167,9 @@ def new(kind, name):
         refuse(f"'{name}' is no name", f"new {kind}",
                f"use lower case letters, digits and single '_', as in my_{kind}; at most"
                f" {LONGEST} characters, the first a letter")
+    if name.startswith(("test_", "bench_")):
+        refuse(f"'{name}' begins as the name of a test or a benchmark", f"new {kind}",
+               "use a name without test_ and bench_")
     if name in TAKEN_WORDS:
         refuse(f"'{name}' is a word of C++ or of the build", f"new {kind}",
                f"use another name, such as {name}_{kind}")

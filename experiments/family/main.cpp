@@ -88,8 +88,9 @@ std::vector<Column> columns_of_table() {
         "the tolerance"},
        {"gap", "what the answer is uncertain by, relative to the length"},
        {"error_rel", "study tolerances: tip error in time over the length"},
-       {"looser_error_rel", "the same at ten times the tolerance"},
-       {"warned", "whether the run warns of the energy that its method took or gave"}});
+       {"looser_error_rel", "study tolerances: error_rel at ten times the tolerance"},
+       {"warned",
+        "whether the run warns of the energy that its method dissipated or created"}});
   return all;
 }
 

@@ -57,11 +57,13 @@ void declare(CLI::App& app, Arguments& a) {
                  "the same by name, or gltf, a .glb file for viewers: vtk,usd,hair,gltf")
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
-  app.add_option("--as", a.as,
-                 "strands: one by one; head: all in one batch, up to a million, in SIMD "
-                 "lanes or as replicated systems (--list of other programs shows which); "
-                 "auto: a head, where 1000 strands have lanes, or above 10000 strands "
-                 "(default auto)")
+  app.add_option(
+         "--as", a.as,
+         "strands: each by itself; head: all in one batch, up to a million, in SIMD "
+         "lanes or as replicated systems (the batch matrix of cost_of_accuracy "
+         "--list names which); "
+         "auto: a head, where 1000 strands have lanes, or above 10000 strands "
+         "(default auto)")
       ->check(CLI::IsMember({"auto", "strands", "head"}));
   app.add_option("--bits", a.bits,
                  "floating-point precision of a head: 64 or 32 bits (default 64)")

@@ -78,7 +78,7 @@ constexpr Column columns_of_outcome[] = {
     {"lost_strands",
      "of a head, or with failed_strands = stay: strands whose step was impossible"},
     {"bits", "of a head's numbers"},
-    {"lanes", "strands of a head computed side by side"},
+    {"lanes", "strands of a head in one SIMD register"},
     {"engine",
      "of a head: lanes, or replicated: each strand is a system of its own, as a single "
      "strand is"},

@@ -44,7 +44,7 @@ class BlockStore {
     lost_.push_back(0);
     if (controlled_) lengths_.emplace_back();
   }
-  /// Another strand, as `strand` of others is, without its rates and steps.
+  /// Another strand, with the whole state of `strand` of others.
   void add(const BlockStore& others, std::size_t strand);
   /// What steps have changed of others' strand.
   void take(std::size_t strand, const BlockStore& others, std::size_t from);

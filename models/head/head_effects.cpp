@@ -5,13 +5,12 @@ namespace tress::models {
 std::optional<HeadRefusal> refused_by_heads(const Effect& effect) {
   const std::string name(effect.name());
   if (effect.for_strand(0) != nullptr) {
-    return HeadRefusal{
-        "effect " + name + " holds contact forces between steps",
-        "set friction_law = \"regularised\", or run the strands one by one"};
+    return HeadRefusal{"effect " + name + " holds contact forces between steps",
+                       "set friction_law = \"regularised\""};
   }
   if (effect.needs().couplings) {
     return HeadRefusal{"effect " + name + " couples the points of a strand",
-                       "leave it out, or run the strands one by one"};
+                       "leave it out"};
   }
   return {};
 }

@@ -12,7 +12,6 @@
 namespace tress::simulation {
 
 using models::HeadEnergy;
-using models::HeadLoss;
 
 /// Guards are of the strands: what is judged here is what a step has not judged.
 class ReplicatedHead::Judge final : public HeadGuard {
@@ -121,7 +120,7 @@ void ReplicatedHead::add(const StrandToMake& strand, std::size_t number) {
   run.start(0, std::move(begin));
   if (run.status != Status::ok) {
     one.failure = run.failure();
-    run.stay(run.integrator->q());
+    run.stay(run.begun());
   }
   strands_.push_back(std::move(one));
   bytes_ += std::max(heap_in_use(), before) - before;
@@ -138,31 +137,27 @@ std::unique_ptr<models::Head::Scratch> ReplicatedHead::scratch() const {
 void ReplicatedHead::step(std::size_t block, double t, double h, Scratch& scratch) {
   OfStrand& one = strands_[block];
   SteppedSystem& run = one.run;
-  if (run.stays()) return;
+  if (run.stays()) return report(block, t, h);
   const Stats before = run.stats();
   run.advance(maker_.method(), maker_.options(), t + h, false);
   add_done(before, run.stats(), scratch.work);
   if (run.status == Status::ok) return;
   one.failure = run.failure();
+  report(block, t, h);
   run.stay(run.begun());
 }
 
-/// Strands that fail in a later step() fail at a later time.
-std::vector<HeadLoss> ReplicatedHead::losses(std::size_t known) const {
-  std::vector<HeadLoss> all;
-  for (std::size_t k = 0; k < strands_.size(); ++k) {
-    const OfStrand& one = strands_[k];
-    if (one.failure.empty()) continue;
-    all.push_back({k, one.run.stats().steps + 1, one.run.t, one.failure});
-  }
-  std::ranges::stable_sort(all, {}, &HeadLoss::time);
-  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(known));
-  return all;
+void ReplicatedHead::report(std::size_t strand, double t, double h) {
+  OfStrand& one = strands_[strand];
+  if (one.known) return;
+  one.known = true;
+  losses_.add(strand, t, h, one.failure, (one.run.t - t) / h);
 }
 
 void ReplicatedHead::lose(std::size_t strand) {
-  SteppedSystem& run = strands_[strand].run;
-  run.stay(run.begun());
+  OfStrand& one = strands_[strand];
+  one.known = true;
+  one.run.stay(one.run.begun());
 }
 
 void ReplicatedHead::positions(std::size_t block, double t, std::span<double> x) const {
@@ -256,9 +251,9 @@ void ReplicatedHead::recall(std::size_t block, std::span<const double> x) {
   run.take_method(maker_.method().id, maker_.options());
   run.start(x[0], std::move(state));
   if (run.guard) run.guard->recall(gathered);
-  if (x[1] == 0) return;
-  run.keep(x[0], run.integrator->q(), run.integrator->v());
-  run.stay(run.integrator->q());
+  one.known = x[1] != 0;
+  if (run.status != Status::ok && !one.known) one.failure = run.failure();
+  if (run.status != Status::ok || one.known) run.stay(run.begun());
 }
 
 }  // namespace tress::simulation

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "models/head/head_losses.h"
 #include "simulation/head/head_guard.h"
 #include "simulation/run/strand_maker.h"
 
@@ -43,7 +44,9 @@ class ReplicatedHead final : public models::Head {
   void step(std::size_t block, double t, double h, Scratch& scratch) override;
   std::size_t blocks_at_once() const override { return 1; }
   bool lost(std::size_t strand) const override { return strands_[strand].run.stays(); }
-  std::vector<models::HeadLoss> losses(std::size_t known) const override;
+  std::vector<models::HeadLoss> losses(std::size_t known) const override {
+    return losses_.after(known);
+  }
   void lose(std::size_t strand) override;
 
   std::size_t numbers() const override { return 3 * (elements_ + 1); }
@@ -69,13 +72,18 @@ class ReplicatedHead final : public models::Head {
     double mass = 0;                         // kg
     std::vector<double> lengths;             // m, of elements
     std::string failure = {}, verdict = {};  // of its step, of Judge; empty: none
+    bool known = false;                      // it is among losses_, or was lost before
   };
+
+  /// Reports a strand that stays, in the step from t to t + h.
+  void report(std::size_t strand, double t, double h);
 
   StrandMaker maker_;
   std::size_t elements_;
   std::size_t coordinates_ = 0, memory_ = 0;  // numbers of a strand
   std::size_t bytes_ = 0;
   std::vector<OfStrand> strands_;
+  models::HeadLosses losses_;
 };
 
 }  // namespace tress::simulation

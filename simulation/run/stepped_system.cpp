@@ -64,6 +64,8 @@ void SteppedSystem::start(double begin, State state) {
   // Contact sets follow the state; if it was accepted before, nothing changes.
   system->accept(begin, state.q, state.v);
   status = integrator->start(begin, state.q, state.v);
+  keep(begin, state.q, state.v);
+  begun_ = q;
   before_ = {};
   failed_work_ = 0;
   indicator = 0;
@@ -126,6 +128,11 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
     add_work(steps->stats(), before_);
     add_work(integrator->stats(), before_);
     indicator = std::max({indicator, indicator_of(*integrator), indicator_of(*steps)});
+    if (options.max_work > 0) {
+      Options rest = options;
+      rest.max_work = std::max(work_left(options), std::numeric_limits<double>::min());
+      take_method(method.id, rest);
+    }
     return integrator->start(end, q, v);
   }
   used_up_ = work_left(options) <= 0;

@@ -12,7 +12,7 @@
 
 namespace tress::simulation {
 
-/// A strand of a scene and what acts on it beside the scene's effects.
+/// A strand of a scene and what acts on it in addition to the scene's effects.
 struct StrandToMake {
   const Strand& strand;             // stiffer(), if it is held
   Effects between = {};             // on it alone, as those between strands
@@ -20,7 +20,7 @@ struct StrandToMake {
 };
 
 /// Makes the strands of a scene as systems with their effects, guards and integrators,
-/// for a World and for a batch of strands alike. Keeps no reference to the scene.
+/// for a World and for a batch of strands. Keeps no reference to the scene.
 class StrandMaker {
  public:
   explicit StrandMaker(const Scene& scene);

@@ -43,7 +43,7 @@ constexpr Parameter top[] = {
              "what the method created within it is printed. See failed_strands",
      .choices = "true|false"},
     {.name = "failed_strands",
-     .help = "what a strand that fails, or that the guard stops, does: end the run, or "
+     .help = "outcome of a strand that fails, or that the guard stops: end the run, or "
              "stay where it is while the others go on; the run then fails at its end. In "
              "a batch it always stays",
      .choices = "end_run|stay"},

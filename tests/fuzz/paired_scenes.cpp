@@ -44,7 +44,7 @@ using tress::testing_support::LimitedRun;
 using tress::testing_support::run_limited;
 
 constexpr double thermal = 4e-21;  // J, kT at room temperature: less is no motion
-const std::filesystem::path folder = "paired_scenes";
+const std::filesystem::path folder = "paired_runs";
 
 using Columns = std::map<std::string, std::vector<double>>;
 Columns columns(const std::string& file) {
