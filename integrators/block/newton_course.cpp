@@ -50,10 +50,10 @@ void DampedCourse<N>::start(int lane, const BlockWork<N>& work) {
 }
 
 template <class N>
-NewtonVerdict DampedCourse<N>::OfLane::judge(double size, int iterations) {
+NewtonVerdict DampedCourse<N>::OfLane::judge(double size, int most_iterations) {
   if (size <= rules.tolerance) return NewtonVerdict::converged;
-  return std::isfinite(size) && ++done < iterations ? NewtonVerdict::go_on
-                                                    : NewtonVerdict::failed;
+  return std::isfinite(size) && ++done < most_iterations ? NewtonVerdict::go_on
+                                                         : NewtonVerdict::failed;
 }
 
 template <class N>

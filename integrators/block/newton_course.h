@@ -70,8 +70,8 @@ class PlainCourse final : public NewtonCourse<N> {
 template <class N>
 class DampedCourse final : public NewtonCourse<N> {
  public:
-  DampedCourse(double tolerance, int iterations)
-      : tolerance_(tolerance), iterations_(damped_patience * iterations) {}
+  DampedCourse(double tolerance, int most_iterations)
+      : tolerance_(tolerance), iterations_(damped_patience * most_iterations) {}
 
   bool whole() const override { return false; }
   void start(int lane, const BlockWork<N>& work) override;
@@ -85,7 +85,7 @@ class DampedCourse final : public NewtonCourse<N> {
     int done = 0;
     bool runs = false;
 
-    NewtonVerdict judge(double size, int iterations);
+    NewtonVerdict judge(double size, int most_iterations);
   };
 
   double tolerance_;

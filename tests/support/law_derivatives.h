@@ -25,12 +25,12 @@ std::array<double, 2> law_derivative_error(const Law& law, const double* x) {
   constexpr int n = 3 * Law::nodes, strains = Law::strains;
   const models::LawPart<Law> by_hand{law};
   const models::LawPart<StrainsOnly<Law>> by_duals{{law}};
-  double g[2][strains][n], h[2][n][n] = {}, stress[strains];
+  double g[2][strains][n], second[2][n][n] = {}, stress[strains];
   for (int k = 0; k < strains; ++k) stress[k] = k % 2 == 0 ? 1 : -0.5;
   by_hand.gradient(x, g[0]);
   by_duals.gradient(x, g[1]);
-  by_hand.add_second(x, stress, h[0]);
-  by_duals.add_second(x, stress, h[1]);
+  by_hand.add_second(x, stress, second[0]);
+  by_duals.add_second(x, stress, second[1]);
   const auto error = [](const double* a, const double* b, int count) {
     double size = 0, most = 0;
     for (int i = 0; i < count; ++i) {
@@ -40,7 +40,7 @@ std::array<double, 2> law_derivative_error(const Law& law, const double* x) {
     return most / size;
   };
   return {error(&g[0][0][0], &g[1][0][0], strains * n),
-          error(&h[0][0][0], &h[1][0][0], n * n)};
+          error(&second[0][0][0], &second[1][0][0], n * n)};
 }
 
 }  // namespace tress::testing_support
