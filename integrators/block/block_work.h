@@ -4,7 +4,7 @@
 
 #include "contract/block.h"
 #include "integrators/block/block_method.h"
-#include "math/lane_vector.h"
+#include "contract/lane_vector.h"
 
 namespace tress::integrators {
 

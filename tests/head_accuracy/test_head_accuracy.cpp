@@ -310,7 +310,7 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
   };
   for (const Bad& bad :
        {Bad{"--scene strand.toml", "a [strand] beside hairs", "give [groom]s only"},
-        Bad{"--scene der.toml", "der does not come as a head", "super_helix"},
+        Bad{"--scene der.toml", "no SIMD lanes for der", "super_helix"},
         Bad{"--scene springs.toml", "mass_spring: work is that of super-helices",
             "super_helix"},
         Bad{"--scene none.toml", "none.toml", "existing"},
