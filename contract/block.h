@@ -8,8 +8,8 @@
 
 /// The contract between models and integrators for many strands at once. A block is W
 /// strands of equal resolution, a strand in each of W lanes: entry k of lane l lies at
-/// [k W + l], in memory of contract/lane_vector.h. Every call is for all lanes and says of
-/// each what came of it; lanes do not mix. Numbers are in units of the model's own in
+/// [k W + l], in memory of contract/lane_vector.h. Every call is for all lanes and says
+/// of each what came of it; lanes do not mix. Numbers are in units of the model's own in
 /// which earth_gravity is 1, times in s where they are named so.
 namespace tress {
 

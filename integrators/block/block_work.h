@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "contract/block.h"
-#include "integrators/block/block_method.h"
 #include "contract/lane_vector.h"
+#include "integrators/block/block_method.h"
 
 namespace tress::integrators {
 
