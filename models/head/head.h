@@ -86,10 +86,10 @@ struct HeadEnergy {
 
 class HelixSource;
 
-/// Many clamped strands of equal discretisation whose roots move with one head: blocks of
-/// strands, each advanced by itself, by as many threads as there are. A strand takes its
-/// state, its rest shape and some twenty numbers of memory, nothing else. Units of all
-/// that goes in and out are SI.
+/// Many strands of equal discretisation whose roots move with one head: blocks of
+/// strands, each advanced by itself, by as many threads as there are. In SIMD lanes a
+/// strand takes its state, its rest shape and some twenty numbers of memory; replicated,
+/// a System and an Integrator. Units of all that goes in and out are SI.
 class Head {
  public:
   virtual ~Head() = default;
