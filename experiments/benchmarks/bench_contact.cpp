@@ -310,10 +310,9 @@ bool head_requirement_met() {
 int main(int argc, char** argv) {
   using namespace tress::experiments::benchmarks;
   register_all();
-  const Measured measured = run_benchmarks(argc, argv);
-  if (measured.exit_code != 0) return measured.exit_code;
-  bool met = true;
-  for (const std::string_view model : models) met = requirements_met(model) && met;
-  met = head_requirement_met() && met;
-  return met ? 0 : 3;
+  return run_and_judge(argc, argv, [](const Measured&) {
+    bool met = true;
+    for (const std::string_view model : models) met = requirements_met(model) && met;
+    return head_requirement_met() && met;
+  });
 }

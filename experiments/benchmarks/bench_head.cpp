@@ -338,9 +338,9 @@ bool head_met() {
 int main(int argc, char** argv) {
   using namespace tress::experiments::benchmarks;
   register_all();
-  const Measured measured = run_benchmarks(argc, argv);
-  if (measured.exit_code != 0) return measured.exit_code;
-  const bool same = same_motion(), costs = costs_met(), iterations = iterations_met(),
-             bodies = bodies_met(), whole = head_met();
-  return same && costs && iterations && bodies && whole ? 0 : 3;
+  return run_and_judge(argc, argv, [](const Measured&) {
+    const bool same = same_motion(), costs = costs_met(), iterations = iterations_met(),
+               bodies = bodies_met(), whole = head_met();
+    return same && costs && iterations && bodies && whole;
+  });
 }

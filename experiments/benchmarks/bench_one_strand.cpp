@@ -151,7 +151,5 @@ bool costs_met() {
 int main(int argc, char** argv) {
   using namespace tress::experiments::benchmarks;
   register_all();
-  const Measured measured = run_benchmarks(argc, argv);
-  if (measured.exit_code != 0) return measured.exit_code;
-  return costs_met() ? 0 : 3;
+  return run_and_judge(argc, argv, [](const Measured&) { return costs_met(); });
 }

@@ -138,9 +138,7 @@ bool requirement_met() {
 }  // namespace tress::experiments::benchmarks
 
 int main(int argc, char** argv) {
-  tress::experiments::benchmarks::register_all();
-  const tress::experiments::benchmarks::Measured measured =
-      tress::experiments::benchmarks::run_benchmarks(argc, argv);
-  if (measured.exit_code != 0) return measured.exit_code;
-  return tress::experiments::benchmarks::requirement_met() ? 0 : 3;
+  using namespace tress::experiments::benchmarks;
+  register_all();
+  return run_and_judge(argc, argv, [](const Measured&) { return requirement_met(); });
 }

@@ -149,4 +149,11 @@ Measured run_benchmarks(int argc, char** argv) {
   return std::move(collector.measured);
 }
 
+int run_and_judge(int argc, char** argv,
+                  const std::function<bool(const Measured&)>& met) {
+  const Measured measured = run_benchmarks(argc, argv);
+  if (measured.exit_code != 0) return measured.exit_code;
+  return met(measured) ? 0 : 3;
+}
+
 }  // namespace tress::experiments::benchmarks

@@ -4,7 +4,7 @@
 
 #include "math/dual.h"
 #include "math/helix.h"
-#include "models/head/matrix3.h"
+#include "math/matrix3.h"
 
 namespace tress::models {
 

@@ -281,7 +281,7 @@ class ReducedKernel {
 
   /// Without twist, of the lower right block.
   Symmetric3<T> inverse(const Symmetric3<T>& h) const {
-    if (twist_) return models::inverse(h);
+    if (twist_) return tress::inverse(h);
     const T o(0), by = T(1) / (h.yy * h.zz - h.yz * h.yz);
     return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
   }

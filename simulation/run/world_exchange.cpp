@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "integrators/control/rewindable.h"
+#include "integrators/control/step_factors.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {
@@ -18,9 +19,6 @@ namespace {
 /// Of the tolerance: the largest estimate in an interval.
 constexpr double exchange_share = 1;
 constexpr int exchange_power = 2;  // of the interval, as the estimate
-/// First interval over the time in which the shortest strand falls about its length, at
-/// tolerance 1, and the shortest one, below which it is lost in rounding.
-constexpr double first_interval = 0.1, shortest_interval = 1e-11;
 
 /// Largest speed relative to the mean velocity.
 double spread(In u) {
@@ -36,8 +34,9 @@ double spread(In u) {
 
 }  // namespace
 
-/// After restore().
+/// After restore(). `time` is that in which the shortest strand falls about its length.
 void World::start_control() {
+  namespace factors = integrators::step_factors;
   control_.emplace(exchange_power);
   exchanges_ = {};
   double time = std::numeric_limits<double>::infinity();
@@ -46,8 +45,8 @@ void World::start_control() {
     time = std::min(time, body.norm.typical_time());
   }
   control_->start(
-      first_interval * time * std::sqrt(exchange_share * maker_.options().tolerance),
-      std::max(maker_.options().min_step, shortest_interval * time));
+      factors::first_part * time * std::sqrt(exchange_share * maker_.options().tolerance),
+      std::max(maker_.options().min_step, factors::shortest_part * time));
 }
 
 Status World::advance_controlled(double t_end) {

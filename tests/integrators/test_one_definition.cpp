@@ -69,7 +69,7 @@ TEST(Models, NameNoIntegrator) {
 
 // Of one strand's stages and steps, and of strands in lanes.
 TEST(Integrators, DefineEachNumberOnce) {
-  const auto all = sources({"contract", "integrators", "models"});
+  const auto all = sources({"contract", "integrators", "models", "simulation/run"});
   for (const char* definition : {R"(double d = 1 - std::numbers::sqrt2 / 2)",
                                  R"(double w = std::numbers::sqrt2 / 4)",
                                  R"(\(3 \* w \+ 1\) / 3)",

@@ -193,7 +193,7 @@ class ExactElimination {
 
   /// Without twist, of the lower right block.
   static Matrix inverse(const Matrix& h, bool twist) {
-    if (twist) return models::inverse(h);
+    if (twist) return tress::inverse(h);
     const Vec &y = h.row[1], &z = h.row[2];
     const T by = T(1) / (y.y * z.z - y.z * z.y), o(0);
     return {{Vec{}, {o, by * z.z, -by * y.z}, {o, -by * z.y, by * y.y}}};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "math/dual.h"
-#include "models/head/matrix3.h"
+#include "math/matrix3.h"
 
 namespace tress::models {
 

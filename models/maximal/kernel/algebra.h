@@ -1,9 +1,9 @@
 #pragma once
 
-#include "models/head/matrix3.h"
+#include "math/matrix3.h"
 
 /// What the kernels of this folder do with 3 x 3 matrices beyond
-/// models/head/matrix3.h.
+/// math/matrix3.h.
 namespace tress::models {
 
 /// s += w x x^T.

@@ -2,8 +2,8 @@
 
 #include "math/frame.h"
 #include "math/lane_choice.h"
+#include "math/matrix3.h"
 #include "math/scalar_math.h"
-#include "models/head/matrix3.h"
 
 /// Strains of the springs of a joint and their derivatives, over any scalar: `double` for
 /// the System of one strand, packs for strands in SIMD lanes. The joint rotates with its

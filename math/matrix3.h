@@ -2,7 +2,7 @@
 
 #include "math/vec3.h"
 
-namespace tress::models {
+namespace tress {
 
 /// Nine numbers over any scalar, by rows, for kernels that keep them in registers: all
 /// loops have fixed bounds and are unrolled.
@@ -133,4 +133,4 @@ Symmetric3<T> inverse(const Symmetric3<T>& h) {
           (h.xy * h.xz - h.xx * h.yz) * by};
 }
 
-}  // namespace tress::models
+}  // namespace tress
