@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "math/gauss_legendre.h"
+#include "models/reduced/helix.h"
 #include "simulation/head/no_head.h"
 #include "simulation/run/guarded_strand.h"
 #include "simulation/scene/strand_tables.h"
@@ -26,6 +27,7 @@ class LaneGuard::Reader {
   Reader(const LaneGuard& guard, const models::Head& head, std::size_t block,
          std::size_t first, double t)
       : guard_(guard),
+        head_(head),
         first_(first),
         t_(t),
         numbers_(head.numbers()),
@@ -35,6 +37,10 @@ class LaneGuard::Reader {
     if (!sees_points()) return;
     ends_.resize(numbers_ * each_.size());
     rates_.resize(ends_.size());
+    if (guard.curved()) {
+      darboux_.resize(3 * guard.elements_);
+      darboux_rates_.resize(darboux_.size());
+    }
     head.motion(block, t, ends_, rates_);
     const std::size_t count =
         guard.at_.empty() ? numbers_ / 3 : guard.at_.size() * guard.elements_;
@@ -50,21 +56,13 @@ class LaneGuard::Reader {
     k_ = k;
     if (!sees_points()) return;
     const double length = strand().length, density = each_[k].mass / whole_length();
-    for (std::size_t i = 0; i < guard_.elements_; ++i) {
-      const Vec from = end(i), chord = end(i + 1) - from,
-                along = (1 / norm(chord)) * chord;
-      if (guard_.at_.empty()) {
-        if (i == 0) put(0, from, rate(0), along, length / 2);
-        put(i + 1, end(i + 1), rate(i + 1), along,
-            i + 1 < guard_.elements_ ? length : length / 2);
-      } else {
-        const std::size_t points = guard_.at_.size();
-        for (std::size_t j = 0; j < points; ++j) {
-          const double s = guard_.at_[j];
-          put(points * i + j, from + s * chord, rate(i) + s * (rate(i + 1) - rate(i)),
-              along, guard_.weight_[j] * length);
-        }
-      }
+    if (guard_.at_.empty()) {
+      put_nodes(length);
+    } else if (guard_.curved()) {
+      head_.state(first_ + k, darboux_, darboux_rates_);
+      put_points_of_helices(length);
+    } else {
+      put_points_of_chords(length);
     }
     for (std::size_t i = 0; i < mass_.size(); ++i) mass_[i] = density * length_[i];
   }
@@ -128,6 +126,48 @@ class LaneGuard::Reader {
   }
   Vec end(std::size_t i) const { return load3(&ends_[numbers_ * k_ + 3 * i]); }
   Vec rate(std::size_t i) const { return load3(&rates_[numbers_ * k_ + 3 * i]); }
+  void put_nodes(double length) {
+    for (std::size_t i = 0; i < guard_.elements_; ++i) {
+      const Vec chord = end(i + 1) - end(i), along = (1 / norm(chord)) * chord;
+      if (i == 0) put(0, end(0), rate(0), along, length / 2);
+      put(i + 1, end(i + 1), rate(i + 1), along,
+          i + 1 < guard_.elements_ ? length : length / 2);
+    }
+  }
+  void put_points_of_chords(double length) {
+    const std::size_t points = guard_.at_.size();
+    for (std::size_t i = 0; i < guard_.elements_; ++i) {
+      const Vec chord = end(i + 1) - end(i), along = (1 / norm(chord)) * chord;
+      for (std::size_t j = 0; j < points; ++j) {
+        const double s = guard_.at_[j];
+        put(points * i + j, end(i) + s * chord, rate(i) + s * (rate(i + 1) - rate(i)),
+            along, guard_.weight_[j] * length);
+      }
+    }
+  }
+  /// From the Darboux vectors of the elements and their rates.
+  void put_points_of_helices(double length) {
+    const std::size_t points = guard_.at_.size();
+    Frame frame = pose_.frame * guard_.frames_[first_ + k_];
+    Vec omega = pose_.omega;
+    for (std::size_t i = 0; i < guard_.elements_; ++i) {
+      const Vec turning = load3(&darboux_rates_[3 * i]);
+      const models::Helix helix(load3(&darboux_[3 * i]), length);
+      const auto position = helix.position();
+      const auto velocity = helix.first(turning);
+      for (std::size_t j = 0; j < points; ++j) {
+        const auto at = helix.point(guard_.at_[j] * length);
+        const Vec from_start = frame * position.at(at);
+        put(points * i + j, end(i) + from_start,
+            rate(i) + cross(omega, from_start) + frame * velocity.at(at),
+            frame * helix.rotated(at, models::Helix::tangent),
+            guard_.weight_[j] * length);
+      }
+      const auto tip = helix.tip();
+      omega = omega + frame * helix.W(turning).at(tip);
+      frame = frame * helix.rotation(tip);
+    }
+  }
   void put(std::size_t i, const Vec& x, const Vec& v, const Vec& tangent, double length) {
     store3(x, &x_[3 * i]);
     store3(v, &v_[3 * i]);
@@ -153,12 +193,14 @@ class LaneGuard::Reader {
   }
 
   const LaneGuard& guard_;
+  const models::Head& head_;
   std::size_t first_, k_ = 0;
   double t_;
   std::size_t numbers_;
   std::vector<HeadEnergy> each_;
   RootPose pose_;
   std::vector<double> ends_, rates_;                // as Head::motion()
+  std::vector<double> darboux_, darboux_rates_;     // of helices, as Head::state()
   std::vector<double> x_, v_, tangent_, load_, u_;  // (3 points)
   std::vector<double> mass_, length_;               // (points)
 };
@@ -175,7 +217,9 @@ LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_res
                                             return !effect->uniform_acceleration() &&
                                                    !effect->viscosity();
                                           })),
+      helices_(!stretches_ && !steps_chains(scene)),
       elements_(static_cast<std::size_t>(options.elements)) {
+  motion_.frame = {};
   for (const auto& effect : effects_) {
     if (!effect->uniform_acceleration()) placed_.push_back(effect.get());
   }
@@ -189,6 +233,7 @@ LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_res
 void LaneGuard::add(const Strand& strand, models::Effects own) {
   const GuardedStrand guarded = guarded_strand(strand, effects_);
   strands_.push_back({strand.segments.front().length, guarded.slack(), {}, {}});
+  if (helices_) frames_.push_back(strand.root.frame);
   if (own.empty() && own_.empty()) return;
   own_.resize(strands_.size());
   own_.back() = std::move(own);

@@ -18,8 +18,8 @@ namespace tress::simulation {
 ///
 /// Energies are the head's own. Potentials, loads and powers of effects are those on the
 /// points where its model has them act: the nodes of springs; else the Gauss-Legendre
-/// points of the elements, here of their chords, which is exact for rigid links. Nodes
-/// also serve where nothing but gravity and linear drag acts.
+/// points of the elements. Nodes also serve where nothing but gravity and linear drag
+/// acts.
 ///
 /// When a state is judged: with every frame. Where nothing can do work on a strand in the
 /// frame of the head, that is enough, as the bound does not change. Under gravity and
@@ -64,6 +64,8 @@ class LaneGuard final : public HeadGuard {
   };
   class Reader;
 
+  bool curved() const { return helices_ && !at_.empty(); }
+
   RootMotion motion_;
   models::Effects effects_;
   std::vector<const models::Effect*> placed_;  // of these, those with potentials here
@@ -72,8 +74,10 @@ class LaneGuard final : public HeadGuard {
   bool stretches_;       // springs
   bool acts_somewhere_;  // whether some effect is neither uniform nor drag
   std::vector<double> at_, weight_;  // of points, of an element's length; none: nodes
+  bool helices_;         // elements are helices, not straight
   std::size_t elements_;
   std::vector<OfStrand> strands_;
+  std::vector<Frame> frames_;  // of the roots at rest, of helices
   std::vector<models::Effects> own_;  // of each strand, or empty
 };
 

@@ -211,6 +211,11 @@ int main(int argc, char** argv) {
     std::map<std::string, long> met;
     bool found = false;
     const Program program{argv[3], std::atof(argv[4])};
+    if (!(program.seconds > 0)) {
+      std::fprintf(stderr, "paired_scenes: SECONDS is \"%s\": give a positive number\n",
+                   argv[4]);
+      return 2;
+    }
     const auto judge = [&](const std::string& scene) {
       std::printf("%s\n", scene.c_str());
       std::fflush(stdout);
