@@ -263,6 +263,21 @@ export const tolerance_table = (tables) => {
   );
 };
 
+// Errors at one tolerance against those at ten times it.
+export const tolerances = (tables) => {
+  const rows = rows_of(tables, 'family_tolerances', { study: 'tolerances' });
+  if (rows.length === 0) return `${not_stored}.`;
+  const count = (key) => distinct(rows.map((row) => row[key])).length;
+  const held = rows.filter((row) => row.holds === 'true');
+  const warned = rows.filter((row) => row.warned === 'true');
+  const most = Math.max(...rows.filter((row) => row.warned !== 'true').map((row) => row.value));
+  return (
+    `${held.length} of ${rows.length} pairs of runs hold (${count('hair')} hairs, ${count('model')} models, ` +
+    `${count('integrator')} methods, ${count('tolerance')} tolerances), ` +
+    `${warned.length} by a warning. The largest ratio without a warning is ${number(most)}.`
+  );
+};
+
 // "Sensitive are hair 28 by super_helix (growth 11) ..."
 export const sensitive = (tables) => {
   const rows = rows_of(tables, 'family_tolerance', { claim: 'tolerance_met', status: 'sensitive' });
