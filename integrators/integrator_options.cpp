@@ -54,7 +54,7 @@ constexpr double most_counted = 1e15;  // whole numbers that a double holds exac
 
 const Field fields[] = {
     {{.name = "formulation",
-      .help = "how constraints enter the equations",
+      .help = "formulation of the constraints",
       .choices = "parametric|acceleration|baumgarte|projection|index2_ggl|index3|rattle|"
                  "correction"},
      choice<&Options::formulation>},
@@ -103,7 +103,8 @@ const Field fields[] = {
       .max = 1},
      number<&Options::tolerance>},
     {{.name = "min_step",
-      .help = "with a tolerance: a run that needs a shorter step fails (s)",
+      .help =
+          "shortest step of an adaptive run, which fails if it needs a shorter one (s)",
       .number = defaults.min_step,
       .min = 0,
       .max = largest},

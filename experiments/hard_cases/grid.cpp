@@ -23,34 +23,37 @@ constexpr Parameter settings_of_rows[] = {
      .max = 1},
     {.name = "scenes", .help = "scene files instead of our cases", .text = true},
     {.name = "horizon_s",
-     .help = "of a scene file: time that a run simulates, at most the scene's (s)",
+     .help = "simulated time of a scene file, at most the scene's (s)",
      .number = 0.5,
      .min = 1e-3,
      .max = 1e3},
     {.name = "strands",
-     .help = "of a scene file whose strands do not touch: so many typical ones",
+     .help = "number of typical strands of a scene file whose strands do not touch",
      .number = 8,
      .min = 1,
      .max = 1e4,
      .whole = true},
     {.name = "row_work",
-     .help = "of a scene file: work of a row (max_work), 0: 2e7, with --quick 4e6, with "
+     .help = "work of a row of a scene file (max_work), 0: 2e7, with --quick 4e6, with "
              "--full 1e8",
      .number = 0,
      .min = 0},
     {.name = "most_stretch",
-     .help = "of a scene file: passed up to this change of a piece's length, over it",
+     .help =
+         "largest accepted change of an element's length over that length, scene files",
      .number = 0.5,
      .min = 0,
      .max = 0.5},
     {.name = "most_depth_m",
-     .help = "of a scene file: passed up to this depth in a body beyond that at the "
-             "start (m), 0: the radius and 0.07 of the last element",
+     .help =
+         "largest accepted depth in a body beyond the initial one, scene files (m); 0: "
+         "the radius and 0.07 of the last element",
      .number = 0,
      .min = 0},
     {.name = "most_energy_gain_j",
-     .help = "of a scene file: passed up to so much energy more than at the start (J), "
-             "0: what the guard allows",
+     .help =
+         "largest accepted gain of energy since the start, scene files (J); 0: what the "
+         "guard allows",
      .number = 0,
      .min = 0},
 };

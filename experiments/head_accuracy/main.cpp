@@ -27,9 +27,9 @@ constexpr Parameter own_settings[] = {
      .fallback = "scenes/full_head.toml"},
     {.name = "grooms",
      .help =
-         "of the study, as in curly_varied_shaken,straight_alike_released: straight, "
-         "wavy or curly, alike or varied, released or shaken; usual: all, none beside "
-         "scenes",
+         "grooms of the study, as in curly_varied_shaken,straight_alike_released: "
+         "straight, wavy or curly, alike or varied, released or shaken; default: all, "
+         "or none where scenes are given",
      .text = true,
      .fallback = "usual"},
     {.name = "accuracy",
@@ -38,10 +38,10 @@ constexpr Parameter own_settings[] = {
      .min = 0,
      .max = 1},
     {.name = "over",
-     .help = "what is to be below: the error of 95 of 100 hairs, the mean, the largest",
+     .help = "bounded error: that of 95 of 100 hairs, the mean or the largest",
      .choices = "p95|mean|largest"},
     {.name = "budget_ms",
-     .help = "wall time that there is per frame (ms), 0: not asked",
+     .help = "available wall time per frame (ms); 0: no limit",
      .number = 0,
      .min = 0,
      .max = 1e6},
@@ -70,13 +70,13 @@ constexpr Parameter own_settings[] = {
      .max = 1024,
      .whole = true},
     {.name = "reference_elements",
-     .help = "of the finest run of the reference; 0: 32",
+     .help = "elements of the finest run of the reference; 0: 32",
      .number = 0,
      .min = 0,
      .max = 1000,
      .whole = true},
     {.name = "reference_substeps",
-     .help = "the same of steps per frame; 0: 32, with --quick 24",
+     .help = "steps per frame of the finest run of the reference; 0: 32, with --quick 24",
      .number = 0,
      .min = 0,
      .max = 1e5,

@@ -61,7 +61,7 @@ constexpr Parameter own_settings[] = {
      .fallback = shipped_scenes},
     {.name = "time", .help = "instant (s)", .number = 0.1, .min = 0, .max = 1e6},
     {.name = "strand",
-     .help = "which strand of a scene, from 1",
+     .help = "number of the strand of a scene, from 1",
      .number = 1,
      .min = 1,
      .max = 1e6,
@@ -82,7 +82,7 @@ constexpr Parameter own_settings[] = {
 constexpr OwnOption command_options[] = {
     {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
     {"time", "time", "instant of the motion (s)"},
-    {"strand", "strand", "which strand of the scene, from 1"},
+    {"strand", "strand", "number of the strand of the scene, from 1"},
 };
 
 struct Work {

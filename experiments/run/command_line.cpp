@@ -68,7 +68,7 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
                  "or more): only against hangs, as max_work bounds a row");
   app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
   app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
-  app.add_flag("--retry-failed", line.retry_failed, "with --resume: redo failed rows");
+  app.add_flag("--retry-failed", line.retry_failed, "redo failed rows, with --resume");
   app.add_option("--seed", raw.seed, "seed of every random choice (default 1)");
   app.add_option("--progress", raw.progress, "auto, none or json (default auto)");
   app.add_flag("--dry-run", line.dry_run, "print the rows that would run");

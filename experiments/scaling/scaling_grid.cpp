@@ -30,8 +30,8 @@ constexpr Parameter settings_of_rows[] = {
      .min = 0},
     {.name = "scenes", .help = "scene files instead of our strands", .text = true},
     {.name = "device",
-     .help = "that steps scene files as heads of hair: gpu, or auto, where there is one "
-             "(cpu: strand by strand, by every model)",
+     .help = "device that steps scene files as batches: gpu, or auto, where there is one "
+             "(cpu: strand by strand, with every model)",
      .choices = device_choices},
 };
 

@@ -50,11 +50,12 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--hairs", a.hairs,
                  "hairs drawn between the strands of a groom (default 0)")
       ->check(CLI::Range(0, 100'000));
-  app.add_flag("--vtk", a.vtk, "also .vtp and .pvd files, for ParaView");
-  app.add_flag("--usd", a.usd, "also a .usda file, for Blender and Houdini");
-  app.add_flag("--hair", a.hair, "also .hair files, one a frame, for renderers");
-  app.add_option("--export", a.exports,
-                 "the same by name, or gltf, a .glb file for viewers: vtk,usd,hair,gltf")
+  app.add_flag("--vtk", a.vtk, ".vtp and .pvd files for ParaView, in addition");
+  app.add_flag("--usd", a.usd, ".usda file for Blender and Houdini, in addition");
+  app.add_flag("--hair", a.hair, ".hair files for renderers, one per frame, in addition");
+  app.add_option(
+         "--export", a.exports,
+         "formats to write by name: vtk, usd, hair, or gltf (a .glb file for viewers)")
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
   app.add_option(
@@ -90,7 +91,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--error-bars", a.error_bars,
                "estimate time and space errors from runs with finer steps and twice the "
                "elements, with bounds that hold in 90 % of runs");
-  app.add_flag("--verify", a.verify, "with a tolerance: the error in time alone");
+  app.add_flag("--verify", a.verify, "error in time alone, with a tolerance");
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));
   app.add_flag("--print-defaults", a.print_defaults,

@@ -43,7 +43,7 @@ constexpr Column columns[] = {
 
 constexpr Parameter settings_table[] = {
     {.name = "tests",
-     .help = "which tests, as in cantilever,free_flight; empty: all",
+     .help = "tests to run, as in cantilever,free_flight; empty: all",
      .text = true},
     {.name = "parameters",
      .help = "values of the tests' parameter instead of their own, as in 0.1;10",

@@ -20,19 +20,19 @@ constexpr Parameter settings_of_rows[] = {
      .choices = "all|stiff|exact"},
     {.name = "scenes", .help = "scene files instead of our problems", .text = true},
     {.name = "horizon_s",
-     .help = "of a scene file: time that a run simulates, at most the scene's (s)",
+     .help = "simulated time of a scene file, at most the scene's (s)",
      .number = 0.5,
      .min = 1e-3,
      .max = 1e3},
     {.name = "strands",
-     .help = "of a scene file whose strands do not touch: so many typical ones",
+     .help = "number of typical strands of a scene file whose strands do not touch",
      .number = 1,
      .min = 1,
      .max = 1e4,
      .whole = true},
     {.name = "row_work",
-     .help = "of a scene file: work of one run (max_work), 0: 1e7, with --quick 1e6, "
-             "with --full 1e8",
+     .help = "work of one run of a scene file (max_work), 0: 1e7, with --quick 1e6, with "
+             "--full 1e8",
      .number = 0,
      .min = 0},
 };

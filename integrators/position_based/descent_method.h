@@ -16,8 +16,8 @@ enum class Start {
 inline constexpr Parameter start_option{
     .name = "start",
     .help =
-        "where sweeps start: with all of the other forces, or with the part of them "
-        "that the last step's acceleration had",
+        "start of the sweeps: with all other forces, or with the part of them that "
+        "the last step's acceleration had",
     .choices = "inertial|adaptive"};
 
 /// A backward Euler step by BlockDescent: x from the guess, v = (x - q)/h. All forces

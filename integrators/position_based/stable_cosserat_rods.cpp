@@ -33,7 +33,7 @@ std::string without_orientations(System& system, Formulation formulation) {
 
 IntegratorEntry stable_cosserat_rods_entry() {
   return {.id = "stable_cosserat_rods",
-          .summary = "as vbd, quaternions in closed form",
+          .summary = "vbd with quaternions in closed form",
           .source = "Hsu et al. 2025",
           .formulations = {{Formulation::parametric, 1}},
           .gaps = gaps_of_sweeps(),

@@ -49,7 +49,7 @@ std::unique_ptr<Integrator> augmented_of(System& system, const Options& options)
 
 IntegratorEntry vbd_augmented_entry() {
   return {.id = "vbd_augmented",
-          .summary = "as vbd, stiffness limited and made up for by multipliers",
+          .summary = "vbd with bounded stiffness, corrected by multipliers",
           .source = "Giles et al. 2025",
           .formulations = {{Formulation::parametric, 1}},
           .gaps = gaps_of_sweeps(),

@@ -16,8 +16,8 @@ inline constexpr Parameter block_option{
 inline constexpr Parameter curvature_option{
     .name = "second_derivatives",
     .help =
-        "of strains: as they are where the matrix stays positive definite, bounded by "
-        "sums of their rows, or left out",
+        "second derivatives of strains: exact where the matrix stays positive definite, "
+        "bounded by the sums of their rows, or left out",
     .choices = "exact|majorised|none"};
 inline constexpr Parameter chebyshev_option{
     .name = "chebyshev",

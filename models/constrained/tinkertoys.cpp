@@ -20,7 +20,7 @@ constexpr int largest_size[] = {100'000, 100'000, 300, 16, 10'000};
 
 constexpr Parameter declared_of_tinkertoys[] = {
     {.name = "structure",
-     .help = "what to build",
+     .help = "assembly of links and particles",
      .choices = "chain|ring|net|tree|truss"},
     {.name = "size",
      .help = "links, side particles, levels or bays",

@@ -20,7 +20,7 @@ constexpr Parameter parameters_of_body[] = {
      .components = 3,
      .fallback = "0,0,0"},
     {.name = "rotation_rad",
-     .help = "how its frame is turned: axis times angle (rad)",
+     .help = "rotation of its frame: axis times angle (rad)",
      .min = -1e3,
      .max = 1e3,
      .components = 3,
@@ -46,7 +46,7 @@ constexpr Parameter parameters_of_body[] = {
              "fastest, < 0 inside (m)",
      .text = true},
     {.name = "moves",
-     .help = "it stays where it is, or follows the motion of the head",
+     .help = "motion of the body: none, or that of the head",
      .choices = "fixed|head"},
     {.name = "stiffness_n_m2",
      .help =

@@ -34,7 +34,7 @@ namespace {
 std::span<const Parameter> lifted_curls_parameters() {
   static constexpr std::array all{
       Parameter{.name = "tangent",
-                .help = "of springs: exact, or positive semidefinite",
+                .help = "Jacobian of the springs: exact, or positive semidefinite",
                 .choices = "exact|filtered"},
       maximal_solver_parameter};
   return all;

@@ -82,7 +82,7 @@ std::span<const Parameter> mass_spring_parameters() {
                 .choices = "angular|second_neighbour"},
       torsion_parameter,
       Parameter{.name = "tangent",
-                .help = "of springs: exact, or positive semidefinite",
+                .help = "Jacobian of the springs: exact, or positive semidefinite",
                 .choices = "exact|filtered"},
       maximal_solver_parameter};
   return all;

@@ -52,7 +52,7 @@ std::unique_ptr<ConstraintSet> inextensible(const MaximalStrand& parts,
 /// The catalogue parameter for the linear solver of a maximal model.
 inline constexpr Parameter maximal_solver_parameter{
     .name = "solver",
-    .help = "of the model's linear equations; auto: by their structure",
+    .help = "solver of the model's linear equations; auto: by their structure",
     .choices = "auto|banded|klu"};
 LinearKind maximal_solver(const Parameters& parameters);
 

@@ -95,7 +95,8 @@ std::span<const Parameter> xpbd_cosserat_parameters() {
                 .number = XpbdCosseratOptions{}.norm,
                 .min = 1},
       Parameter{.name = "edge_inertia",
-                .help = "of quaternions beside the section's own, over rho A l^3",
+                .help = "inertia of the quaternions in addition to the section's own, "
+                        "over rho A l^3",
                 .number = XpbdCosseratOptions{}.edge_inertia,
                 .min = 0},
       maximal_solver_parameter};

@@ -116,7 +116,8 @@ std::span<const Parameter> force_transport_parameters() {
     std::vector<Parameter> own;
     for (Parameter p : reduced_parameters()) {
       if (p.name == "solver") {
-        p.help = "of the stiff tangent; the exact one is a dense matrix always";
+        p.help =
+            "solver of the stiff tangent; the exact tangent is always a dense matrix";
         p.choices = "sweep|composite";
       } else if (p.name == "tangent") {
         p.help = "terms of dr/dq, dr/dv: all; mass, friction, elastic stiffness";

@@ -25,11 +25,11 @@ constexpr Parameter file_keys[] = {
              "takes so many of them, evenly spread",
      .text = true},
     {.name = "unit",
-     .help = "of the file; file: as it or its format says (.usda: cm), or else guessed, "
-             "and printed",
+     .help = "unit of length of the file; file: the one that it or its format defines "
+             "(.usda: cm), else a guess, which is printed",
      .choices = "file|m|cm|mm|inch"},
     {.name = "unit_m",
-     .help = "the same as a number: metres per unit; 0: by unit",
+     .help = "metres per unit of length; 0: by unit",
      .number = 0,
      .min = 0,
      .max = 1e6},

@@ -95,7 +95,8 @@ std::span<const Parameter> material_table_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{
         {.name = "name",
-         .help = "whose values hold where no key gives another; custom: give radius, "
+         .help = "material whose values apply where no key gives another; custom: give "
+                 "radius, "
                  "Young's modulus, density, and shear modulus or Poisson's ratio",
          .choices = "hair.caucasian|hair.asian|hair.african|custom"}};
     for (const char* key : {"radius_m", "ellipticity", "youngs_modulus_pa",
@@ -108,7 +109,7 @@ std::span<const Parameter> material_table_parameters() {
                     .min = 0,
                     .max = 1e3});
     list.push_back({.name = "curl_pitch_m",
-                    .help = "the same: rise of the helix per turn (m)",
+                    .help = "shape = \"material\": rise of the helix per turn (m)",
                     .min = -1e3,
                     .max = 1e3});
     for (std::size_t i = 0; i < keys.size(); ++i) {

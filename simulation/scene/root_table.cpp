@@ -13,11 +13,11 @@ constexpr double largest_number = 1e6;
 
 constexpr Parameter parameters[] = {
     {.name = "motion",
-     .help = "what all roots do",
+     .help = "motion of all roots",
      .choices = "fixed|shake|rotate|shake_rotate|swing|stop|drop_pull|translate|"
                 "keyframes|head|free"},
     {.name = "direction",
-     .help = "of shake, swing, stop, drop_pull and translate; any length",
+     .help = "direction of shake, swing, stop, drop_pull and translate; any length",
      .min = -largest_number,
      .max = largest_number,
      .components = 3,

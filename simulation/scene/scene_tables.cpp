@@ -18,7 +18,7 @@ namespace {
 
 constexpr Parameter top[] = {
     {.name = "title", .help = "one line, must be given", .text = true},
-    {.name = "source", .help = "where the scene comes from", .text = true},
+    {.name = "source", .help = "source of the scene", .text = true},
     {.name = "duration_s",
      .help = "simulated time (s)",
      .number = 1,
@@ -58,7 +58,7 @@ constexpr Parameter top[] = {
              "be, left to fall, or left out by simulate",
      .choices = "stiffen|keep|drop"},
     {.name = "seed",
-     .help = "of everything random",
+     .help = "seed of every random choice",
      .number = 1,
      .min = 0,
      .max = 9007199254740991,  // no other whole number is rounded to these
@@ -83,7 +83,7 @@ constexpr KeyOfOption in_seconds[] = {
     {"dt_s", "step"}, {"max_step_s", "max_step"}, {"min_step_s", "min_step"}};
 
 std::vector<Parameter> options_of(const ModelEntry& model, std::string_view ids) {
-  std::vector<Parameter> list{{.name = "id", .help = "which model", .choices = ids}};
+  std::vector<Parameter> list{{.name = "id", .help = "id of the model", .choices = ids}};
   list.insert(list.end(), model.parameters.begin(), model.parameters.end());
   return list;
 }
@@ -107,7 +107,8 @@ std::span<const Parameter> integrator_table_parameters() {
   static const std::string ids =
       choices_of(integrator_catalogue(), "semi_implicit_euler");
   static const std::vector<Parameter> all = [] {
-    std::vector<Parameter> list{{.name = "id", .help = "which method", .choices = ids}};
+    std::vector<Parameter> list{
+        {.name = "id", .help = "id of the method", .choices = ids}};
     for (Parameter p : integrator_options()) {
       for (const auto& [key, option] : in_seconds) {
         if (p.name == option) p.name = key;
@@ -147,14 +148,15 @@ std::span<const Use> integrator_uses() {
 std::vector<TableEntry> table_entries() {
   std::vector<TableEntry> all{
       {.name = "integrator",
-       .summary = "how time advances",
+       .summary = "time integration",
        .parameters = integrator_table_parameters(),
        .choice = "id",
        .uses = integrator_uses(),
        .needed = true},
       {.name = "material",
-       .summary = "what all strands are made of; [strand.material] and [groom.material] "
-                  "below a strand or a groom change it for that one",
+       .summary =
+           "material of all strands; [strand.material] and [groom.material] below a "
+           "strand or a groom change it for that one",
        .parameters = material_table_parameters(),
        .needed = true},
       {.name = "strand",
@@ -171,7 +173,7 @@ std::vector<TableEntry> table_entries() {
        .uses = shape_uses(),
        .many = true},
       {.name = "root",
-       .summary = "what all roots do together",
+       .summary = "common motion of all roots",
        .parameters = root_table_parameters(),
        .choice = "motion",
        .uses = root_uses(),

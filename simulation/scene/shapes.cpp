@@ -12,7 +12,7 @@ namespace {
 
 constexpr Parameter shape_table[] = {
     {.name = "shape",
-     .help = "at rest; material: the curl of the material",
+     .help = "shape at rest; material: the curl of the material",
      .choices = "straight|material|helix|wavy|fuzzy"},
     {.name = "curl_radius_m",
      .help =

@@ -23,13 +23,13 @@ constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
 
 constexpr Parameter own_parameters[] = {
     {.name = "position_m",
-     .help = "of the root x, y, z (m)",
+     .help = "position x, y, z of the root (m)",
      .min = -most,
      .max = most,
      .components = 3,
      .fallback = "0,0,0"},
     {.name = "root_tangent",
-     .help = "at the root, away from it; any length",
+     .help = "direction at the root, away from it; any length",
      .min = -most,
      .max = most,
      .components = 3,
@@ -54,14 +54,15 @@ constexpr Parameter own_parameters[] = {
          "them at t = 0, as in a knot",
      .choices = "points|straight"},
     {.name = "cuts",
-     .help = "where elements end: as grading says, or such that they share what bends "
-             "the strand at rest, clamped and under its weight; rest_linear: for "
-             "curvature that is linear in an element (super_clothoid)",
+     .help =
+         "placement of the elements: by grading, or with equal shares of the curvature "
+         "at rest, clamped and under its weight; rest_linear: for curvature that is "
+         "linear in an element (super_clothoid)",
      .choices = "grading|rest|rest_linear"},
     {.name = "tolerance_m",
      .help =
-         "as few elements as its shape at rest needs to be within this distance, up "
-         "to `elements` (m); `simulate` tries its motion and gives it more where that "
+         "largest distance from the shape at rest, which chooses the number of elements, "
+         "up to `elements` (m); `simulate` tries the motion and adds elements where it "
          "needs them; 0: `elements`",
      .number = 0,
      .min = 0,
