@@ -26,7 +26,8 @@ export function pages(root) {
 
 const begins_command = /^\s*(\.\/tress|build\/|experiments\/\S+\.sh|cmake|mpirun|node) /;
 
-/// [{page, line, text}] of a page's text. Throws Error on an open fence, and on a command
+/// [{page, line, text, output}] of a page's text; `output`: the lines of a fence
+/// ```text output that follows, which the command prints. Throws Error on an open fence, and on a command
 /// that is set apart by spaces and so would not be found.
 export function commands_of(page, text) {
   const found = [];
@@ -36,13 +37,17 @@ export function commands_of(page, text) {
     const mark = /^\s*```(.*)$/.exec(content);
     if (mark) {
       fence = fence === undefined ? mark[1].trim() : undefined;
+      if (fence === 'text output' && found.length === 0)
+        throw new Error(`${place}: output of no command`);
+    } else if (fence === 'text output') {
+      found.at(-1).output.push(content);
     } else if (fence === '' && content.trim() !== '') {
       if (!/^[\w./]/.test(content)) {
         throw new Error(
           `${place}: no command; give the fence a language, as in \`\`\`text`,
         );
       }
-      found.push({ page, line: i + 1, text: content });
+      found.push({ page, line: i + 1, text: content, output: [] });
     } else if (
       fence === undefined &&
       /^ {4}/.test(content) &&

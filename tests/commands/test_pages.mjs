@@ -1,6 +1,7 @@
 // test_pages.mjs ROOT BUILD --run PAGE...: runs every command of these pages, in a copy of the
-// repository, which they may change; build/release there is BUILD. What is not run as it
-// stands is in command_rules.mjs. --check PAGE...: each command has one rule at most, each
+// repository, which they may change; build/release there is BUILD. Output that a page shows
+// must be printed, but for its numbers and units of time. What is not run as it stands is in
+// command_rules.mjs. --check PAGE...: each command has one rule at most, each
 // rule a command, and these are the pages that have something to run.
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync } from 'node:fs';
@@ -24,7 +25,20 @@ function as_run(command) {
   return {
     command: rule.more ? `${said} ${rule.more}` : said,
     exits: [0, ...(rule.exits ?? [])],
+    output: command.output,
   };
+}
+
+/// A text whose numbers and units of time depend on the machine no more.
+const masked = (text) =>
+  text
+    .replace(/\d[\d.]*(e[-+]?\d+)?/g, '#')
+    .replace(/# ([mµun]?s)\b/g, '# s');
+
+/// Lines of a page's output that a command did not print.
+function not_printed(output, printed) {
+  const lines = new Set(masked(printed).split('\n'));
+  return output.filter((line) => !lines.has(masked(line)));
 }
 
 function check(tested) {
@@ -94,15 +108,19 @@ function run_page(page) {
   const work = copy_of_repository();
   try {
     const commands = [
-      ...(before[page] ?? []).map((command) => ({ command, exits: [0] })),
+      ...(before[page] ?? []).map((command) => ({ command, exits: [0], output: [] })),
       ...page_commands(root, page).map(as_run),
     ];
-    for (const { command, exits } of commands.filter(Boolean)) {
+    for (const { command, exits, output } of commands.filter(Boolean)) {
       const since = performance.now();
       const { status, stdout, stderr } = bash(command, join(work, 'tress'));
       console.log(`${((performance.now() - since) / 1000).toFixed(1)} s  ${command}`);
       if (!exits.includes(status)) {
         return [`${page}: exit code ${status} of: ${command}\n${stdout}${stderr}`];
+      }
+      const missing = not_printed(output, stdout + stderr);
+      if (missing.length > 0) {
+        return [`${page}: '${missing[0]}' is not printed by: ${command}\n${stdout}${stderr}`];
       }
     }
     return [];

@@ -37,6 +37,8 @@ usage() {
   expect_one_line
   expect 2 "no interpreter '/none'" "$repository/tress" python --interpreter /none
   expect_one_line
+  expect 2 "unknown option '--fast'" "$repository/tress" docs --fast
+  expect_one_line
   expect 0 './tress setup' "$repository/tress" help
   expect 0 './tress setup' "$repository/tress"
 
@@ -51,6 +53,9 @@ usage() {
   expect_one_line
   expect 2 'sudo apt-get install .*libode-dev' \
     env TRESS_CACHE="$work/cache" "$repository/tress" peers
+  expect_one_line
+  expect 2 'sudo apt-get install .*furo' \
+    env TRESS_CACHE="$work/cache" "$repository/tress" docs
   expect_one_line
   [[ ! -e $work/apt_was_called ]] || { echo "apt-get was called without rights"; exit 1; }
 

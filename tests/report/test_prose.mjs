@@ -1,7 +1,7 @@
 // The pages made from templates and tables: `node --test tests/report/test_prose.mjs`.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -9,7 +9,13 @@ import { fileURLToPath } from 'node:url';
 import { must, number, percent, range, row_of, table, time } from '../../experiments/report/prose/markdown.mjs';
 import { account } from '../../experiments/report/prose/account.mjs';
 import { literals } from '../../experiments/report/prose/literals.mjs';
-import { answers, untraced_literals, written_pages } from '../../experiments/report/prose/pages.mjs';
+import {
+  answers,
+  is_manual,
+  results_in_manual,
+  untraced_literals,
+  written_pages,
+} from '../../experiments/report/prose/pages.mjs';
 import { snapshot } from '../../experiments/report/prose/queries/catalogue.mjs';
 import { unit_of } from '../../experiments/report/prose/queries/columns.mjs';
 import { provenance } from '../../experiments/report/prose/queries/machine.mjs';
@@ -38,9 +44,24 @@ test('no page of the repository escapes the account', (t) => {
   const { status, stdout } = spawnSync('git', ['ls-files', '*.md'], { cwd: root, encoding: 'utf8' });
   if (status !== 0) return t.skip('no git checkout');
   const pages = stdout.trim().split('\n');
-  const missing = pages.filter((page) => !counted.has(page) && !page.startsWith('docs/templates/'));
+  const missing = pages.filter(
+    (page) => !counted.has(page) && !page.startsWith('docs/templates/') && !is_manual(page),
+  );
   // The program prints this one, and a test compares it.
   return assert.deepEqual(missing, ['scenes/README.md']);
+});
+
+test('pages of the manual state no results', () => {
+  assert.deepEqual(results_in_manual('a.md', 'An error of 1 %, in 4.2 ms.\n```text\n3 ms\n```\nBy 47 %.'), [
+    "a.md:1: '4.2 ms' may be a result; compute it on a page made from a template",
+    "a.md:5: '47 %' may be a result; compute it on a page made from a template",
+  ]);
+  const found = readdirSync(join(root, 'docs'), { recursive: true })
+    .map((name) => `docs/${name}`)
+    .filter((page) => page.endsWith('.md') && is_manual(page));
+  assert.ok(found.length > 20, `${found.length} pages of the manual`);
+  for (const page of [...found, 'CHANGELOG.md'])
+    assert.deepEqual(results_in_manual(page, readFileSync(join(root, page), 'utf8')), []);
 });
 
 test('number words are found, and grammar is not', () => {

@@ -45,6 +45,7 @@ export const allowed = [
   { text: /\bby halves\b|\btwice\s+as\s+short\b/g, why: 'how the family searches steps' },
   { text: /\bthree of its hairs\b|\bof which +has three\b/g, why: 'the hairs of family --quick' },
   { text: /\bfifteen\s+(other\s+)?materials\b|\bthree groups\b/g, why: 'the materials of the second family, and the groups of the first' },
+  { text: /\b90 % of the calibration runs\b/g, why: 'the coverage of bounds of errors' },
   { text: /\b95 %/g, why: 'the percentile of error_p95_rel' },
   { text: /\bdouble and single precision\b/g, why: 'numbers of 64 and 32 bits' },
   { text: /beta²\/\(4 alpha\)/g, why: 'the definition of a damping ratio' },

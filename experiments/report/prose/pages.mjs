@@ -4,6 +4,7 @@ import { join } from 'node:path';
 import { all_objects } from '../src/objects.mjs';
 import { InputError } from '../src/input.mjs';
 import { load_results } from '../src/load.mjs';
+import { allowed } from './allowed.mjs';
 import { literals } from './literals.mjs';
 import { queries } from './queries/all.mjs';
 import { provenance } from './queries/machine.mjs';
@@ -43,6 +44,23 @@ export const written_by_hand = [
   'experiments/calibrate/data/README.md',
   'experiments/report/README.md',
 ];
+// Pages of the manual: definitions, formulas, commands and what these print. They have no
+// result of a table; a page with results is made from a template.
+export const is_manual = (page) =>
+  page === 'CHANGELOG.md' || page === 'docs/index.md' || /^docs\/(theory|start|reference|about)\//.test(page);
+// Where a page of the manual states a share or a time, as results do.
+export function results_in_manual(page, text) {
+  const plain = allowed.reduce(
+    (rest, { text: known }) => rest.replace(known, ''),
+    text.replace(/^```[\s\S]*?^```/gm, (fence) => fence.replace(/[^\n]/g, '')),
+  );
+  return plain.split('\n').flatMap((line, i) =>
+    [...line.matchAll(/[\d.]+ ?(?:%|[mµn]s\b)/g)].map(
+      ([found]) => `${page}:${i + 1}: '${found}' may be a result; compute it on a page made from a template`,
+    ),
+  );
+}
+
 // These print texts of other sources, and what columns mean.
 const quoting = ['columns.mjs', 'python.mjs', 'references.mjs'];
 export const text_sources = (root) =>
