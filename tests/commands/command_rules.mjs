@@ -11,6 +11,7 @@ const page_alone =
 export const before = {
   'docs/compare.md': ['mkdir ../other', 'cp -r results ../other/'],
   'docs/grooms.md': [my_scene],
+  'docs/how_to_choose.md': [my_scene],
   'docs/player.md': [
     ...['crossing_locks', 'full_head', 'head_shaking', 'plectoneme'].map((name) =>
       short_scene(name, 0.05),
@@ -90,6 +91,11 @@ export const rules = [
     page: 'docs/extending.md',
     command: `${experiment('stability_limit')} --elements`,
     more: '--models super_helix --set damping=seed',
+  },
+  {
+    page: 'docs/how_to_choose.md',
+    command: `${experiment('cost_of_accuracy')} --advise`,
+    more: '--quick --models super_helix --integrators tr_bdf2',
   },
   {
     page: 'docs/player.md',
