@@ -5,8 +5,14 @@ import re
 import shutil
 from pathlib import Path
 
-LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
-FENCE = re.compile(r"(^[ ]*```.*?^[ ]*```[ ]*$|^[ ]*~~~.*?^[ ]*~~~[ ]*$|`[^`\n]+`)", re.S | re.M)
+from generated import with_parts
+
+# A block of code, a link (whose label may have code in it), or code in a line.
+TOKEN = re.compile(
+    r"^[ ]*```.*?^[ ]*```[ ]*$"
+    r"|(?P<picture>!?)\[(?P<label>(?:[^\[\]]|\[[^\]]*\])*)\]\((?P<href>[^)\s]+)\)"
+    r"|`[^`\n]+`",
+    re.S | re.M)
 
 
 class Page:
@@ -93,8 +99,8 @@ class Stage:
         return f"files/{name}"
 
     def rewritten(self, page, match):
-        picture, label, href = match.groups()
-        if re.match(r"[a-z]+:|#", href):
+        picture, label, href = match.group("picture", "label", "href")
+        if href is None or re.match(r"[a-z]+:|#", href):
             return match.group(0)
         path, _, anchor = href.partition("#")
         target = Path(os.path.normpath(self.root / Path(page.source).parent / path))
@@ -108,9 +114,8 @@ class Stage:
         return f"{picture}[{label}]({link}{'#' + anchor if anchor else ''})"
 
     def text(self, page):
-        parts = FENCE.split((self.root / page.source).read_text())
-        parts[::2] = [LINK.sub(lambda match: self.rewritten(page, match), part) for part in parts[::2]]
-        return "".join(parts) + toctrees(page, self.pages)
+        text = with_parts(self.root, (self.root / page.source).read_text())
+        return TOKEN.sub(lambda match: self.rewritten(page, match), text) + toctrees(page, self.pages)
 
     def run(self):
         """Stages every page and returns the problems found."""
