@@ -117,7 +117,8 @@ def main():
     options = options.parse_args()
     absent = missing()
     if absent:
-        print(f"docs: not installed: {', '.join(absent)}; ./tress docs installs them", file=sys.stderr)
+        print(f"docs: not installed: {', '.join(absent)}; install what cmake/docs_packages.txt and "
+              "docs/site/package.json name, or run ./tress docs on Debian", file=sys.stderr)
         return 77
     out = options.out.resolve()
     found = Stage(ROOT, out / "source").run()
