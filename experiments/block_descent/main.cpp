@@ -7,15 +7,15 @@ namespace {
 
 constexpr Column columns[] = {
     {"part",
-     "sweeps (error against sweeps and blocks), order (1 beside 2), penalty (its window) "
-     "or rods (the map of stable_cosserat_rods)"},
+     "sweeps (error against sweeps and blocks), order (1 compared with 2), "
+     "penalty (range of penalties) or rods (map of stable_cosserat_rods)"},
     {"scene", "swing, or the cantilever of the published example"},
     {"model", "catalogue id"},
     {"integrator", "method"},
     {"elements", "number of elements"},
     {"stretch_over_bending", "EA L^2/(E I), EA as softened"},
     {"dt_s", "fixed step"},
-    {"sweeps", "in a step"},
+    {"sweeps", "sweeps per step"},
     {"block", "nodes solved together, 0: all"},
     {"chebyshev", "rate for which sweeps are accelerated"},
     {"penalty_1_s2", "largest stiffness of a row, times its G W G^T"},
@@ -30,7 +30,7 @@ constexpr Column columns[] = {
     {"within_1_percent", "error_rel is at most 0.01"},
     {"energy_distance_rel",
      "largest difference of mechanical energy from backward_euler's, over m g L"},
-    {"steps", "of the run"},
+    {"steps", "steps of the run"},
     {"wall_s_per_sim_s", "wall time of a simulated second", true},
 };
 

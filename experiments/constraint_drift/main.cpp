@@ -19,9 +19,9 @@ namespace {
 constexpr Column columns[] = {
     {"study",
      "formulation, grid (of gains), recovery, strands (shaken), limit (of gains)"},
-    {"system", "what is simulated; of strands, the model"},
-    {"variant", "how the strand keeps its length, where the model has a choice"},
-    {"formulation", "how the constraint enters"},
+    {"system", "simulated system; for strands, the model"},
+    {"variant", "strand's length formulation, where the model has a choice"},
+    {"formulation", "constraint formulation"},
     {"integrator", "method"},
     {"alpha", "Baumgarte's gain on g, 1/s^2"},
     {"beta", "Baumgarte's gain on g', 1/s"},
@@ -38,7 +38,8 @@ constexpr Column columns[] = {
     {"g_rate_max", "largest |g'| over the run"},
     {"length_error_rel", "strands: largest relative change of length of an element"},
     {"energy_drift_rel",
-     "where energy is kept: its largest error over the largest kinetic energy"},
+     "largest energy error over the largest kinetic energy, for systems that "
+     "conserve energy"},
     {"recovery_time_s", "last time with |g| above a millionth of the violation"},
     {"overshoot", "largest opposite violation over the initial one"},
     {"steps", "accepted steps"},

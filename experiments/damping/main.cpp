@@ -25,7 +25,7 @@ constexpr Column columns[] = {
     {"energy_lost_rel",
      "energy at the start less that after a second, over what a fall to rest would free, "
      "m g L/2; below zero: gained"},
-    {"steps", "of the run"},
+    {"steps", "steps of the run"},
 };
 
 void measure(const Parameters& p, const Options& options, Row& row) {

@@ -24,23 +24,29 @@ namespace {
 
 constexpr Column columns[] = {
     {"scene", "name of the scene"},
-    {"effect", "what is left out; none: the scene as it is"},
+    {"effect", "omitted effect; none: the complete scene"},
     {"accuracy_rel", "target accuracy of the tips, over the length"},
     {"error_without_rel",
-     "how far the tips are from those of the whole scene when it is left out: rms over "
-     "frames and strands, over the length"},
+     "distance of the tips from those of the complete scene: rms over frames and "
+     "strands, over the length"},
     {"change_error_rel",
-     "by how much that changes with twice the elements, half the step"},
+     "change of error_without_rel with twice the elements and half the step"},
     {"discretisation_rel",
-     "how far the tips of the whole scene move with twice the elements, half the step"},
+     "distance that the tips of the complete scene move with twice the elements "
+     "and half the step"},
     {"change_over_discretisation", "error_without_rel over discretisation_rel"},
-    {"error_alone_rel", "how far it alone takes the tips from those without any effect"},
-    {"cost_share", "part of the wall time that goes when it is left out", true},
-    {"cost_alone_share", "what it alone adds to the time without any effect", true},
+    {"error_alone_rel",
+     "distance of the tips with this effect only from those without any effect"},
+    {"cost_share", "part of the wall time saved when the effect is left out", true},
+    {"cost_alone_share",
+     "time that this effect adds to a run without any effect, over the time of "
+     "that run",
+     true},
     {"wall_s",
      "time of the whole scene: of the processor, or of short ones the median of repeats",
      true},
-    {"load_over_weight", "its load, rms over frames and points, over the weight"},
+    {"load_over_weight",
+     "load of the effect, rms over frames and points, over the weight"},
     {"gravito_bending", "rho g S L^3/(EI): weight over bending, first strand"},
     {"inertia_bending", "rho a S L^3/(EI), a the root's rms acceleration"},
     {"twist_bending", "GJ/(EI)"},

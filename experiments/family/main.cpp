@@ -53,40 +53,43 @@ constexpr Parameter settings[] = {
 };
 
 std::vector<Column> columns_of_table() {
-  std::vector<Column> all = {{"study", "the piece of work"},
-                             {"claim", "the statement that the row tests"},
-                             {"family", "hair, or rods of other materials"},
-                             {"hair", "number of the rod in its family"},
-                             {"model", "where one model is tested"},
-                             {"tolerance", "error asked for, over the length"},
-                             {"most_calls", "of the model in a run by tolerance"},
-                             {"integrator", "where one method is tested"}};
+  std::vector<Column> all = {
+      {"study", "study of the row"},
+      {"claim", "the statement that the row tests"},
+      {"family", "hair, or rods of other materials"},
+      {"hair", "number of the rod in its family"},
+      {"model", "model of the row, where one model is tested"},
+      {"tolerance", "requested tolerance over the length"},
+      {"most_calls", "limit of model evaluations in an adaptive run"},
+      {"integrator", "method of the row, where one method is tested"}};
   for (const Column& column : rod_columns()) all.push_back(column);
   all.insert(
       all.end(),
-      {{"value", "what decides; family_summary.csv says what it is"},
+      {{"value", "quantity that decides the claim; family_summary.csv defines it"},
        {"holds", "whether the claim holds for this rod"},
-       {"steps", "of the run by tolerance, rejected ones apart"},
-       {"rejected", "its steps that were repeated"},
-       {"work", "its calls of the model and steps, each times coordinates + 10"},
-       {"wall_s", "its time", true},
-       {"failure", "why it has no solution"},
-       {"fixed_integrator", "the method with the best fixed step"},
-       {"fixed_dt_s", "that step, of 1/60 s and its halves"},
-       {"fixed_work", "its work"},
-       {"fixed_wall_s", "its time", true},
-       {"elements", "of all models of the row"},
+       {"steps", "accepted steps of the adaptive run"},
+       {"rejected", "rejected steps of the adaptive run"},
+       {"work",
+        "work of the adaptive run: model evaluations and steps, each times "
+        "coordinates + 10"},
+       {"wall_s", "wall time of the adaptive run", true},
+       {"failure", "reason why the adaptive run has no solution"},
+       {"fixed_integrator", "method with the best fixed step"},
+       {"fixed_dt_s", "best fixed step: 1/60 s over a power of two"},
+       {"fixed_work", "work of the run with the best fixed step"},
+       {"fixed_wall_s", "wall time of the run with the best fixed step", true},
+       {"elements", "number of elements of every model of the row"},
        {"reduced",
-        "what value compares, of the model of reduced coordinates: the "
-        "largest stable step (s), or elements"},
-       {"maximal", "the same of der"},
+        "compared quantity of the reduced model: largest stable step (s), or "
+        "elements"},
+       {"maximal", "compared quantity of der: largest stable step (s), or elements"},
        {"horizon_s",
         "last time at which two independent methods agree, so that the error is up to "
         "there; empty: they agree to the end"},
        {"growth",
-        "of a deviation of the strand to that of its tip, where an error is beyond "
-        "the tolerance"},
-       {"gap", "what the answer is uncertain by, relative to the length"},
+        "growth of a deviation of the strand into one of its tip, where an error is "
+        "above the tolerance"},
+       {"gap", "uncertainty of the answer, relative to the length"},
        {"error_rel", "study tolerances: tip error in time over the length"},
        {"looser_error_rel", "study tolerances: error_rel at ten times the tolerance"},
        {"warned",

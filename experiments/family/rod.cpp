@@ -118,7 +118,7 @@ void Rod::describe(Row& row) const {
 
 std::vector<Column> rod_columns() {
   return {{"kind", "group of the hair (straight, wavy, coily), or material of the rod"},
-          {"state", "of a hair: dry or wet"},
+          {"state", "state of a hair: dry or wet"},
           {"length_m", "length of the rod"},
           {"radius_m", "radius of the section; of an ellipse the geometric mean"},
           {"youngs_modulus_pa", "Young's modulus E"},
@@ -126,11 +126,12 @@ std::vector<Column> rod_columns() {
           {"density_kg_m3", "density"},
           {"ellipticity", "half-axis along e1 over half-axis along e2"},
           {"natural_curvature_1_m",
-           "curvature at rest; twist at rest is 0.3 of it for hair, 0 for other rods"},
+           "curvature at rest; twist at rest is 0.3 times the curvature for hair, 0 "
+           "for other rods"},
           {"internal_friction_kg_m3_s", "friction of bending and twisting"},
           {"damping_time_s", "internal friction over E I"},
           {"drag_kg_m_s", "linear drag of air per length"},
-          {"drive", "what moves the rod: shake, turning_head, release or wind"},
+          {"drive", "motion of the clamp, or load: shake, turning_head, release or wind"},
           {"drive_level", "strength of the drive between its least (0) and most (1)"},
           {"frequency_hz", "frequency of the drive"},
           {"gravito_bending", "gravito-bending number rho A g L^3/(E I)"},

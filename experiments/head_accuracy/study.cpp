@@ -14,51 +14,56 @@ namespace {
 constexpr Column columns[] = {
     {"scene", "name of the scene, or of one of the study's grooms"},
     {"kind",
-     "cheapest (for a target), every (the same with every hair simulated), bits (the "
-     "same "
-     "in 64 bits), budget (the most accurate within a time), as_given (by the file), "
-     "front "
-     "(no other run has less error and less time)"},
-    {"target_error_rel", "wanted error over the length of each hair"},
-    {"over", "what of the hairs' errors is wanted: mean, p95 (of 95 of 100), largest"},
-    {"budget_ms", "of kind budget: wall time per frame that there is"},
+     "cheapest (for a target), every (with every hair simulated), bits (in "
+     "double precision), budget (most accurate within a time), as_given (by the "
+     "file), front (Pareto)"},
+    {"target_error_rel", "target error over the length of each hair"},
+    {"over",
+     "statistic of the hairs' errors that has the target: mean, p95 (95th "
+     "percentile), largest"},
+    {"budget_ms", "wall time allowed per frame, in kind budget"},
     {"strands", "hairs of the scene"},
     {"looked_at", "hairs that are compared: all, or those of a groom of fewer"},
     {"guides", "hairs that are simulated; the others follow them"},
-    {"elements", "of each"},
+    {"elements", "number of elements of each hair"},
     {"dt_s", "step"},
-    {"bits", "of a number of the simulation"},
+    {"bits", "floating-point precision of the simulation in bits"},
     {"error_mean_rel",
-     "distance of a hair from itself simulated finely, rms over its length and time, "
-     "over "
-     "its length: mean over all hairs"},
-    {"error_p95_rel", "the same: 95 of 100 hairs are below"},
-    {"error_max_rel", "the same: largest"},
+     "mean error of the hairs: distance from the fine simulation of the same "
+     "hair, rms over length and time, over its length"},
+    {"error_p95_rel", "95th percentile of the error of the hairs"},
+    {"error_max_rel", "largest error of the hairs"},
     {"interpolation_mean_rel",
-     "the same if guides moved as in the reference: what following them costs"},
-    {"interpolation_p95_rel", "the same: 95 of 100 hairs are below"},
-    {"interpolation_max_rel", "the same: largest"},
-    {"simulated_mean_rel", "of the guides alone: what elements and steps cost"},
-    {"simulated_p95_rel", "the same: 95 of 100 guides are below"},
-    {"simulated_max_rel", "the same: largest"},
+     "mean error if guides moved as in the reference: the error of following "
+     "guides"},
+    {"interpolation_p95_rel",
+     "95th percentile of the error if guides moved as in the reference"},
+    {"interpolation_max_rel", "largest error if guides moved as in the reference"},
+    {"simulated_mean_rel", "mean error of the guides: the error of elements and steps"},
+    {"simulated_p95_rel", "95th percentile of the error of the guides"},
+    {"simulated_max_rel", "largest error of the guides"},
     {"error_neighbours_rel",
      "largest error of neighbours: a tenth more and fewer guides, an element more, 1.5 "
      "times the steps"},
-    {"margin", "the same and the gap over the wanted error; at most 1.5, or it is luck"},
+    {"margin",
+     "error_neighbours_rel and reference_gap together, over the target error; at "
+     "most 1.5, or the result is luck"},
     {"reference_gap",
-     "what the reference gains by its last extrapolation, in elements: a bound of its "
-     "error"},
+     "change of the reference in its last extrapolation, in elements: a bound of "
+     "its error"},
     {"best_guides", "number of guides, up to half of the hairs, that others follow best"},
-    {"best_interpolation_rel", "error of hairs that follow them"},
+    {"best_interpolation_rel", "error of the hairs that follow best_guides guides"},
     {"work",
-     "of a frame: steps of elements, half of 32 bits, more where they wind far, and 0.35 "
-     "of a point that follows"},
+     "work per frame: element steps (half in single precision, more where "
+     "elements wind far) and 0.35 per point that follows"},
     {"step_ms_per_frame", "wall time of the steps of a frame, median", true},
-    {"follow_ms_per_frame", "the same of reading points and of hairs that follow", true},
-    {"ms_per_frame", "both", true},
+    {"follow_ms_per_frame",
+     "wall time per frame for reading points and for hairs that follow, median", true},
+    {"ms_per_frame", "wall time per frame: step_ms_per_frame and follow_ms_per_frame",
+     true},
     {"bytes", "memory of guides and of hairs that follow"},
     {"horizon_s", "time that is compared"},
-    {"runs", "of the whole head that the search took", true},
+    {"runs", "runs of the whole groom that the search took", true},
 };
 
 void set(const Spread& spread, const std::string& what, Row& row) {

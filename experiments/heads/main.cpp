@@ -18,33 +18,34 @@ using models::HeadPack;
 using simulation::HeadMethod;
 
 constexpr Column columns[] = {
-    {"model", "of a hair"},
-    {"integrator", "of its steps"},
+    {"model", "model of the hairs"},
+    {"integrator", "integrator of the steps"},
     {"dt_s", "step"},
     {"strands", "number of hairs on the head"},
-    {"elements", "of each"},
-    {"bits", "of a number: 64 or 32"},
-    {"lanes", "hairs computed side by side"},
-    {"threads", "that share the blocks of hairs"},
+    {"elements", "number of elements of each hair"},
+    {"bits", "floating-point precision in bits: 64 or 32"},
+    {"lanes", "hairs per SIMD pack"},
+    {"threads", "threads that share the blocks of hairs"},
     {"effects",
-     "beside gravity: none; drag; body, an ellipsoid under the roots, and drag; "
-     "interaction of neighbouring hairs, and drag"},
-    {"build_s", "wall time to build them", true},
+     "effects in addition to gravity: none; drag; body, an ellipsoid under the "
+     "roots, and drag; interaction of neighbouring hairs, and drag"},
+    {"build_s", "wall time to build the hairs", true},
     {"bytes_per_strand", "memory of a hair: state, rest shape, material, root"},
     {"cost_per_step_s", "wall time of a step, median", true},
-    {"cost_per_element_step_s", "the same by hairs and elements", true},
+    {"cost_per_element_step_s", "wall time of a step, median, per hair and element",
+     true},
     {"cost_per_frame_s", "wall time of 1/60 s of motion and of reading all points", true},
-    {"iterations_per_step", "Newton's, of a hair"},
+    {"iterations_per_step", "Newton iterations per step of a hair"},
     {"lanes_per_iteration",
-     "lanes computed over hairs iterated, by whole corrections: what lanes without hairs "
-     "waste"},
-    {"retried_share", "of the steps of hairs: those that needed damped corrections"},
-    {"lanes_of_retries", "share of all lanes that they took"},
+     "lanes computed over hairs iterated, in whole corrections; above 1: lanes "
+     "without hairs"},
+    {"retried_share", "share of the steps of hairs that needed damped corrections"},
+    {"lanes_of_retries", "share of all lanes used by these retries"},
     {"in_parts_per_step", "iterations of shorter steps, where damped ones failed"},
     {"lost", "hairs without a solution; the first one's step and reason on stderr"},
     {"difference_rel",
-     "largest distance of a point from that in 64 bits, over the length; every 97th "
-     "hair"},
+     "largest distance of a point from the run in double precision, over the "
+     "length; every 97th hair"},
     {"state", "checksum of all states at the end: equal bits, equal checksum"},
 };
 

@@ -26,11 +26,12 @@ namespace {
 
 constexpr Column columns[] = {
     {"scene", "name of the scene"},
-    {"model", "of the system"},
-    {"strand", "which of the scene's, from 1"},
-    {"elements", "of the strand; 0: the model has a geometry of its own"},
+    {"model", "model of the system"},
+    {"strand", "number of the strand in the scene, from 1"},
+    {"elements",
+     "number of elements of the strand; 0: the model has a geometry of its own"},
     {"time_s", "instant of the motion"},
-    {"step_s", "h of S"},
+    {"step_s", "step h of S"},
     {"matrix",
      "M = dr/da; D = dr/dv; K = dr/dq; S = M + h D + h^2 K; G = dg/dq by rows; C = "
      "d(G^T lambda)/dq"},
@@ -45,9 +46,11 @@ constexpr Column columns[] = {
     {"eigenvalue_imaginary", "largest imaginary part"},
     {"condition", "|A| |A^-1| in the norm of column sums; empty: singular to rounding"},
     {"frequency_least_hz",
-     "of K: lowest sqrt(lambda)/(2 pi), K x = lambda M x, without constraints"},
-    {"frequency_largest_hz", "the highest"},
-    {"file", "MatrixMarket file beside the table; empty: the table has no file"},
+     "lowest frequency of K: sqrt(lambda)/(2 pi), K x = lambda M x, without "
+     "constraints"},
+    {"frequency_largest_hz", "highest frequency of K"},
+    {"file",
+     "MatrixMarket file in the folder of the table; empty: the table has no file"},
 };
 
 constexpr std::string_view shipped_scenes =

@@ -30,19 +30,20 @@ using peers::Swing;
 
 constexpr Column columns[] = {
     {"peer", "library"},
-    {"version", "of the library linked"},
+    {"version", "version of the linked library"},
     {"method", "joints and integrator or solver"},
-    {"precision", "of its numbers: double or single"},
+    {"precision", "floating-point precision of the library: double or single"},
     {"elements", "links of the strand"},
     {"dt_s", "fixed step"},
     {"steps", "steps of the run of 2 s"},
     {"wall_s", "median wall time of the run, setting up aside", true},
-    {"us_per_step", "the same per step", true},
+    {"us_per_step", "median wall time per step", true},
     {"tip_error_rel",
      "rms over the run of the tip's distance from the same peer's finest run, over L; "
      "of first order understated by the ratio of the finest step to dt_s"},
     {"total_error_rel",
-     "the same distance from the continuous rod: of links, joints and steps together"},
+     "rms over the run of the tip's distance from the continuous rod, over L: "
+     "error of links, joints and steps together"},
     {"largest_stable", "the largest step with none unstable below it"},
     {"cheapest_1pct", "fastest run with a tip error of at most 1 %", true},
     {"cheapest_0p1pct", "fastest run with a tip error of at most 0.1 %", true},

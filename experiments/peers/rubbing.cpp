@@ -22,7 +22,7 @@ constexpr int links = 16;
 
 constexpr Column columns[] = {
     {"peer", "library; tress: ours"},
-    {"version", "of the library linked"},
+    {"version", "version of the linked library"},
     {"method", "contact and integrator"},
     {"scene", "slope: a block on a plane, mu = 0.3; capstan: 16 links over a cylinder"},
     {"dt_s", "fixed step"},
@@ -30,7 +30,7 @@ constexpr Column columns[] = {
     {"slides_at",
      "slope: tan from which on it slides by 1 mm in half a second; capstan: "
      "ratio of pulls from which on it slides by 0.3 mm in two"},
-    {"exact", "by Coulomb's law"},
+    {"exact", "slides_at by Coulomb's law"},
     {"error_rel", "slides_at over exact, less 1"},
 };
 

@@ -14,41 +14,48 @@ namespace {
 
 constexpr Column columns[] = {
     {"part",
-     "errors (of so many elements), elements (for a distance), limit (of the gain, for "
-     "many elements), in_motion (tolerance_m of hairs that are let go, cut by their "
-     "rest), pilot (the same, tried in motion), points (of quadrature)"},
+     "errors (for given elements), elements (for a distance), limit (of the "
+     "gain), in_motion (tolerance_m, rest mesh), pilot (tolerance_m, pilot "
+     "runs), points (of quadrature)"},
     {"scene", "name of the scene"},
-    {"model", "of the reference"},
-    {"fine_elements", "of the reference"},
-    {"instants", "at which shapes are compared"},
-    {"elements", "helices"},
+    {"model", "model of the reference"},
+    {"fine_elements", "number of elements of the reference"},
+    {"instants", "number of instants at which shapes are compared"},
+    {"elements", "number of helices"},
     {"cuts",
-     "equal; start: as the shape at rest or at t = 0 asks; mean and largest: as all "
-     "shapes of the run ask, |kappa'|^(2/3) averaged or its largest; anew: as each shape "
-     "asks"},
+     "equal, start (shape at rest or t = 0), mean or largest (of |kappa'|^(2/3) "
+     "over the run), anew (remeshed at every shape)"},
     {"misfit_rms_rel",
      "distance of the nearest chain of helices, rms over strand and instants, over the "
      "length"},
-    {"misfit_largest_rel", "the same, of the instant where it is largest"},
-    {"target_rel", "misfit_rms_rel that is asked for"},
-    {"elements_fixed", "that need no more than the target with the best fixed cut"},
-    {"fixed_cuts", "which that is"},
-    {"elements_regraded", "with cuts anew, as many at every instant"},
+    {"misfit_largest_rel",
+     "largest distance of the nearest chain of helices over the instants, rms "
+     "over the strand, over the length"},
+    {"target_rel", "target misfit_rms_rel"},
+    {"elements_fixed", "elements that the best fixed mesh needs for the target"},
+    {"fixed_cuts", "best fixed mesh"},
+    {"elements_regraded",
+     "elements that remeshing needs for the target, the same number at every "
+     "instant"},
     {"elements_following",
-     "with cuts anew, so many that the distance is the target at each instant: mean"},
+     "elements that remeshing needs with the target met at each instant: mean "
+     "over the instants"},
     {"tolerance_rel", "tolerance_m of cuts = \"rest\", over the length"},
     {"tip_error_rel",
-     "distance of tips from those of a finer cut in the half second after a hair is let "
-     "go, rms, over the length; points: from those of 96 elements"},
-    {"largest_error_rel", "the same of all joints, at the worst frame"},
-    {"estimate_rel", "pilot: its estimate of that"},
-    {"work_rel", "pilot: elements of all its runs, over those of one with what it found"},
+     "rms distance of the tips from those of a finer mesh in the first half "
+     "second, over the length; points: from those of 96 elements"},
+    {"largest_error_rel",
+     "largest distance of any joint in the worst frame, over the length"},
+    {"estimate_rel", "pilot: the pilot's estimate of largest_error_rel"},
+    {"work_rel",
+     "pilot: elements of all pilot runs over those of one run with the elements "
+     "found"},
     {"points_error_rel", "distance of tips from those with 32 quadrature points"},
-    {"turning_rad", "of the tangent along the strand, its largest"},
+    {"turning_rad", "largest angle by which the tangent turns along the strand"},
     {"gain", "elements_fixed over elements_regraded"},
     {"gain_following", "elements_fixed over elements_following"},
-    {"gain_always", "gain, where misfit_largest_rel is asked for"},
-    {"gain_following_always", "gain_following, where misfit_largest_rel is asked for"},
+    {"gain_always", "gain with misfit_largest_rel as the target"},
+    {"gain_following_always", "gain_following with misfit_largest_rel as the target"},
 };
 
 constexpr std::string_view shipped =

@@ -25,25 +25,27 @@ namespace tress::experiments::scaling {
 namespace {
 
 constexpr Column columns[] = {
-    {"structure", "straight strand, which tree, or the scene file"},
+    {"structure", "straight strand, kind of tree, or scene file"},
     {"model", "catalogue id"},
-    {"solver", "how the model solves S x = b; head: strands side by side"},
-    {"tangent", "which terms S has"},
+    {"solver", "linear solver of the model for S x = b; head: SIMD lanes"},
+    {"tangent", "terms of S (Jacobian approximation)"},
     {"modes", "unknowns per element"},
-    {"grows", "of a scene file, what the series makes larger: elements or strands"},
-    {"elements", "number of elements; of a scene file, of a strand"},
-    {"strands", "of a scene file, number of strands"},
+    {"grows",
+     "quantity that the series increases, for a scene file: elements or strands"},
+    {"elements", "number of elements; for a scene file, of each strand"},
+    {"strands", "number of strands, for a scene file"},
     {"unknowns", "number of coordinates"},
     {"device",
-     "of a scene file as a head: that took its steps, a GPU or cpu; why not a GPU"},
+     "device that took the steps, for a scene file as a head: a GPU or cpu; why "
+     "not a GPU"},
     {"cost_per_step_s",
      "wall time of a semi-implicit step of the released strand, or of the scene", true},
-    {"cost_per_element_step_s", "the same over the number of elements", true},
+    {"cost_per_element_step_s", "wall time of a step over the number of elements", true},
     {"exponent", "p of cost ~ N^p of the series: N elements from 20 on, or strands",
      true},
     {"dt_max_s", "largest stable step up to a frame, 1/30 s; solvers share it"},
     {"fps", "frames of 1/30 s computed per second with that step", true},
-    {"seed_fps", "the seed's, on hardware of 2008: compare ratios"},
+    {"seed_fps", "published frames per second, on hardware of 2008: compare ratios"},
 };
 
 constexpr double frame = 1.0 / 30;  // s

@@ -18,14 +18,13 @@ namespace {
 
 constexpr Column columns[] = {
     {"study",
-     "grid (of our hair), tolerance (the same by error control, and your scene), nodal "
-     "(a "
-     "claim about a nodal scheme), file (your scene)"},
-    {"scene", "what happens to the strand"},
+     "grid (the built-in hair), tolerance (the grid with error control, and your "
+     "scene), nodal (a claim about a nodal scheme), file (your scene)"},
+    {"scene", "motion or load of the strand"},
     {"model", "catalogue id"},
     {"integrator", "method"},
-    {"solver", "how the model solves S x = b"},
-    {"tangent", "which terms S has"},
+    {"solver", "linear solver of the model for S x = b"},
+    {"tangent", "terms of S (Jacobian approximation)"},
     {"modes", "unknowns per element"},
     {"elements", "number of elements"},
     {"damping", "internal friction: none, light (1e-12) or seed (1e-10 kg m^3/s)"},
@@ -33,15 +32,17 @@ constexpr Column columns[] = {
      "nodal: space, shaken in all directions by 1e-3 of its rates; plane, not out of it"},
     {"dt_max_s", "largest step such that every step tested up to it was stable"},
     {"dt_first_unstable_s", "smallest unstable step tested"},
-    {"limited_by", "what broke there; cap: no larger step or tolerance was tried"},
+    {"limited_by",
+     "reason for instability at dt_first_unstable_s; cap: no larger step or "
+     "tolerance was tried"},
     {"stable_above_s", "largest stable step above it: stability is not monotone"},
     {"dt_finest_s", "smallest step tested"},
     {"search_done",
      "false: the work was used up before smaller steps or tolerances were all tested"},
     {"runs", "steps or tolerances tested"},
     {"tolerance_loosest",
-     "tolerance: largest asked error over the length, of 1e-1 to 1e-5, such that it and "
-     "all smaller ones tried were stable"},
+     "tolerance: largest tolerance over the length, from 1e-1 to 1e-5, at and "
+     "below which every run tried was stable"},
     {"tolerance_tightest", "tolerance: smallest that the work was enough for"},
     {"steps_usual", "tolerance: steps at 1e-3"},
     {"work_usual", "tolerance: work at 1e-3 (max_work)"},
@@ -49,7 +50,7 @@ constexpr Column columns[] = {
      "time simulated by a run, at least; of your scene that of the run at dt_max, up to "
      "5 "
      "times the scene's duration"},
-    {"at_1_5", "your scene: what broke at 1.5 times dt_max; stable: nothing"},
+    {"at_1_5", "your scene: reason for instability at 1.5 times dt_max; stable: none"},
     {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
     {"energy_gain_j", "largest gain of energy at dt_max"},
     {"speed_bound_m_s", "driven scenes: speed of the tip that is unstable"},

@@ -17,16 +17,16 @@ namespace tress::experiments::validation {
 namespace {
 
 constexpr Column columns[] = {
-    {"test", "which published test"},
+    {"test", "published test"},
     {"model", "catalogue id"},
-    {"variant", "how it keeps its length, where there is a choice"},
+    {"variant", "model's length formulation, where there is a choice"},
     {"elements", "number of elements"},
-    {"parameter", "of the test; the manifest's glossary says what it is"},
-    {"measured", "what the model makes of it"},
-    {"reference", "the same of the continuous rod"},
+    {"parameter", "parameter of the test; the manifest's glossary defines it"},
+    {"measured", "value that the model gives"},
+    {"reference", "value of the continuous rod"},
     {"error_rel", "|measured/reference - 1|"},
-    {"tolerance", "on error_rel"},
-    {"judged", "whether the test asks so much of so few elements"},
+    {"tolerance", "largest error_rel that passes"},
+    {"judged", "whether the test sets a tolerance for this number of elements"},
     {"passed", "error_rel <= tolerance"},
     {"order", "error ~ elements^-order at this parameter"},
     {"integrator", "free_flight: method; the other tests have one of their own"},
@@ -34,9 +34,11 @@ constexpr Column columns[] = {
     {"rtol", "free_flight: relative and absolute tolerance, adaptive methods"},
     {"t_end_s", "length of the flight"},
     {"linear_error_rel",
-     "largest change of linear momentum over the flight, over itself"},
-    {"angular_error_rel", "the same of angular momentum about the origin"},
-    {"angular_change_rel", "change of its size from start to end"},
+     "largest change of linear momentum over the flight, over its initial value"},
+    {"angular_error_rel",
+     "largest change of angular momentum about the origin over the flight, over "
+     "its initial value"},
+    {"angular_change_rel", "change of the size of angular momentum from start to end"},
     {"energy_change_rel", "change of mechanical energy from start to end, over it"},
     {"steps", "accepted steps of the flight"},
 };
