@@ -215,9 +215,9 @@ moves = "head"
                      h, elements, rub ? friction : "");
 }
 
-/// Time of a step on two threads (s), mean over the first 0.9 s, in which some 4000
-/// contacts come to be. NaN: a strand was lost, or the law did not hold within its
-/// tolerance at the end of every step.
+/// Time of a step on two threads (s), mean over the first 0.9 s, in which about 4000
+/// contacts form. NaN: a strand was lost, or the law did not hold within its tolerance
+/// at the end of every step.
 double time_of_step(bool rub) {
   constexpr int steps = 300, threads = 2;
   simulation::World world(
@@ -250,8 +250,7 @@ void register_all() {
 // reference kernel.
 constexpr double unit = 82e-9;  // s
 
-/// Time of one call, of which `of` makes so many, over an element and step of the
-/// reference.
+/// Time of one of the `calls` calls of `of`, over an element and step of the reference.
 double over_reference(const std::function<void()>& of, double calls) {
   constexpr std::size_t strands = 64;
   constexpr int steps = 40;

@@ -65,7 +65,7 @@ constexpr Operation operations[] = {
     {"constraint_bias", constrained, constraint_bias},
 };
 
-/// A model measured over sizes: how a size is asked for.
+/// A model measured over sizes: the parameter that sets the size.
 struct Sized {
   std::string_view model;
   ModelSettings (*settings)(int size);

@@ -27,8 +27,8 @@ struct Trial {
   double dt = substep;
 };
 
-/// Error against sweeps and the size of blocks, order 1 beside order 2, and the window of
-/// penalties, on the swinging strand.
+/// Error against sweeps and the size of blocks, order 1 compared with order 2, and the
+/// window of penalties, on the swinging strand.
 std::vector<Trial> descent_trials(const CommandLine& line);
 /// Stable Cosserat rods on the swinging strand, as it is and softened, and on the
 /// cantilever of their authors.

@@ -92,8 +92,8 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
 
 constexpr OwnOption command_options[] = {
     {"scene", "scenes",
-     "your own scene says what the strand is; without data: what a "
-     "record of it would tell",
+     "your own scene with the strand; without data: the information that a record of "
+     "the strand would give",
      true},
 };
 

@@ -58,7 +58,7 @@ class Unknowns {
   }
   /// For the first strand; a known value may differ between strands.
   Properties properties(In x) const { return properties(x, strands_.front()); }
-  /// With `finer` times as many elements. Empty: out of range.
+  /// Builds the strands with `finer` times the elements. Empty: out of range.
   std::vector<BuiltStrand> strands(In x, int finer) const {
     for (std::size_t j = 0; j < count(); ++j) {
       if (!(std::exp(x[j]) < fitted_[j].most)) return {};

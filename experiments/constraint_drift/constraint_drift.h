@@ -35,9 +35,9 @@ struct DriftStudy {
 std::vector<DriftStudy> drift_studies(const CommandLine& line, const Settings& user);
 
 /// The study `limit`: the largest Baumgarte gains before the feedback itself diverges,
-/// beside the prediction from the method's step matrix (amplification.h). The prediction
-/// covers the whole map of gains; it is measured where the feedback is useful, on a bead
-/// that swings gently at the bottom of a circle.
+/// compared with the prediction from the method's step matrix (amplification.h). The
+/// prediction covers the whole map of gains; it is measured where the feedback is
+/// useful, on a bead that swings gently at the bottom of a circle.
 std::vector<Case> feedback_limits(const CommandLine& line, const Settings& user);
 
 /// The claims about the table of constraint_drift: feedback helps symplectic Euler,

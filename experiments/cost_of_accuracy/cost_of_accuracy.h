@@ -94,24 +94,25 @@ std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
 /// model and the errors of that run in lengths, momentum and energy. Counted work
 /// decides, so that the table is the same on every machine (cheapest_run).
 ///
-/// For scenes of one strand; options of the scene's own model apply to every model that
-/// has them. Models that cannot represent the scene are left out. Throws InputError where
-/// the scene has another number of strands.
+/// For scenes of one strand; options of the scene's own model apply to every model with
+/// these options. Models that cannot represent the scene are left out. Throws
+/// InputError where the scene has another number of strands.
 std::vector<Case> method_cases(const CommandLine& line, const std::string& file);
 
 /// The midpoint rule conserves the angular momentum of a thrown body better than its tip.
 void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-/// The claims about every scene of the table: its winners keep their error against a once
-/// more refined reference; their neighbours confirm that they are not accidental; and no
-/// run listed beside a winner, for the same target or in the front, beats it.
+/// The claims about every scene of the table: its winners keep their error against a
+/// once more refined reference; their neighbours confirm that they are not accidental;
+/// and no run listed with a winner, for the same target or in the front, beats it.
 void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 /// Practical advice from the rows of one scene for one target (or one budget): the
-/// configuration to take with the time for which that is valid, its worst neighbour, the
-/// next best, and what to avoid, one line each, and one more if the search was stopped
-/// early. If nothing meets the target, or nothing did so far, the first line says so and
-/// the second has the best run known. If nothing is known the only line says why.
+/// configuration to take with the time for which that is valid, its worst neighbour,
+/// the next best, and what to avoid, one line each, and one more if the search was
+/// stopped early. If nothing meets the target, or nothing did so far, the first line
+/// states this and the second has the best run known. If nothing is known the only line
+/// gives the reason.
 std::vector<std::string> advice(const std::vector<Row>& rows);
 
 /// The cheapest run for each target, and the best within the budget, a line each.

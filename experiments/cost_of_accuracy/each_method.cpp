@@ -145,7 +145,7 @@ void measure(const MethodWork& work, Row& row) {
   observe(work, *best, row);
 }
 
-/// The non-default options of the scene's model, for every model that has them.
+/// The non-default options of the scene's model, for every model with these options.
 ModelSettings own_options(const Scene& scene) {
   ModelSettings all;
   for (const Parameter& p : model_table_parameters(*scene.model)) {

@@ -31,9 +31,9 @@ struct BestRuns {
   std::vector<std::pair<std::string, std::optional<Trial>>> without;
 };
 
-/// Of one model, for one target error: the cheapest run by methods that know steps only,
-/// and by those with error control, by tolerance or not, extrapolated or not. Empty where
-/// none meets the target.
+/// Of one model, for one target error: the cheapest run with methods of fixed steps
+/// only, and with methods that have error control, adaptive or not, extrapolated or
+/// not. Empty where none meets the target.
 struct ControlCompared {
   std::optional<Trial> by_step, by_tolerance;
 };

@@ -78,8 +78,8 @@ constexpr Parameter own_settings[] = {
              "compared with those that know steps only: as long a search again for each",
      .text = true},
     {.name = "cuts",
-     .help = "given: elements as long as each scene has them; both: also such that they "
-             "share what bends a strand at rest",
+     .help = "given: the elements of each scene; both: also elements that share the "
+             "bending of a strand at rest",
      .choices = "given|both"},
     {.name = "search_work",
      .help =
@@ -106,8 +106,8 @@ constexpr Parameter own_settings[] = {
      .max = 1e6,
      .whole = true},
     {.name = "references",
-     .help = "folder where references are kept; empty: results/reference, of own scenes "
-             "<table>.reference beside the table",
+     .help = "folder of the references; empty: results/reference, for own scenes "
+             "<table>.reference next to the table",
      .text = true},
 };
 
@@ -118,7 +118,7 @@ constexpr OwnOption command_options[] = {
      "<scene>.advised.toml next to --out",
      true},
     {"budget", "budget_ms",
-     "best accuracy for so many ms per frame (--set fps=30: of 30 a second)"},
+     "best accuracy within this time per frame, ms (--set fps=30: 30 frames a second)"},
 };
 
 constexpr double usual_targets[] = {0.03, 0.01, 0.001, 1e-4};
@@ -294,7 +294,7 @@ int main(int argc, char** argv) {
   const Experiment experiment{
       .name = "cost_of_accuracy",
       .question =
-          "for this scene and this wanted error: what is the cheapest "
+          "for this scene and this target error: what is the cheapest "
           "configuration?",
       .example = "--advise scenes/cantilever.toml --set accuracy=0.01",
       .quick_timeout_s = 600,

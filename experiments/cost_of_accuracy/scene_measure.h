@@ -29,8 +29,9 @@ struct ChangedTips {
 ///     x(changed) = x + (fine(changed) - fine).
 ///
 /// The error e of the fine run cancels except for its own change with the data, a few
-/// times data_change e: with e = 1 % of the length less than 1e-3 of it. The change
-/// itself need not be small. Three runs; stored beside the reference as <name>.changed.
+/// times data_change e: with e = 1 % of the length less than 1e-3 of the length. The
+/// change itself need not be small. Three runs; stored next to the reference as
+/// <name>.changed.
 ChangedTips kept_changed_tips(const Scene& given, const Comparison& comparison,
                               const SceneReference& reference, const ReferenceCut& cut,
                               const std::string& folder, const std::string& name);
@@ -47,9 +48,9 @@ WallTime wall_time(const std::vector<double>& seconds);
 /// of ThreadTimer, the least of several runs.
 ///
 /// A run is abandoned by its count of Newton iterations, so that the result does not
-/// depend on the machine, by tolerance also by its steps of a frame, `longest_run` over
-/// its elements; as soon as its error over the whole horizon must exceed `useless`; and
-/// only in an emergency after `most_s`.
+/// depend on the machine, an adaptive run also by its steps of a frame, `longest_run`
+/// over its elements; as soon as its error over the whole horizon must exceed
+/// `useless`; and only in an emergency after `most_s`.
 class SceneMeasure {
  public:
   SceneMeasure(const Scene& given, const Comparison& comparison,

@@ -87,8 +87,8 @@ class SearchProgress {
   Clock::time_point last_ = Clock::now();
 };
 
-/// The first method that has the model and integrator of this one, and chooses the
-/// accuracy of a run alike: they differ in options.
+/// The first method with the model and integrator of this one that chooses the accuracy
+/// of a run in the same way: they differ in options.
 std::size_t kind_of(const std::vector<Method>& methods, std::size_t index) {
   const Method& own = methods[index];
   const auto first = std::ranges::find_if(methods, [&own](const Method& other) {

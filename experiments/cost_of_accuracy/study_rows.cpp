@@ -16,7 +16,7 @@ void set_wall(const Study& study, double wall_s, Row& row) {
   row.set("ms_per_frame", 1e3 * wall_s / static_cast<double>(study.comparison.frames));
 }
 
-/// A run whose error exceeds the loosest target so many times is abandoned.
+/// A run whose error exceeds the loosest target by this factor is abandoned.
 constexpr double useless = 10;
 
 /// Reason for the missing winner.

@@ -51,8 +51,8 @@ void add_control(const Study& study, Finalists& finalists, double target,
                  std::vector<Row>& rows);
 /// The best run within the time per frame, if requested.
 void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows);
-/// Runs the advised scene as its file has it, and writes the error and the time of that
-/// run into its row. False: the error is not that of the row, or the file does not run.
+/// Runs the advised scene from its file, and writes the error and the time of that run
+/// into its row. False: the error is not that of the row, or the file does not run.
 bool confirm(const Study& study, Row& row);
 /// The scene with the file's own model, integrator, elements and step; steps end at the
 /// frames of the comparison, `most_s` of wall time at most.

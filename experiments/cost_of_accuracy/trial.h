@@ -23,10 +23,9 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 /// A run may be accidentally accurate: at the edge of stability, or where spatial and
 /// temporal errors cancel. It counts for a target only if its neighbours are within
 /// neighbour_allowance times that target: 1 and 2 elements more, the step or the
-/// tolerance times 0.7 and 1.4, and the run itself with the scene's data changed a little
-/// up and down.
-/// In this order: those with more elements are runs that may win themselves, and are not
-/// looked at beside a run that fails otherwise.
+/// tolerance times 0.7 and 1.4, and the run itself with the scene's data changed a
+/// little up and down. In this order: those with more elements are runs that may win
+/// themselves, and are not judged for a run that fails otherwise.
 enum class Neighbour {
   shorter_steps,
   longer_steps,
@@ -38,7 +37,8 @@ enum class Neighbour {
 inline constexpr int neighbour_count = 6;
 inline constexpr double shorter = 0.7, longer = 1.4;
 
-/// "one element more", "tolerance x 1.4" ... of a run by steps or by tolerance.
+/// "one element more", "tolerance x 1.4" ... of a run with fixed steps or an adaptive
+/// run.
 std::string name(Neighbour neighbour, bool by_tolerance);
 
 /// One measured run. A method is a model with its options and an integrator, identified

@@ -11,12 +11,12 @@ namespace tress::experiments::cost_of_accuracy {
 /// How a scene is simulated, and how the accuracy of a run is chosen.
 struct Method : simulation::Method {
   Refresh refresh = Refresh::every_iteration;
-  /// By tolerance: it falls with the "substeps" s as an error of steps 1/s does, so that
-  /// work rises with s as with a number of steps (tolerance_of).
+  /// Adaptive: the tolerance falls with the "substeps" s as an error of steps 1/s does,
+  /// so that work rises with s as with a number of steps (tolerance_of).
   bool by_tolerance = false;
-  /// Tips with n elements and with half as many, extrapolated as an error that falls with
-  /// the model's power of them (extrapolation). Not where something touches: the instant
-  /// of contact depends on the elements.
+  /// Tips with n and n/2 elements, extrapolated as an error that falls with the model's
+  /// power of them (extrapolation). Not where something touches: the instant of contact
+  /// depends on the elements.
   bool extrapolated = false;
   /// Elements share what bends a strand at rest; else they are those of the scene.
   bool cut_at_rest = false;
@@ -28,9 +28,9 @@ struct Accuracy {
   double tolerance = 0;  // of the length
 };
 
-/// A frame of 1/rate in s steps; by tolerance 0.1 (fineness_unit/s)^p over the length, p
-/// the method's order, to two digits. A looser tolerance than 0.1 does not control the
-/// error: its longest steps are right or wrong by luck.
+/// A frame of 1/rate in s steps; adaptive: tolerance 0.1 (fineness_unit/s)^p over the
+/// length, p the method's order, to two digits. A looser tolerance than 0.1 does not
+/// control the error: its longest steps are right or wrong by luck.
 inline constexpr int fineness_unit = 8;
 Accuracy accuracy(const Method& method, int substeps, double rate);
 
@@ -72,10 +72,10 @@ std::string physics(Scene scene);
 inline constexpr double newton_tolerance = 1e-6;
 
 /// Every strand model with its options and every integrator that can drive it on this
-/// scene: with fixed steps, those with error control also by tolerance, unless a tangent
-/// decides about their steps, and these also extrapolated. Other adaptive methods are
-/// left out: they control an error of the unknowns and not of the strand. Options that
-/// lose digits (models::loses_digits) are left out as well.
+/// scene: with fixed steps, those with error control also adaptive, unless a tangent
+/// decides about their steps. Adaptive runs are also extrapolated. Other adaptive
+/// methods are left out: they control an error of the unknowns and not of the strand.
+/// Options that lose digits (models::loses_digits) are left out as well.
 struct MethodChoice {
   std::vector<std::string> models, integrators;  // empty: all
   /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `tangent` in
@@ -83,7 +83,7 @@ struct MethodChoice {
   std::vector<std::string> options;
   /// Integrators with error control also with fixed steps.
   bool fixed_steps = true;
-  /// Those by tolerance also extrapolated.
+  /// Adaptive runs are also extrapolated.
   bool extrapolated = true;
   /// Elements also as strands at rest need them, where a scene leaves that open.
   bool cuts_at_rest = false;

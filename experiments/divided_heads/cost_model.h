@@ -11,9 +11,9 @@ namespace tress::experiments::divided_heads {
 /// Elements of a hair.
 inline constexpr int elements = 10;
 
-/// The border that a region of the scalp has in common with others, over the side of the
-/// whole: the largest of so many regions, a power of two, made by halving a square and
-/// its parts across their longer sides.
+/// The border that a region of the scalp has in common with others, over the side of
+/// the whole: the largest of `ranks` regions, a power of two, made by halving a square
+/// and its parts across their longer sides.
 double border(double ranks);
 
 /// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
@@ -76,7 +76,8 @@ struct CostModels {
   CostModel apart, touching;
 };
 std::optional<CostModels> fit_cost(std::span<const Measurement> all);
-/// Of a step, beside other heads and where ranks take turns on fewer cores as well.
+/// Returns the predicted cost of a step, also where other heads run or ranks take turns
+/// on fewer cores.
 double predicted(const CostModels& models, const Measurement& of);
 
 }  // namespace tress::experiments::divided_heads

@@ -21,7 +21,8 @@ class PrivateFolder {
   std::filesystem::path path_;
 };
 
-/// A program that runs beside this one, its output in a file. No shell reads its words.
+/// A program that runs at the same time as this one, its output in a file. No shell
+/// reads its words.
 class Launched {
  public:
   /// Looked for on the PATH. Throws std::system_error when it cannot be started.

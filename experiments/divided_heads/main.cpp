@@ -135,8 +135,8 @@ void fill(Row& row, const nlohmann::json& outcome) {
   }
 }
 
-/// Heads of all these numbers of hairs and all settings take turns, so that what else the
-/// machine does, and how fast it is at the time, meets all of them alike.
+/// Heads of all these numbers of hairs and all settings take turns, so that the load
+/// and the speed of the machine affect all of them equally.
 std::vector<Row> measure(const Row& of_all, std::span<const int> strands, int repeat) {
   struct Measured {
     std::string head;

@@ -21,7 +21,8 @@ struct Change {
 /// An effect is kept when its change exceeds both the accuracy and the discretisation
 /// error, and dropped when its change is below the accuracy, each by more than the
 /// change's own error. The discretisation error is no bound to drop below: where it
-/// exceeds the accuracy, an effect between the two is worth more than what was asked for.
+/// exceeds the accuracy, an effect between the two matters more than the target
+/// accuracy.
 inline std::string verdict(const Change& of, double accuracy) {
   if (of.change - of.change_error > std::max(accuracy, of.discretisation)) return "keep";
   if (of.change + of.change_error < accuracy) return "drop";

@@ -116,7 +116,7 @@ struct Study {
   std::vector<Row> (*run)(const Rod& rod, const Row& row);
   /// A piece of work on each of these models; empty: one on the rod.
   std::span<const std::string_view> models = {};
-  /// What --quick leaves of it.
+  /// The part that --quick runs.
   struct Quick {
     int stride = 1;          // the first rod and every n-th after it
     std::size_t models = 0;  // the first n

@@ -113,8 +113,8 @@ double calls_of_reference(const Subject& subject) {
   return reference_calls * std::min(subject.most_calls, compared_calls);
 }
 
-/// The longest fixed step of the ladder with which as many calls as the reference of a
-/// compared run may take do not suffice for more than t_end.
+/// The longest fixed step of the ladder with which the calls allowed to the reference
+/// of a compared run do not suffice for more than t_end.
 double finest_step(const Subject& subject) {
   const double steps = calls_of_reference(subject) / calls_of_step;
   double dt = coarsest;
@@ -139,7 +139,7 @@ Horizon horizon_of(const Subject& subject) {
 
 double work_of(const TipRun& run) { return total_work(run.stats, run.unknowns); }
 
-/// A run by tolerance with its error in time.
+/// An adaptive run with its error in time.
 struct Outcome {
   TipRun run;
   double error = std::numeric_limits<double>::infinity();

@@ -56,9 +56,9 @@ const Row* claimed(const std::vector<Row>& rows, std::string_view hard,
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// Whether a tolerance answers for the error: not where the reference has other elements,
-/// for the error is then one of space, nor over so many steps that what each may do wrong
-/// adds up.
+/// Whether a tolerance answers for the error: not where the reference has other
+/// elements, for the error is then one of space, nor over a number of steps whose
+/// errors add up.
 bool of_the_tolerance(const Row& row) {
   const auto cases = hard_case_catalogue();
   const auto found = std::ranges::find(cases, row.text("case"), &HardCase::name);

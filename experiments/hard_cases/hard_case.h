@@ -87,8 +87,7 @@ struct HardCase {
   /// Why this system cannot be in this situation; null or empty: it can.
   std::string (*objection)(System&) = nullptr;
   /// Ends of the steps; null: all steps have the requested length. With a tolerance the
-  /// method chooses its steps, and these are the times at which it is asked for the
-  /// state.
+  /// method chooses its steps, and these are the times at which its state is read.
   std::vector<double> (*stops)(double dt, double t_end) = nullptr;
   double (*error_scale)(const Situation&) = nullptr;  // m; null: the length
   /// Contact by impulses at the ends of steps with bodies that allow it and with the

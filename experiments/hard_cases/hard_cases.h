@@ -66,10 +66,10 @@ struct SceneSurvival : Survival {
   std::string_view criterion;
 };
 
-/// A scene as a hard case: runs it at this pace until t_end (s), or until a criterion is
-/// violated. Stable if every step has a solution, the guard finds nothing and the
+/// A scene as a hard case: runs it at this pace until t_end (s), or until a criterion
+/// is violated. Stable if every step has a solution, the guard finds nothing and the
 /// criteria are met; there is no reference for accuracy. With a tolerance the criteria
-/// are looked at after every longest step, the guard still after each. `limit`:
+/// are evaluated after every longest step, the guard still after each. `limit`:
 /// World::work().
 SceneSurvival survive(const Scene& scene, const Pace& pace, const SceneCriteria& criteria,
                       double t_end, const WorkLimit& limit);
@@ -83,8 +83,8 @@ SceneSurvival survive(const Scene& scene, const Pace& pace, const SceneCriteria&
 std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings);
 
 /// The claims about the table of hard_cases: every cell has an outcome, and super_helix
-/// by backward_euler with the exact tangent passes every case at 1/30 s that it does not
-/// refuse, except for known limits. By tolerance: what passes is not wrong, and tr_bdf2
+/// with backward_euler and the exact tangent passes every case at 1/30 s that it does
+/// not refuse, except for known limits. Adaptive: what passes is not wrong, and tr_bdf2
 /// is accurate at 1e-3 in the two cases where backward_euler finds no solution.
 void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts);
 

@@ -60,7 +60,7 @@ Pace pace_of(const Scene& scene) {
   return {own.max_step > 0 ? own.max_step : longest_step, own.tolerance};
 }
 
-/// The standard ones and the scene's own, where the integrator has it.
+/// Returns the standard paces and the scene's own, where the integrator supports it.
 std::set<Pace> paces_of(const CommandLine& line, const Parameters& own,
                         const Scene& scene, std::string_view integrator) {
   std::set<Pace> all;

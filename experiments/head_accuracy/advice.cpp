@@ -25,7 +25,7 @@ std::string hairs(const Row& row) {
   return fmt::format("{} guides for {} hairs", row.text("guides"), row.text("strands"));
 }
 
-/// "800 guides for 10000 hairs, 9 elements, steps of 5.6 ms, 32 bits: ... in 1.2 ms a
+/// "800 guides for 10000 hairs, 9 elements, steps of 5.6 ms, 32-bit: ... in 1.2 ms a
 /// frame"
 std::string run(const Row& row) {
   return fmt::format(

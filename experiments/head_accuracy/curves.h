@@ -56,7 +56,7 @@ class HairErrors {
 struct Spread {
   double mean = 0, p95 = 0, largest = 0;
 };
-/// Each stands for as many hairs as its weight says.
+/// The weight of an error is the number of hairs that it represents.
 Spread spread(std::span<const double> errors, std::span<const double> weights);
 /// Each stands for one.
 Spread spread(std::span<const double> errors);

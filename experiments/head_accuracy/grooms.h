@@ -8,12 +8,13 @@
 
 namespace tress::experiments::head_accuracy {
 
-/// Names of the family of grooms: straight, wavy or curly; alike or varied in length,
+/// Names of the family of grooms: straight, wavy or curly; `alike` or varied in length,
 /// curl and the direction that it bends in; released from straight, or shaken with the
 /// head.
 std::vector<std::string> groom_names();
 
-/// One of them as a scene of so many hairs. Throws InputError on other names.
+/// Returns one of the grooms as a scene of `hairs` hairs. Throws InputError on other
+/// names.
 std::string groom_text(std::string_view name, std::size_t hairs);
 
 }  // namespace tress::experiments::head_accuracy

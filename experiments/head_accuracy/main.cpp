@@ -26,14 +26,14 @@ constexpr Parameter own_settings[] = {
      .text = true,
      .fallback = "scenes/full_head.toml"},
     {.name = "grooms",
-     .help =
-         "grooms of the study, as in curly_varied_shaken,straight_alike_released: "
-         "straight, wavy or curly, alike or varied, released or shaken; default: all, "
-         "or none where scenes are given",
+     .help = "grooms of the study, as in curly_varied_shaken,straight_alike_released: "
+             "straight, wavy or curly, equal or varied hairs, released or shaken; "
+             "default: all, "
+             "or none where scenes are given",
      .text = true,
      .fallback = "usual"},
     {.name = "accuracy",
-     .help = "wanted error over the length of each hair, 0: 0.03 and 0.01",
+     .help = "target error over the length of each hair, 0: 0.03 and 0.01",
      .number = 0,
      .min = 0,
      .max = 1},
@@ -57,7 +57,7 @@ constexpr Parameter own_settings[] = {
      .max = 1e3},
     {.name = "hairs",
      .help =
-         "hairs that are looked at, grooms of more are thinned; 0: 5000, of the study's "
+         "number of hairs compared; larger grooms are thinned; 0: 5000, for the study's "
          "grooms 1000, with --quick 300 and 128",
      .number = 0,
      .min = 0,
@@ -86,7 +86,7 @@ constexpr Parameter own_settings[] = {
 constexpr OwnOption command_options[] = {
     {"scene", "scenes", "scene file to look at (several: a.toml,b.toml)", true},
     {"budget", "budget_ms",
-     "best accuracy for so many ms per frame (--set fps=30: of 30 a second)"},
+     "best accuracy within this time per frame, ms (--set fps=30: 30 frames a second)"},
 };
 
 StudyPlan plan_of(const CommandLine& line, const Parameters& own) {

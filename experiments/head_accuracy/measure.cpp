@@ -57,7 +57,7 @@ Scene read_head_scene(const std::string& file) {
   if (outline.series != nullptr) {
     for (const StrandSource& source : outline.scene.tables->sources) {
       if (source.groom) continue;
-      throw InputError("a [strand] beside hairs that may follow guides",
+      throw InputError("a [strand] cannot be combined with hairs that may follow guides",
                        source.table.place(), "give [groom]s only");
     }
     constexpr std::size_t enough = 100;

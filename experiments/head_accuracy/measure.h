@@ -72,9 +72,9 @@ class HeadMeasure {
 
   /// Empty where hairs are lost.
   std::optional<HeadTrial> trial(const Choice& choice) const;
-  /// Errors of all hairs if so many guides were as in the reference.
+  /// Returns the errors of all hairs if `guides` guides moved as in the reference.
   Spread interpolation(std::size_t guides, int elements) const;
-  /// Errors of so many hairs, each simulated; infinite where some are lost.
+  /// Returns the errors of `hairs` hairs, each simulated; infinite where some failed.
   Spread simulated(std::size_t hairs, int elements, int substeps, int bits) const;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace tress::experiments::head_accuracy {
 
-/// Which error over hairs is asked for.
+/// Statistic of the errors of the hairs that has the target.
 enum class Over { mean, p95, largest };
 double value(const Spread& spread, Over over);
 
@@ -19,8 +19,8 @@ double value(const Spread& spread, Over over);
 inline constexpr double neighbour_allowance = 1.5;
 
 /// Counted, so that the choice does not depend on the load of the machine: a step of an
-/// element of 64 bits is HeadMeasure::element_work, of 32 bits half of it, a point of a
-/// hair that follows `point_work`, as measured.
+/// element is HeadMeasure::element_work in double precision and half that work in
+/// single precision. A point of a hair that follows is `point_work`, as measured.
 inline constexpr double point_work = 0.35;
 double frame_work(const Choice& choice, const HeadMeasure& measure);
 

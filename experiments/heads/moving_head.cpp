@@ -77,7 +77,8 @@ std::unique_ptr<Head> head(const Work& work, const models::StrandInteraction* be
   return made;
 }
 
-/// From the same hairs in 64 bits: every 97th, on a head of theirs alone.
+/// Returns the difference from the same hairs in double precision: every 97th, on a
+/// head of their own.
 double difference(const Work& work, int steps, const std::vector<double>& x) {
   const std::unique_ptr<Head> few = bald(work, {HeadNumber::float64, 4});
   const std::size_t each = few->numbers();

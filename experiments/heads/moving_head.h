@@ -18,7 +18,7 @@ struct Kind {
   bool narrow;  // in 32 bits, too
 };
 
-/// What acts on the hairs beside gravity.
+/// Effects on the hairs in addition to gravity.
 enum class Acting { none, drag, body, interaction };
 constexpr std::string_view names_of_acting[] = {"none", "drag", "body", "interaction"};
 

@@ -112,8 +112,8 @@ std::string name_of(const Work& work) {
                      n > 0 ? fmt::format(".{}", n) : "");
 }
 
-/// As asked for: by this model, in so many elements. Throws InputError where the model
-/// cannot do it.
+/// Returns the scene with the requested model and number of elements. Throws InputError
+/// where the model does not support the scene.
 Scene scene_of(const Work& work) {
   Scene scene = work.scene;
   if (work.elements > 0) scene = with_elements(std::move(scene), work.elements);
@@ -208,8 +208,8 @@ std::vector<Row> run(const Work& work, const Row& identity) {
   return {row};
 }
 
-/// The models chosen, or the scene's own; of our own scenes of strands all that there
-/// are.
+/// Returns the chosen models, or the scene's own; for the built-in scenes of strands,
+/// all models.
 std::vector<const ModelEntry*> models_of(const Scene& scene, const CommandLine& line,
                                          bool ours) {
   std::vector<const ModelEntry*> chosen;
@@ -223,7 +223,8 @@ std::vector<const ModelEntry*> models_of(const Scene& scene, const CommandLine& 
   return chosen;
 }
 
-/// Elements asked for; 0: as the scene has them. None where they cannot be chosen.
+/// Returns the requested numbers of elements; 0: those of the scene. None where they
+/// cannot be chosen.
 std::vector<int> elements_of(const Scene& scene, const CommandLine& line, bool ours) {
   if (scene.strands.empty() && !line.elements.empty()) return {};
   if (scene.strands.empty()) return {0};

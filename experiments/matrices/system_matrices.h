@@ -20,10 +20,11 @@ struct Moment {
   std::vector<double> multipliers;  // of its constraints
 };
 
-/// The scene is run to `time` (s) as it says; its strand of this index, or its mechanism,
-/// is what is looked at. Effects between strands act on the motion, and are no part of
-/// the system. Throws InputError where there is no such strand, and std::runtime_error
-/// where the scene does not get there or its accelerations are not determined.
+/// Runs the scene to `time` (s) with its own settings; the system is the strand with
+/// this index, or the mechanism. Effects between strands act on the motion, and are no
+/// part of the system. Throws InputError where there is no such strand, and
+/// std::runtime_error where the scene does not get there or its accelerations are not
+/// determined.
 Moment moment(const Scene& scene, std::size_t strand, double time);
 
 /// A matrix of r(t, q, v, a) - G^T lambda = 0, with what it is.

@@ -18,7 +18,7 @@ Eigen::MatrixXd dense(const Pattern& pattern, In values) {
   return all;
 }
 
-/// From the sparse form if the system has it, else of the residual.
+/// Uses the sparse form if the system has one, else differences of the residual.
 Eigen::MatrixXd tangent_at_rest(System& system, double t, In q, Weights w) {
   const std::vector<double> zero(q.size());
   if (SparseForm* form = system.sparse_form(); form != nullptr) {

@@ -9,7 +9,7 @@
 namespace tress::experiments {
 namespace {
 
-/// The cubic of the step that ends at `i`, at the fraction s of it.
+/// Returns the cubic of the step that ends at `i`, at the fraction s of the step.
 double on_cubic(const TipSignal& signal, std::size_t i, double s) {
   const double h = signal.t[i] - signal.t[i - 1], r = 1 - s;
   return r * r * (1 + 2 * s) * signal.x[i - 1] + s * s * (1 + 2 * r) * signal.x[i] +

@@ -12,8 +12,8 @@ constexpr int samples = 100;
 
 using Track = std::vector<Vec>;  // of the tip seen from the clamp, every `sample`, mm
 
-/// The rod that the links of scene `swing` stand for, by our own models. Made in some ten
-/// seconds.
+/// The rod that the links of scene `swing` stand for, by our own models. Computed in
+/// about ten seconds.
 class ContinuousRod {
  public:
   ContinuousRod();

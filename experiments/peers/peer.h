@@ -18,12 +18,12 @@ namespace tress::experiments::peers {
 /// absolute limits (MuJoCo refuses moments of inertia below 1e-15).
 ///
 /// Hinges: bending springs of EI / l between links. The hinge at the clamp stands for
-/// half an element only (from the clamp to the first link's middle), hence 2 EI / l; with
-/// EI / l there the chain would converge to the rod at first order in l instead of
+/// half an element only (from the clamp to the first link's middle), hence 2 EI / l;
+/// with EI / l there the chain would converge to the rod at first order in l instead of
 /// second. Ball joints get the same stiffness about the tangent. A link's moment about
 /// its axis is raised to that about its diameter: a straight strand of circular section
-/// does not twist, and the true moment, 1e-4 of it, would only set a time step that
-/// nothing needs.
+/// does not twist, and the true moment, 1e-4 times that, would only set a time step
+/// that nothing needs.
 ///
 /// The clamp's motion: bodies are seen from the clamp, so that its acceleration and the
 /// damping of its velocity join gravity (d'Alembert). The clamp does not turn, so this is
@@ -54,7 +54,7 @@ struct Swing {
 /// zero.
 Vec rotation_vector(double w, const Vec& xyz);
 
-/// What is looked at between steps, seen from the clamp (mm, mg, s). An engine that gave
+/// Motion sampled between steps, seen from the clamp (mm, mg, s). An engine that gave
 /// up returns a tip that is not finite.
 struct Motion {
   Vec tip;
@@ -67,7 +67,7 @@ class Peer {
   virtual ~Peer() = default;
   /// From t to t + dt, with the dt that it was made with.
   virtual void step(double t) = 0;
-  /// So many of those steps of dt: their wall time, s.
+  /// Takes `steps` such steps of dt; returns their wall time, s.
   virtual double advance(double t, double dt, int steps);
   virtual Motion motion() = 0;
 };

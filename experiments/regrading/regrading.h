@@ -8,7 +8,7 @@
 #include "simulation/groom/space_curve.h"
 #include "simulation/scene/scene.h"
 
-/// What elements could gain that are divided anew while a strand moves.
+/// The gain that remeshing a moving strand could give.
 namespace tress::experiments::regrading {
 
 using simulation::SpaceCurve;
@@ -33,8 +33,8 @@ Density density_at_rest(const simulation::Scene& scene, const Shapes& shapes);
 /// Angle by which the tangent turns along the strand, the largest of all shapes (rad).
 double turning_of(const Shapes& shapes);
 
-/// What cuts anew gain at most, many elements assumed: then with a density d of unit
-/// integral n elements are off by
+/// Largest gain of remeshing, for many elements: then with a density d of unit integral
+/// n elements are off by
 ///
 ///     e^2 = 1/(12 n^2) int |kappa'|^2/d^2 ds,
 ///

@@ -16,8 +16,8 @@ void print_advice(const std::vector<std::string>& lines);
 /// table itself goes there.
 void print_answer(const CommandLine& line, std::vector<std::string> lines);
 
-/// Writes the scene that is advised as <scene>.advised.toml beside the table, and says
-/// so.
+/// Writes the advised scene as <scene>.advised.toml next to the table, and prints the
+/// name of the file.
 void write_advised(std::string_view experiment, const CommandLine& line,
                    const std::string& scene, const std::string& text);
 

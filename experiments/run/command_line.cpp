@@ -56,9 +56,10 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
                  "result table (default results/<experiment>.csv), or -");
   app.add_flag("--quick", line.quick, "fewest rows, those of ./tress run: minutes");
   app.add_flag("--full", line.full, "most rows: hours for some experiments");
-  app.add_option("--jobs", raw.jobs,
-                 "rows run at the same time (default 1; as many as processors where "
-                 "time is not what is measured)");
+  app.add_option(
+      "--jobs", raw.jobs,
+      "rows run at the same time (default: the number of processors, or 1 where "
+      "time is measured)");
   app.add_option("--shard", raw.shard,
                  "run part i of n, as in 1/4; its table is named so, as in x.1-of-4.csv");
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")

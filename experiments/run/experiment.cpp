@@ -160,7 +160,7 @@ bool named_output(const CommandLine& line) {
   return line.out != standard_output && line.places.count("out") > 0;
 }
 
-/// Of the table and of what is written beside it.
+/// Checks that the table and the files next to the table can be written.
 void check_outputs(const CommandLine& line) {
   std::error_code ignored;  // check_output reports problems with the directory
   if (!named_output(line)) std::filesystem::create_directory("results", ignored);

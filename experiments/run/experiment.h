@@ -52,8 +52,8 @@ struct Gloss {
 struct Experiment {
   std::string_view name, question;
   std::string_view example;  // arguments only: "--models bead_on_wire --quick"
-  /// False: no time in the table is a primary result, and as many rows run at once as the
-  /// machine has processors unless --jobs overrides it. True: one at a time.
+  /// False: no time in the table is a primary result, and one row per processor runs at
+  /// once unless --jobs sets another number. True: one row at a time.
   bool timed = true;
   /// s, per row with --quick unless --timeout overrides it. Only against hangs: no result
   /// may depend on the machine's load. Options::max_work bounds the work of a row.
@@ -73,7 +73,7 @@ struct Experiment {
   /// Optional: a row that is not ok but is an expected result of the experiment (a
   /// divergence beyond a limit, say) does not make the exit code 3.
   std::function<bool(const Row&)> finding = {};
-  /// Optional: reports on the complete table, or writes files beside it.
+  /// Optional: reports on the complete table, or writes files next to the table.
   std::function<void(const CommandLine&, const std::vector<Row>&)> conclude = {};
 };
 

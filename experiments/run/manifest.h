@@ -44,7 +44,7 @@ class Manifest {
   nlohmann::ordered_json load_during_;  // null: not measured
 };
 
-/// Beside a table, if it is there; `discarded` if it is no JSON.
+/// Returns the manifest next to a table, if it exists; `discarded` if it is no JSON.
 std::optional<nlohmann::json> manifest_of(const std::string& table);
 
 /// Whether the executable that runs now made that table.

@@ -66,13 +66,14 @@ std::vector<Part> parts_of(std::span<const std::string> files,
   if (parts.empty()) return parts;
   std::ranges::sort(parts, {}, &Part::index);
   const Part& first = parts.front();
-  refuse_if(parts.size() < files.size(), "a part of a sweep beside tables that are none",
-            first, "merge its parts first");
+  refuse_if(parts.size() < files.size(),
+            "some tables are parts of a sweep and others are not", first,
+            "merge its parts first");
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Part& part = parts[i];
     refuse_if(part.count != first.count,
-              fmt::format("part {}/{} beside part {}/{}", part.index, part.count,
-                          first.index, first.count),
+              fmt::format("part {}/{} cannot be merged with part {}/{}", part.index,
+                          part.count, first.index, first.count),
               part, "give all parts of one sweep");
     refuse_if(part.commit != first.commit,
               fmt::format("made by commit {}, part {} by {}", part.commit, first.index,

@@ -27,7 +27,8 @@ class Progress {
 
   /// A row that took `seconds`.
   void finished(const Row& row, double seconds);
-  /// No row has ended; that of `identity` has run for so many seconds.
+  /// Reports that no row has ended and that the row of `identity` has run for
+  /// `seconds`.
   void running(const Row& identity, double seconds);
 
  private:

@@ -15,8 +15,8 @@ constexpr int entries = 1000;  // three vectors: 24 kB
 constexpr int sums_per_timing = 500;
 constexpr int timings = 25;
 
-/// Not inlined and on plain pointers, as N_VLinearSum has it. This file is compiled for
-/// the baseline instruction set (CMakeLists.txt), as SUNDIALS is: the ratio is to
+/// Not inlined and on plain pointers, as in N_VLinearSum. This file is compiled for the
+/// baseline instruction set (CMakeLists.txt), as SUNDIALS is: the ratio is to
 /// distinguish optimisation levels, not vector widths.
 [[gnu::noinline]] void linear_sum(double a, const double* x, double b, const double* y,
                                   double* z) {

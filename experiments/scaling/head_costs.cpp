@@ -20,7 +20,7 @@ constexpr std::size_t most_of_head = 20000;  // without --full
 
 using Outline = std::shared_ptr<const SceneOutline>;
 
-/// So many of the scene's strands, evenly spread.
+/// Returns `count` of the scene's strands, evenly spread.
 SceneOutline some_of(const SceneOutline& whole, std::size_t count) {
   std::vector<std::size_t> strands(count);
   for (std::size_t k = 0; k < count; ++k) strands[k] = k * whole.series->size() / count;

@@ -67,11 +67,12 @@ void declare(CLI::App& app, Arguments& a) {
          "(default auto)")
       ->check(CLI::IsMember({"auto", "strands", "head"}));
   app.add_option("--bits", a.bits,
-                 "floating-point precision of a head: 64 or 32 bits (default 64)")
+                 "floating-point precision of a head in bits: 64 or 32 (default 64)")
       ->check(CLI::IsMember({64, 32}));
-  app.add_option("--lanes", a.lanes,
-                 "strands per SIMD pack of a head: 1, 4 or 8 with 64 bits, 8 or 16 with "
-                 "32 (default 8, 16); results are bitwise identical")
+  app.add_option(
+         "--lanes", a.lanes,
+         "strands per SIMD pack of a head: 1, 4 or 8 with --bits 64, 8 or 16 with "
+         "--bits 32 (default 8, 16); results are bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
                  "device for the time steps of a head: cpu, gpu or auto: gpu if there is "

@@ -8,8 +8,9 @@
 
 namespace tress::experiments::scene_runs {
 
-/// Strands of a head of so many that pictures show, 1000 at most: one of each as many in
-/// turn, with which the roots of a groom are Fibonacci's lattice again.
+/// Returns the strands that pictures of a head of `strands` strands show, 1000 at most.
+/// These are every k-th strand, so that the roots of a groom are Fibonacci's lattice
+/// again.
 std::vector<std::size_t> shown_strands(std::size_t strands);
 
 /// Pictures of the shown strands at some 50 of the frames at most, in the format of any

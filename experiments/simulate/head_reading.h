@@ -22,7 +22,7 @@ class HeadReading {
 
   const std::vector<std::size_t>& shown() const { return shown_; }
   std::size_t at_once() const { return at_once_; }  // strands
-  /// Calls use(strands) for all, so many at a time.
+  /// Calls use(strands) for all strands, chunk by chunk.
   void by_chunks(const HeadRun& run,
                  const std::function<void(HeadRun::Numbers)>& use) const {
     run.by_chunks(at_once_, use);

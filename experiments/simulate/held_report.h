@@ -10,8 +10,8 @@ namespace tress::experiments::scene_runs {
 
 using namespace simulation;
 
-/// Says how the strands of a scene with rest = "inverse" are held, every one that would
-/// fall before it does, and writes `file`, a line each.
+/// Prints how the strands of a scene with rest = "inverse" are held, names those that
+/// would fall, and writes `file` with one line per strand.
 void report_held(const Scene& scene, const std::vector<HeldShape>& all,
                  const std::string& file);
 

@@ -96,7 +96,7 @@ struct Job {
   int elements = 0;  // of a head that is one of several of the scene
 };
 
-/// What speaks against a head: the scene, or what is asked for.
+/// Returns the reason against a head: the scene, or an option.
 std::optional<NoHead> no_head(const SceneOutline& outline, const Arguments& a) {
   const char* option = a.hairs > 0    ? "--hairs"
                        : a.verify     ? "--verify"
@@ -152,9 +152,10 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
                      "give --as head, or --device cpu");
   }
   if (!job.head && a.bits != 64) {
-    throw InputError("32 bits are for heads of hair, and this runs strand by strand" +
-                         (no ? ": " + no->reason : std::string()),
-                     file, no ? no->remedy : "give --as head, or --bits 64");
+    throw InputError(
+        "single precision is for heads of hair, and this runs strand by strand" +
+            (no ? ": " + no->reason : std::string()),
+        file, no ? no->remedy : "give --as head, or --bits 64");
   }
   if (!job.head && ranks.size() > 1) {
     throw InputError("strands that run one by one are not shared by ranks", file,
@@ -166,7 +167,8 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
   return job;
 }
 
-/// Says how near strands are to the files they come from, and writes that table.
+/// Prints the notes on strands that come from files, and writes the table of their
+/// distances.
 void tell_fits(const Scene& scene, const std::string& stem) {
   if (scene.fitted.empty()) return;
   for (const auto& groom : scene.fitted) {

@@ -8,7 +8,7 @@
 
 namespace tress::experiments::scene_runs {
 
-/// <stem>.json, and what is asked for of files for other programs.
+/// Writes <stem>.json and the requested files for other programs.
 void write_pictures(const Animation& animation, const SceneRunOptions& options);
 
 /// Drawn output of a run for the report page and other programs, all with the same lines.

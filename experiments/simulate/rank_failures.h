@@ -10,8 +10,9 @@ namespace tress::experiments::scene_runs {
 using namespace simulation;
 
 /// The result of `run` on each of several ranks, of which the first alone speaks. Where
-/// one fails, one of all that do says why, on standard error in one line, with its rank
-/// and its machine unless it is the first, and all end with exit_code() of it.
+/// ranks fail, one of them prints the reason on standard error in one line, with its
+/// rank and its machine unless it is the first. All end with the exit_code() of that
+/// failure.
 int exit_code_of_ranks(Ranks& ranks, Interruption& interruption,
                        const std::function<int()>& run);
 

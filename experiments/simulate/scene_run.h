@@ -87,10 +87,11 @@ struct SceneRun {
 /// later run can continue (see Recording). `key` identifies the run. Pictures of all
 /// frames are written at the end.
 ///
-/// A scene with checkpoint_s is rebuilt from every state that it saves, in uninterrupted
-/// and resumed runs alike: both give bitwise equal numbers. Without checkpoint_s the
-/// state of the last frame is saved by the clock, and by `interruption`; multistep
-/// integrators restart there, so that both agree within their accuracy.
+/// A scene with checkpoint_s is rebuilt from every state that it saves, in
+/// uninterrupted and in resumed runs: both give bitwise equal numbers. Without
+/// checkpoint_s the state of the last frame is saved by the clock, and by
+/// `interruption`; multistep integrators restart there, so that both agree within their
+/// accuracy.
 SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions& options,
                    Interruption& interruption);
 

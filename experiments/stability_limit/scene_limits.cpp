@@ -27,9 +27,9 @@ Broken broken_by(const Breach& breach) {
   return Broken::energy;
 }
 
-/// A step is judged over this many times the scene's duration, as far as so many steps
-/// reach: what grows slowly is seen late. The limit that is found is judged longer than
-/// those that are tried.
+/// A step is judged over this many times the scene's duration, as far as this number of
+/// steps reaches: slow growth is seen late. The limit that is found is judged longer
+/// than those that are tried.
 constexpr double times_as_long = 5, tried_steps = 2000, confirmed_steps = 50000;
 
 /// Time over which a step is judged: `least` at least.

@@ -58,7 +58,7 @@ StepSearch step_search(const Parameters& rows, double finest, double depth);
 /// is one that --quick keeps.
 bool considered(const CommandLine& line, const IntegratorEntry& entry);
 
-/// Whether the study by tolerance includes it: --quick keeps tr_bdf2.
+/// Whether the study `tolerance` includes the method: --quick keeps tr_bdf2.
 bool by_tolerance(const CommandLine& line, const IntegratorEntry& entry);
 
 /// Whether the model has this solver and tangent, and the integrator takes it.

@@ -65,8 +65,8 @@ std::shared_ptr<const Effect> cylinder(const Strand& strand, double pulled,
 /// element it takes a share of that in proportion.
 const double pull = 20'000 * TestRod().force();
 
-/// The pulls rise together in a fifth of the time; by 0.01 % more than the strand bears
-/// it is `away` in the rest of it.
+/// The pulls rise together in a fifth of the time; with 0.01 % more than the strand
+/// bears it is `away` in the rest of the time.
 bool slides(const ModelVariant& variant, const Strand& strand, double friction,
             double ratio, double distance) {
   const double t_end = 0.1 / TestRod().rate();

@@ -15,8 +15,8 @@ namespace tress::experiments::validation {
 ///
 ///     T = EI/R^2 sin^4 a (1/2 + 1/cos 2a)
 ///
-/// [form of Clauvelin, Audoly & Neukirch 2009; derived anew by minimising the energy]. T
-/// is the load on the handle, R and a are those of the plies.
+/// [form of Clauvelin, Audoly & Neukirch 2009; derived again by minimising the energy].
+/// T is the load on the handle, R and a are those of the plies.
 ///
 /// The handle is the last 8 % of the thread, thick, straight and then bent by a right
 /// angle, and held at three points. Held at two it would turn about the line through them

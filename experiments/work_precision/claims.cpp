@@ -26,8 +26,8 @@ Digits best_digits(const std::vector<Row>& rows, std::string_view scene,
   return best;
 }
 
-/// At least `least` methods reach six digits on a problem. So many of these suffice to
-/// confirm it; to refute it all of them must have been run to the end.
+/// At least `least` methods reach six digits on a problem. This number suffices to
+/// confirm the claim; to refute it, all of them must have been run to the end.
 struct DigitsClaim {
   std::string_view claim, scene;
   std::vector<std::string_view> by;

@@ -53,9 +53,9 @@ std::map<std::string, double> converged_errors(const std::vector<Row>& rows,
   return errors;
 }
 
-/// Bending moments of a section that bends alike in all directions have no part along the
-/// tangent, so nothing but the section's rotational inertia, (r/L)^2 of the strand's,
-/// twists a straight strand that starts without twist.
+/// Bending moments of a section that bends equally in all directions have no part along
+/// the tangent, so nothing but the section's rotational inertia, (r/L)^2 of the
+/// strand's, twists a straight strand that starts without twist.
 void check_twist(const std::vector<Row>& rows, Verdicts& verdicts) {
   constexpr double least = 1e-4;  // smaller errors include rounding
   double worst = 0;

@@ -31,7 +31,7 @@ constexpr ControlClaim claims[] = {
     {swing.name, "esdirk43"},
 };
 
-/// A curve: achieved errors by tolerance.
+/// A curve: achieved error for each tolerance.
 using Errors = std::map<double, double>;
 
 bool falls(const Errors& errors) {

@@ -121,7 +121,7 @@ class Stepper {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A look at the clock takes some 30 ns, the interpreter's lock more.
+  /// Reading the clock takes about 30 ns, the interpreter's lock more.
   static constexpr std::chrono::milliseconds between_signals{50};
 
   std::string id_;

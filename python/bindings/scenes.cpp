@@ -54,7 +54,7 @@ py::array_t<double> by_points(In x) {
       std::vector<py::ssize_t>{static_cast<py::ssize_t>(x.size()) / 3, 3});
 }
 
-/// Lets Ctrl-C end a run between two parts of it.
+/// Lets Ctrl-C end a run between two of its parts.
 void look_for_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -77,7 +77,7 @@ class StrandsRun {
     throw SolveError(breach != nullptr ? breach->message() : world_.failure());
   }
 
-  /// Of World, and what Readout makes of it.
+  /// Returns the frame of World with the quantities of Readout.
   py::dict frame() {
     const Frame3d read = readout_.read(world_);
     py::dict all;

@@ -46,7 +46,8 @@ py::array_t<double> residual(OwnedSystem& s, double t, const Numbers& q, const N
   return r;
 }
 
-/// Compressed columns where the model has them, else (n, n) by differences.
+/// Returns compressed columns where the model provides them, else an (n, n) matrix by
+/// differences.
 py::object tangent(OwnedSystem& s, double t, const Numbers& q, const Numbers& v,
                    const Numbers& a, const Weights& w) {
   const In x = in(q, s.n(), "q"), u = in(v, s.n(), "v"), b = in(a, s.n(), "a");

@@ -45,7 +45,7 @@ struct CudaDriver {
                            void** arguments, void** extra);
 };
 
-/// The device cannot be had, or has failed: what() is why.
+/// The device is not available or has failed; what() gives the reason.
 struct DeviceFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

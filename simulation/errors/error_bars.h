@@ -66,7 +66,7 @@ ErrorBar time_error(const Scene& scene, int threads);
 ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int threads);
 
 /// Against a run with twice the elements, at equal arc length, by the model's order in
-/// their length. Missing for bodies that no table says how to cut.
+/// their length. Missing for bodies whose elements no table sets.
 ErrorBar space_error(const Scene& scene, int threads);
 
 /// Throws InputError if the scene has no tolerance to compare the error with.

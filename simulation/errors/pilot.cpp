@@ -31,8 +31,8 @@ int most_elements(const Scene& scene, std::size_t strand) {
   return source_of(scene, strand).table.values().whole("elements");
 }
 
-/// As many elements as leave the error at `aim` of the tolerance by the model's order,
-/// more by one at least and no more than the finer run had.
+/// Returns the number of elements that leaves the error at `aim` of the tolerance, by
+/// the model's order: at least one more than now, and no more than the finer run had.
 int more_elements(const Pilot::OfStrand& now, bool parted, int order) {
   if (parted) return 2 * now.elements;
   const double wanted =
@@ -97,7 +97,7 @@ Pilot pilot(const Scene& scene, int threads) {
         enough = false;
       } else if (error.parts) {
         refuse(scene, one.strand,
-               fmt::format("with {} elements, the most allowed, and with twice as many "
+               fmt::format("with {} elements, the maximum, and with twice that number "
                            "the strand moves differently from {:.3g} s on: no tolerance "
                            "can be held",
                            most, *error.parts));

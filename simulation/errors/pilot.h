@@ -8,9 +8,9 @@
 namespace tress::simulation {
 
 /// How many elements keep the tolerances of [strand] tables in motion, by trial: the
-/// scene runs with the numbers that its shapes at rest ask for and with twice as many,
-/// and where the estimated error in space (error_bars.h) is above a strand's tolerance at
-/// some frame it gets more, up to its `elements`.
+/// scene runs with the numbers for its shapes at rest and with twice these numbers.
+/// Where the estimated error in space (error_bars.h) is above a strand's tolerance at
+/// some frame, the strand gets more, up to its `elements`.
 struct Pilot {
   struct OfStrand {
     std::size_t strand;
@@ -26,16 +26,16 @@ struct Pilot {
   std::string
       missing;  // why there is no estimate: a run failed; `scene` is the given one
 
-  /// The strand whose error is largest beside its tolerance.
+  /// Returns the strand whose error is largest relative to its tolerance.
   const OfStrand& worst() const;
 };
 
 /// Whether a [strand] has a tolerance.
 bool wants_pilot(const Scene& scene);
 
-/// Throws InputError, naming the tolerance, where no estimate can be had: models whose
-/// points are not compared, and motion that no number of elements up to the limit brings
-/// together with a finer run, as chaos is.
+/// Throws InputError, naming the tolerance, where no estimate is possible: models whose
+/// points are not compared, and motion that no number of elements up to the limit
+/// brings together with a finer run, as chaos is.
 Pilot pilot(const Scene& scene, int threads);
 
 }  // namespace tress::simulation

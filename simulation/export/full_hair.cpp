@@ -53,8 +53,8 @@ FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t 
   const bool follows = !scene.followers.empty();
   if (hairs == 0 && !follows) return;
   if (hairs > 0 && follows) {
-    throw InputError("hairs beside those that follow the guides of a groom", "--hairs",
-                     "leave it out, or the groom's guides");
+    throw InputError("--hairs cannot be combined with a groom whose hairs follow guides",
+                     "--hairs", "leave it out, or the groom's guides");
   }
   const bool alike = std::ranges::all_of(guides, [&](int n) { return n == guides[0]; });
   const auto as_guides = [&](const Strand& strand) {
@@ -64,8 +64,8 @@ FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t 
   if (scene.strands.size() < least || guides.size() != scene.strands.size() || !alike ||
       !std::ranges::all_of(scene.followers, as_guides)) {
     throw InputError(
-        "hairs between strands need three strands or more, all of as many "
-        "elements",
+        "hairs between strands need three strands or more with equal "
+        "numbers of elements",
         follows ? "guides" : "--hairs", "leave it out for scene " + scene.name);
   }
   std::vector<Vec> roots;

@@ -24,9 +24,8 @@ GuideHair hair_that_follows(std::span<const Strand> guides,
 class FullHair {
  public:
   /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the
-  /// lines are not strands of equally many points, three at least, and beside followers,
-  /// which one guide is enough for.
-  /// hairs = 0: draws the followers only.
+  /// lines are not strands with equal numbers of points, or fewer than three, or have
+  /// followers, for which one guide is enough. hairs = 0: draws the followers only.
   FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
 
   std::size_t hairs() const { return hair_ ? hair_->hairs() : 0; }

@@ -161,7 +161,7 @@ Hdf5Handle Hdf5File::open(const std::string& dataset) const {
           H5Dclose};
 }
 
-/// Every group on the way is asked for: HDF5 takes it for an error where one is missing.
+/// Looks up every group on the way: HDF5 takes it for an error where one is missing.
 bool Hdf5File::has(const std::string& dataset) const {
   for (std::size_t end = 0; end != std::string::npos;) {
     end = dataset.find('/', end + 1);

@@ -45,10 +45,10 @@ class HeadFrames {
   HeadFrames(const std::string& stem, StrandCount head, StoredFrames stored,
              std::vector<std::uint64_t> sums, const FileState& state);
 
-  /// So many strands at a time are taken by so many workers.
+  /// Returns the number of strands that this number of workers processes at a time.
   static std::size_t at_once(std::size_t workers);
-  /// Compresses the root and tips (m) of strands from `first` on, a multiple of that
-  /// many; not called where frames have no bits.
+  /// Compresses the root and tips (m) of strands from `first` on, a multiple of
+  /// at_once(); not called where frames have no bits.
   void take(Crew& crew, std::size_t first, std::span<const double> x);
   /// Of the strands for pictures.
   void take_shown(std::span<const double> x);

@@ -21,8 +21,8 @@ struct HeadProgress {
   FileState frames;                 // of HeadFrames
 };
 
-/// The state of all strands on disk, with its checksum. It is written beside the file and
-/// takes its place in the end.
+/// The state of all strands on disk, with its checksum. It is written to a temporary
+/// file in the same folder, which replaces the file at the end.
 class SavedHead {
  public:
   SavedHead(const std::string& file, const RunKey& key, std::size_t strands,
@@ -50,7 +50,7 @@ class HeadToResume {
                std::size_t kept);
 
   const HeadProgress& progress() const { return progress_; }
-  /// What the head kept of so many of the next strands.
+  /// Returns what the head stored for the next `strands` strands.
   std::vector<double> take(std::size_t strands);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace tress::simulation {
 
-/// FNV-1a, 64 bits [Fowler, Noll, Vo]: distinguishes texts and files and detects damaged
+/// 64-bit FNV-1a [Fowler, Noll, Vo]: distinguishes texts and files and detects damaged
 /// files. Every step is a bijection of the hash, so that one changed byte is always
 /// detected; other damage is missed with probability 2^-64. No protection against
 /// deliberate changes.

@@ -14,7 +14,7 @@ struct CellPlace {
   int line = 1, column = 1;
 };
 
-/// A table as read: every line has as many cells as the header.
+/// A table as read: every line has the number of cells of the header.
 struct CsvTable {
   std::vector<std::string> header;
   std::vector<Row> rows;

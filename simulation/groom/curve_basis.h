@@ -14,8 +14,8 @@ namespace tress::simulation {
 enum class CurveBasis { linear, bezier, bspline, catmull_rom };
 std::optional<CurveBasis> curve_basis(std::string_view type, std::string_view basis);
 
-/// Points of points_on() of so many control points; 0: there are too few for a piece, or
-/// of bezier no whole number of pieces.
+/// Returns the number of points of points_on() for this number of control points; 0:
+/// too few for a piece or, for bezier, no whole number of pieces.
 std::size_t points_of_curve(std::size_t control, CurveBasis basis, bool pinned);
 
 /// Which numbers of control points suit a basis, as "... need 4, 7, 10 points".

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int arc_parts = 4;  // of a segment of the file, for arc length and turning
 
-/// Straight edges over a piece of length l of curvature k are k l^2/8 away: in parts of
-/// equal k^(1/2) l as many as this.
+/// Returns the number of straight edges: over a piece of length l and curvature k an
+/// edge is k l^2/8 away, so parts have equal k^(1/2) l.
 int edges_by_curvature(const SpaceCurve& curve, std::span<const double> turned,
                        double tolerance) {
   const std::span<const double> s = curve.arcs();

@@ -35,9 +35,9 @@ struct FittedStrand {
   int elements() const { return static_cast<int>(chain.darboux.size()); }
 };
 
-/// With a tolerance, from the number of elements that the turning asks for, or for edges
-/// the square root of the curvature, half as many again are taken until the strand is
-/// within, or has `elements`.
+/// With a tolerance, the number of elements starts from the turning or, for edges, from
+/// the square root of the curvature. It is increased by half until the strand is within
+/// the tolerance or has `elements`.
 FittedStrand fitted(const PlacedGroom& groom, std::size_t k, const GroomFit& fit);
 
 struct FittedGroom {
@@ -46,8 +46,8 @@ struct FittedGroom {
   std::vector<FittedStrand> strands;
 };
 
-/// So many strands of a groom, evenly spread, by several threads; results do not depend
-/// on their number.
+/// Fits `count` strands of a groom, evenly spread, on several threads; results do not
+/// depend on the number of threads.
 FittedGroom fit_groom(const PlacedGroom& groom, std::size_t count, const GroomFit& fit,
                       int threads);
 

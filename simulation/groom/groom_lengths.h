@@ -11,8 +11,8 @@ namespace tress::simulation {
 /// Length of a polyline.
 double polyline_length(std::span<const Vec> points);
 
-/// The distribution of the strands' lengths (m), and what stands out of it, one sentence
-/// each: strands four times as long as the median or a tenth of it, and strands of which
+/// The distribution of the strands' lengths (m), and outliers, one sentence each:
+/// strands four times as long as the median or a tenth as long, and strands of which
 /// one piece is longer than all others together, ten times as long as their median.
 std::vector<std::string> notes_on_lengths(const Polylines& lines);
 

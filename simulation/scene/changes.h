@@ -42,12 +42,12 @@ bool may_cut_at_rest(const Scene& scene);
 /// As above, every strand with twice its elements.
 Scene with_twice_the_elements(Scene scene);
 
-/// Every strand of its grooms simulated, none a follower, all of one table in as many
-/// elements; grooms of fewer strands if
+/// Returns the scene with every strand of its grooms simulated, none a follower, and
+/// equal numbers of elements in all strands of a table; grooms of fewer strands if
 /// there are more than `most` altogether. The scene may be that of an outline.
 Scene every_strand(Scene scene, std::size_t most);
-/// So many guides, at most as many as strands, which the grooms share by their numbers of
-/// strands, each one at least; all others follow.
+/// Returns the scene with `guides` guides, at most the number of strands. The grooms
+/// share them by their numbers of strands, at least one each; all other strands follow.
 Scene with_guides(Scene scene, std::size_t guides);
 /// Which of the strands of every_strand() those are.
 std::vector<std::size_t> guides_of(const Scene& scene, std::size_t guides);

@@ -22,7 +22,7 @@ constexpr Parameter file_keys[] = {
     {.name = "file",
      .help = "strands from a .hair, .data, .bin, .ply, .usda or .vtp, instead of from "
              "numbers: all keys of the head, of shape and length are left out, count "
-             "takes so many of them, evenly spread",
+             "selects a number of strands, evenly spread",
      .text = true},
     {.name = "unit",
      .help = "unit of length of the file; file: the one that it or its format defines "
@@ -76,26 +76,26 @@ constexpr Parameter file_keys[] = {
      .choices = "helices|edges"},
 };
 
-/// The keys of a groom that also count beside a file.
-constexpr std::string_view beside_file[] = {"count", "guides", "elements", "initial"};
+/// The keys of a groom that also apply with a file.
+constexpr std::string_view with_file[] = {"count", "guides", "elements", "initial"};
 
 bool among(std::span<const Parameter> keys, std::string_view name) {
   return std::ranges::find(keys, name, &Parameter::name) != keys.end();
 }
 
-void refuse_beside_file(const Table& groom) {
+void refuse_with_file(const Table& groom) {
   for (const Parameter& p : groom.declared()) {
     if (!groom.given(p.name) || among(file_keys, p.name) ||
-        among(detail_parameters(), p.name) ||
-        std::ranges::count(beside_file, p.name) > 0) {
+        among(detail_parameters(), p.name) || std::ranges::count(with_file, p.name) > 0) {
       continue;
     }
-    throw InputError(fmt::format("{} beside file, which has its strands", p.name),
-                     groom.place(p.name), "leave one of them out");
+    throw InputError(
+        fmt::format("{} cannot be combined with file, which has the strands", p.name),
+        groom.place(p.name), "leave one of them out");
   }
   const Parameters& p = groom.values();
   if (p.number("unit_m") > 0 && p.word("unit") != "file") {
-    throw InputError("unit_m beside unit", groom.place("unit_m"),
+    throw InputError("unit_m cannot be combined with unit", groom.place("unit_m"),
                      "leave one of them out");
   }
   if (p.whole("elements") > most_fitted_elements) {
@@ -130,7 +130,7 @@ std::shared_ptr<const PlacedGroom> read_file_groom(const Table& groom) {
   const Parameters& p = groom.values();
   const std::string file(p.word("file"));
   if (file.empty()) return nullptr;
-  refuse_beside_file(groom);
+  refuse_with_file(groom);
   if (std::error_code error; !std::filesystem::is_regular_file(file, error)) {
     throw InputError("there is no file " + file, groom.place("file"),
                      "name one relative to the scene's folder");

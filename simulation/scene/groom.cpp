@@ -128,8 +128,8 @@ std::size_t count(const Table& table, const Cap& cap, std::size_t most) {
     wanted = std::floor(p.number("density_1_m2") * cap.area());
     key = "density_1_m2";
   } else if (p.number("density_1_m2") > 0) {
-    throw InputError("density_1_m2 beside a count", table.place("density_1_m2"),
-                     "leave it out, or give count = 0");
+    throw InputError("density_1_m2 cannot be combined with a count",
+                     table.place("density_1_m2"), "leave it out, or give count = 0");
   }
   if (wanted >= 1 && wanted <= static_cast<double>(most)) {
     return static_cast<std::size_t>(wanted);
@@ -198,7 +198,7 @@ double detail_tolerance(const Table& groom) {
     throw InputError(problem, groom.place("tolerance_px"),
                      "give tolerance_m, or tolerance_px and pixels_1_m");
   };
-  refuse_if(metres > 0 && pixels > 0, "tolerance_px beside tolerance_m");
+  refuse_if(metres > 0 && pixels > 0, "tolerance_px cannot be combined with tolerance_m");
   refuse_if(pixels > 0 && size == 0, "tolerance_px without pixels_1_m");
   refuse_if(pixels == 0 && size > 0, "pixels_1_m without tolerance_px");
   return pixels > 0 ? pixels / size : metres;

@@ -10,7 +10,8 @@ namespace tress::simulation {
 /// [groom]: many strands from a few numbers, their roots on an ellipsoid with axes along
 /// x, y and z.
 std::span<const Parameter> groom_table_parameters();
-/// Those by which each strand gets as many elements as it needs (needed_elements.h).
+/// Keys by which each strand gets the number of elements that it needs
+/// (needed_elements.h).
 std::span<const Parameter> detail_parameters();
 /// Largest distance by which a strand's shape may be off, m; 0: the groom does not say.
 /// Throws InputError where the keys contradict each other.

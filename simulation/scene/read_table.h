@@ -18,7 +18,7 @@ Table read_table(const toml::table& table, std::span<const Parameter> declared,
                  const std::string& name, const std::string& file,
                  std::span<const std::string_view> nested = {});
 
-/// Sets this key in `read` if the table has it.
+/// Sets this key in `read` if the table has the key.
 void read_key(const toml::table& table, std::string_view key, const std::string& file,
               Table& read);
 

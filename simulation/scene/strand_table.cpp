@@ -73,8 +73,8 @@ void refuse_beside_points(const Table& table) {
   for (const char* key :
        {"length_m", "position_m", "root_tangent", "shape", "cuts", "tolerance_m"}) {
     if (!table.given(key)) continue;
-    throw InputError(std::string(key) + " beside points", table.place(key),
-                     "leave one of them out");
+    throw InputError(std::string(key) + " cannot be combined with points",
+                     table.place(key), "leave one of them out");
   }
 }
 
@@ -110,7 +110,8 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
   const double tolerance = p.number("tolerance_m");
   const int most = p.whole("elements");
   const bool linear = p.word("cuts") == "rest_linear";
-  refuse_if(linear && tolerance > 0, "a tolerance beside cuts = \"rest_linear\"",
+  refuse_if(linear && tolerance > 0,
+            "a tolerance cannot be combined with cuts = \"rest_linear\"",
             table.place("tolerance_m"), "give elements, or cuts = \"rest\"");
   try {
     if (linear) {
@@ -233,9 +234,10 @@ int needed_elements(const Table& table, const StrandMaterial& material, double l
       tolerance, table.values().whole("elements"));
 }
 
-void refuse_grading(const Table& table, const std::string& beside) {
-  refuse_if(table.values().number("grading") != 1, "grading beside " + beside,
-            table.place("grading"), "leave out one of them");
+void refuse_grading(const Table& table, const std::string& other) {
+  refuse_if(table.values().number("grading") != 1,
+            "grading cannot be combined with " + other, table.place("grading"),
+            "leave out one of them");
 }
 
 }  // namespace tress::simulation

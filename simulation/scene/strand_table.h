@@ -42,7 +42,7 @@ Strand cut_strand(const Table& table, const StrandMaterial& material, double len
 int needed_elements(const Table& table, const StrandMaterial& material, double length,
                     const Shape& natural, const Vec& tangent, double tolerance);
 
-/// Lengths by grading beside what says them too.
-void refuse_grading(const Table& table, const std::string& beside);
+/// Refuses grading together with another key that sets the lengths of elements.
+void refuse_grading(const Table& table, const std::string& other);
 
 }  // namespace tress::simulation

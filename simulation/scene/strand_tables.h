@@ -88,15 +88,15 @@ class StrandSeries {
   std::vector<std::size_t> some_;  // empty: all
 };
 
-/// Whether its strands get as many elements as they need.
+/// Whether its strands get the number of elements that they need.
 bool has_tolerance(const StrandSource& source);
 /// Takes the tolerance from a groom by which its strands get their elements.
 void clear_detail(Table& groom);
 
 /// The same tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
-/// The same tables, those with an entry in `elements` above 0 with so many elements, and
-/// no tolerance, in every strand.
+/// Returns the tables with `elements` elements and no tolerance in every strand, where
+/// an entry of `elements` is above 0.
 StrandTables with_elements(StrandTables tables, std::span<const int> elements);
 /// The same tables, every [strand] with these `cuts`.
 StrandTables with_cuts(StrandTables tables, std::string_view cuts);

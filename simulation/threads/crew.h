@@ -7,9 +7,9 @@
 
 namespace tress::simulation {
 
-/// So many threads of oneTBB, the caller among them, for loops, but no more than there
-/// are processors. Which of them calls what depends on timing: what is called must not. A
-/// crew of one calls in turn.
+/// A number of threads of oneTBB for loops, the caller among them, at most the number
+/// of processors. Which of them calls what depends on timing: what is called must not.
+/// A crew of one calls in turn.
 class Crew {
  public:
   explicit Crew(int threads);
@@ -33,8 +33,8 @@ class Crew {
   std::unique_ptr<Arena> arena_;  // null: one worker
 };
 
-/// Calls use(k, part) for k in [begin, end), in so many parts that work at the same time.
-/// A part ends at its first error; rethrows that of the first k that has one.
+/// Calls use(k, part) for k in [begin, end), in `parts` parts that work at the same
+/// time. A part ends at its first error; rethrows that of the first k that has one.
 void in_parts(Crew& crew, std::size_t begin, std::size_t end, std::size_t parts,
               const std::function<void(std::size_t k, std::size_t part)>& use);
 

@@ -350,8 +350,8 @@ TEST(Sweep, MergeRefusesPartsThatDoNotBelongTogether) {
   refused("part.1-of-3.csv part.3-of-3.csv", "part 2/3 is missing");
   refused("part.1-of-3.csv part.2-of-3.csv", "part 3/3 is missing");
   refused(all + " part.2-of-3.csv", "part 2 is given twice");
-  refused(all + " whole.csv", "beside tables that are none");
-  refused("part.1-of-2.csv part.2-of-3.csv", "part 2/3 beside part 1/2");
+  refused(all + " whole.csv", "some tables are parts of a sweep");
+  refused("part.1-of-2.csv part.2-of-3.csv", "part 2/3 cannot be merged with part 1/2");
   refused(all + " --seed 4", "made with the options");
   std::string meta = toy.read("part.2-of-3.meta.json");
   const std::size_t commit = meta.find("\"commit\": \"");

@@ -309,7 +309,8 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
     std::string arguments, problem, remedy;
   };
   for (const Bad& bad :
-       {Bad{"--scene strand.toml", "a [strand] beside hairs", "give [groom]s only"},
+       {Bad{"--scene strand.toml", "a [strand] cannot be combined with hairs",
+            "give [groom]s only"},
         Bad{"--scene der.toml", "no SIMD lanes for der", "super_helix"},
         Bad{"--scene springs.toml", "mass_spring: work is that of super-helices",
             "super_helix"},

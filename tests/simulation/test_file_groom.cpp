@@ -302,10 +302,13 @@ TEST_F(FileGroomScene, HasLanesWithEqualElements) {
 }
 
 TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {
-  EXPECT_THAT(refusal("length_m = 0.1"), HasSubstr("length_m beside file"));
-  EXPECT_THAT(refusal("grading = 2"), HasSubstr("grading beside file"));
-  EXPECT_THAT(refusal("shape = \"wavy\""), HasSubstr("shape beside file"));
-  EXPECT_THAT(refusal("unit = \"m\"\nunit_m = 2"), HasSubstr("unit_m beside unit"));
+  EXPECT_THAT(refusal("length_m = 0.1"),
+              HasSubstr("length_m cannot be combined with file"));
+  EXPECT_THAT(refusal("grading = 2"), HasSubstr("grading cannot be combined with file"));
+  EXPECT_THAT(refusal("shape = \"wavy\""),
+              HasSubstr("shape cannot be combined with file"));
+  EXPECT_THAT(refusal("unit = \"m\"\nunit_m = 2"),
+              HasSubstr("unit_m cannot be combined with unit"));
   EXPECT_THAT(refusal("count = 10"), HasSubstr("10 of the 9 strands"));
   EXPECT_THAT(refusal("guides = 2\nfit_tolerance = 0.1"),
               HasSubstr("all guide strands must have the same number"));
