@@ -7,7 +7,7 @@ const folder = 'python/tress';
 
 // What the compiled part provides has no docstring there.
 const compiled = {
-  load_plugin: 'load_plugin(file): its models, integrators and effects; before anything else is asked for',
+  load_plugin: 'load_plugin(file): loads the models, integrators and effects of a plug-in; call it first',
   scene_defaults: 'scene_defaults(): a short scene to start from, as text',
   scene_schema: 'scene_schema(): the page scenes/README.md, as text',
 }; // prettier-ignore
