@@ -57,6 +57,10 @@ usage() {
   expect 2 'sudo apt-get install .*furo' \
     env TRESS_CACHE="$work/cache" "$repository/tress" docs
   expect_one_line
+  stand_in id <<<'echo 0'
+  expect 2 'tress: --no-install: [0-9]+ packages are missing: .*ninja-build' \
+    env TRESS_CACHE="$work/cache" "$repository/tress" --no-install build
+  expect_one_line
   [[ ! -e $work/apt_was_called ]] || { echo "apt-get was called without rights"; exit 1; }
 
   # As root, a failing apt-get ends setup with its log's path.
@@ -157,6 +161,15 @@ asks() {
   [[ $(find "$house/results/ask" -type d -name reference | wc -l) == 6 ]] ||
     { echo "scenes share references:"; find "$house/results/ask"; exit 1; }
   touch "$work/own/a,b.toml"
+  expect 2 'simulate: give one scene file' "$house/tress" simulate
+  expect 2 "simulate: no file 'none.toml'" "$house/tress" simulate none.toml
+  # shellcheck disable=SC2016
+  study simulate 'echo "ran $*"'
+  expect 0 'build: [0-9]+ s' "$house/tress" simulate "$work/own/a/s.toml" --error-bars
+  grep -q "ran $work/own/a/s.toml --out results/simulate/s-[0-9]* --error-bars" "$work/out" ||
+    { cat "$work/out"; exit 1; }
+  expect 0 'open in a browser: .*/results/simulate/s-[0-9]+/report.html' \
+    "$house/tress" simulate "$work/own/b/s.toml"
   expect 2 'has a comma' "$house/tress" ask "$work/own/a,b.toml"
 }
 
