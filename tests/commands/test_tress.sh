@@ -166,9 +166,9 @@ asks() {
   # shellcheck disable=SC2016
   study simulate 'echo "ran $*"'
   expect 0 'build: [0-9]+ s' "$house/tress" simulate "$work/own/a/s.toml" --error-bars
-  grep -q "ran $work/own/a/s.toml --out results/simulate/s-[0-9]* --error-bars" "$work/out" ||
+  grep -q "ran $work/own/a/s.toml --out results/simulate/s-[0-9]*/scenes --error-bars" "$work/out" ||
     { cat "$work/out"; exit 1; }
-  expect 0 'open in a browser: .*/results/simulate/s-[0-9]+/report.html' \
+  expect 0 'open in a browser: .*/results/simulate/s-[0-9]+/report.html#tab-scenes' \
     "$house/tress" simulate "$work/own/b/s.toml"
   expect 2 'has a comma' "$house/tress" ask "$work/own/a,b.toml"
 }
