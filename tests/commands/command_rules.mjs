@@ -54,19 +54,20 @@ const experiment = (name) => `build/release/experiments/${name}`;
 export const rules = [
   { page: 'README.md', command: './tress run', left_out: 'takes a third of an hour' },
   { page: 'README.md', command: './tress test', left_out: 'runs this' },
+  { page: 'README.md', command: './tress build', left_out: 'compiles all programs' },
   {
-    page: 'README.md',
+    page: 'docs/start/own_scene.md',
     command: `${experiment('simulate')} --print-defaults > my.toml`,
     instead: my_scene,
     why: 'a shorter scene',
   },
   {
-    page: 'README.md',
+    page: 'docs/start/own_scene.md',
     command: `${experiment('cost_of_accuracy')} --advise`,
     more: '--models super_helix --integrators tr_bdf2',
   },
   {
-    page: 'README.md',
+    page: 'docs/start/own_scene.md',
     command: `${experiment('hard_cases')} --scene`,
     more: '--models super_helix,der --quick',
   },
