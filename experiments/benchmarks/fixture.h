@@ -13,7 +13,8 @@
 
 #include "simulation/run/simulation.h"
 
-/// What the benchmark programs share: systems in motion, and one way to run and report.
+/// Shared code of the benchmark programs: systems in motion, and one way to run and
+/// report.
 namespace tress::experiments::benchmarks {
 
 /// A system some steps into its own motion, so that velocities, accelerations and
@@ -76,7 +77,7 @@ double time_ratio(const std::function<void()>& of, const std::function<void()>& 
 /// Prints a requirement with what was measured; false when it is not met.
 bool kept(std::string_view subject, std::string_view what, double value, double most);
 
-/// What a program measured, by "name/size": CPU time of one call in s, the median when
+/// Results of a program, by "name/size": CPU time of one call in s, the median when
 /// there were repetitions.
 struct Measured {
   int exit_code = 0;  // 2: bad flags; 3: a benchmark failed

@@ -10,7 +10,7 @@
 #include "experiments/run/experiment.h"
 #include "experiments/run/settings.h"
 
-/// What descent by blocks of nodes leaves of a step, and what it costs.
+/// Error and cost of a step of descent by blocks of nodes.
 namespace tress::experiments::block_descent {
 
 inline constexpr double wanted_error = 0.01;  // of the tip, over the length

@@ -45,7 +45,7 @@ struct Records {
 /// are negative, sigma_m or an envelope that are not positive, and records of fewer than
 /// 5 points.
 Records read_records(const std::string& file, Observed observed);
-/// The same of a text; `file` is its name in messages.
+/// Reads records from a text; `file` is its name in messages.
 Records parse_records(std::string_view text, const std::string& file, Observed observed);
 
 }  // namespace tress::experiments::calibrate

@@ -45,7 +45,7 @@ ModelSettings settings_of(const ShippedRecords& shipped, int elements);
 /// of the same errors.
 Records synthetic(const ShippedRecords& shipped, std::uint64_t seed);
 
-/// As CSV text: to 0.1 ms and 1 um.
+/// Returns the records as CSV text, rounded to 0.1 ms and 1 um.
 std::string csv_of(const ShippedRecords& shipped, const Records& records);
 
 }  // namespace tress::experiments::calibrate

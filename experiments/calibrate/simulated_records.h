@@ -10,7 +10,7 @@
 
 namespace tress::experiments::calibrate {
 
-/// How a simulated strand is integrated and observed.
+/// Settings by which a simulated strand is integrated and observed.
 struct Watch {
   std::string_view integrator = "implicit_midpoint";
   Options options;

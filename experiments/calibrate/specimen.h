@@ -31,7 +31,8 @@ struct BuiltStrand {
 struct Specimen {
   Properties properties;  // its own
   double length, mass;    // m, kg
-  /// With these properties and `finer` (a power of two) times the elements.
+  /// Builds a strand with these properties and `finer` (a power of two) times the
+  /// elements.
   std::function<BuiltStrand(const Properties&, int finer)> build;
 };
 

@@ -51,7 +51,7 @@ struct CostModel {
   double own_cost(double strands, double ranks, double beside = 1) const;
   double ghosts(double strands, double ranks) const;
   double cost(double strands, double ranks, double beside = 1) const;
-  /// Of a rank's time, what its own hairs take.
+  /// Returns the share of a rank's time that its own hairs take.
   double efficiency(double strands, double ranks) const {
     return own_cost(strands, ranks) / cost(strands, ranks);
   }

@@ -8,9 +8,9 @@
 
 namespace tress::experiments::effect_audit {
 
-/// What an effect changes, all over the length: the distance of the tips without it, by
-/// how much that distance changes in a refined scene, and the discretisation error of the
-/// scene.
+/// Changes by an effect, all over the length: the distance of the tips without it, by
+/// how much that distance changes in a refined scene, and the discretisation error of
+/// the scene.
 struct Change {
   double change, change_error, discretisation;
 };

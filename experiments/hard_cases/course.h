@@ -6,7 +6,7 @@
 #include "experiments/hard_cases/survival.h"
 #include "simulation/run/simulation.h"
 
-/// How a case is run.
+/// The run of a hard case.
 namespace tress::experiments::hard_cases {
 
 /// Steps to t_end or a little beyond, which end at the stops; with a tolerance, stops at

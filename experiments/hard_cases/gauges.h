@@ -44,8 +44,8 @@ std::unique_ptr<Gauge> sag_gauge(const Situation& situation, double allowed);
 /// Largest |g| over its scale.
 std::unique_ptr<Gauge> violation_gauge(const Situation& situation);
 
-/// How far a recovery is from complete at the end: the larger of |g| over a thousandth of
-/// its scale and of the energy gained since the start over `energy` (J).
+/// Measures how incomplete a recovery is at the end: the larger of |g| over a
+/// thousandth of its scale and of the energy gained since the start over `energy` (J).
 std::unique_ptr<Gauge> recovery_gauge(const Situation& situation, double energy);
 
 }  // namespace tress::experiments::hard_cases

@@ -41,7 +41,8 @@ std::vector<Pace> tried_paces(const CommandLine& line, std::string_view integrat
 inline constexpr double longest_step = 1.0 / 30;
 /// Whether --set dt_s and tolerance leave these rows.
 bool selected(const Parameters& own, const Pace& pace);
-/// For this model and integrator; one empty string: the model has no such option.
+/// Returns the tangents tried for this model and integrator; one empty string: the
+/// model has no such option.
 std::vector<std::string_view> tried_tangents(const CommandLine& line,
                                              const ModelEntry& model,
                                              std::string_view integrator);

@@ -41,7 +41,7 @@ class References {
   Slot* slots_;
 };
 
-/// How a run of a case ended. `unstable`: a bound of the case, or its measure, was
+/// Outcome of a run of a case. `unstable`: a bound of the case, or its measure, was
 /// violated. `not_finished`: the work ran out before a bound was violated.
 enum class Outcome { refused, not_finished, unstable, stable, accurate };
 std::string_view name(Outcome outcome);
@@ -90,8 +90,8 @@ struct Attempt {
 struct WorkLimit {
   double most = std::numeric_limits<double>::infinity();
 };
-/// With --quick: half a second per row, and a second for the reference, computed once for
-/// all rows of its case and model.
+/// Work limits with --quick: half a second per row, and a second for the reference,
+/// computed once for all rows of its case and model.
 inline constexpr WorkLimit quick_row{3e6}, quick_reference{6e6};
 
 /// "its work was done at t = 0.1 s".

@@ -36,10 +36,10 @@ class HairErrors {
 
   /// Points of one hair at an instant, the root first.
   void add(std::size_t instant, std::size_t hair, std::span<const Vec> points);
-  /// Of several, one after the other.
+  /// Adds several hairs, one after the other.
   void add(std::size_t instant, std::span<const std::size_t> hairs,
            std::span<const Vec> points);
-  /// Of one hair after all its instants.
+  /// Returns the error of one hair after all its instants.
   double of(std::size_t hair) const;
 
  private:

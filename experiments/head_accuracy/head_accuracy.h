@@ -39,7 +39,7 @@ std::vector<Row> study_head(const Scene& given, const StudyPlan& plan,
 /// Answers keep their targets, and no run in the table that meets one takes less work.
 void check_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-/// What to take for each target and budget, one sentence each.
+/// Returns the advice for each target and budget, one sentence each.
 std::vector<std::string> advice(const std::vector<Row>& rows);
 
 /// The scene with the guides, elements and step of a row, for `simulate`; empty if it has

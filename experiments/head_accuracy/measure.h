@@ -14,7 +14,7 @@ namespace tress::experiments::head_accuracy {
 
 using namespace simulation;
 
-/// What is compared, and how finely the reference is computed.
+/// Compared times and hairs, and the resolution of the reference.
 struct Comparison {
   double rate = 60;          // frames per second
   double horizon = 0.5;      // s, at most the scene's
@@ -24,7 +24,7 @@ struct Comparison {
   int threads = 1;
 };
 
-/// How a head is computed.
+/// Settings with which a groom is computed.
 struct Choice {
   std::size_t guides =
       0;  // simulated hairs: of all, if it is all, else of those looked at
@@ -63,8 +63,9 @@ class HeadMeasure {
   std::size_t all_hairs() const { return all_; }         // of the scene
   double horizon() const { return static_cast<double>(frames_) / comparison_.rate; }
   const Comparison& comparison() const { return comparison_; }
-  /// Of a step of an element, over that of a straight one, as measured: elements that
-  /// wind farther take more quadrature points, and beyond 1.5 rad longer series.
+  /// Returns the work of a step of an element over that of a straight one, as measured:
+  /// elements that wind farther take more quadrature points, and beyond 1.5 rad longer
+  /// series.
   double element_work(int elements) const;
   /// What the last of these changes: a bound of the reference's error as far as errors
   /// fall like that.

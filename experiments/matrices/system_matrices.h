@@ -40,7 +40,7 @@ struct Named {
 /// itself.
 std::vector<Named> matrices_of(Moment& moment, double h);
 
-/// Of a square matrix. O(n^3).
+/// Spectrum of a square matrix. O(n^3).
 struct Spectrum {
   double least = 0, largest = 0, imaginary = 0;  // eigenvalues: real parts, largest |Im|
   double condition = 0;  // |A|_1 |A^-1|_1; infinity: beyond 1/epsilon

@@ -20,7 +20,7 @@ bool is_definite(const Eigen::MatrixXd& symmetric);
 
 /// Eigenvalues of a general square matrix, unordered.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
-/// Ascending.
+/// Returns the eigenvalues in ascending order.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
 /// Column i of `vectors` belongs to values[i].

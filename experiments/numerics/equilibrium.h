@@ -28,7 +28,8 @@ struct LinearModes {
   int complex_modes = 0;     // number of non-real eigenvalues
 };
 
-/// For models without constraints and with a regular M, symmetric or not. O(n^3).
+/// Returns the linear modes of a model without constraints and with a regular M,
+/// symmetric or not. O(n^3).
 LinearModes linear_modes(System& system, In q);
 
 }  // namespace tress::experiments

@@ -22,7 +22,7 @@ struct StabilityBounds {
   double speed = none;   // m/s, of the tip relative to the root
 };
 
-/// Which bound was violated first.
+/// Bound that was violated first.
 enum class Broken { nothing, not_finite, energy, reach, speed, stretch, no_solution };
 std::string_view name(Broken broken);
 

@@ -69,7 +69,7 @@ TipRun run_tip(std::string_view integrator, System& system, const Options& optio
 /// missing or not finite.
 double tip_error(In tip, In reference, double length);
 
-/// As above, the largest distance.
+/// Returns the largest distance of the tips, over the length.
 double largest_tip_error(In tip, In reference, double length);
 
 }  // namespace tress::experiments

@@ -44,7 +44,7 @@ struct Swing {
   double moment() const;              // of a link about its centre, any axis, mg mm^2
   double stiffness(int hinge) const;  // of hinge 0 (the clamp) to N - 1, mg mm^2/s^2
 
-  /// What the links feel seen from the clamp, mm/s^2: gravity, minus the clamp's
+  /// Acceleration of the links seen from the clamp, mm/s^2: gravity, minus the clamp's
   /// acceleration, minus damping times its velocity.
   static Vec gravity(double t);
   static double clamp(double t);  // y_c, mm
@@ -65,7 +65,7 @@ struct Motion {
 class Peer {
  public:
   virtual ~Peer() = default;
-  /// From t to t + dt, with the dt that it was made with.
+  /// Takes a step from t to t + dt, with the dt that was given at construction.
   virtual void step(double t) = 0;
   /// Takes `steps` such steps of dt; returns their wall time, s.
   virtual double advance(double t, double dt, int steps);
@@ -88,8 +88,8 @@ struct Engine {
   std::span<const RubbingMethod> rubbing;
 };
 
-/// Those that were found when this was built; `missing()` names the packages of the
-/// others.
+/// Returns the engines that were found when this was built; `missing()` names the
+/// packages of the others.
 std::span<const Engine> engines();
 std::span<const std::string_view> missing();
 

@@ -19,7 +19,7 @@ struct ProblemError {
   double of_body;
 };
 
-/// What is compared: material points are independent of the formulation.
+/// Compared quantities: material points are independent of the formulation.
 enum class Compared { coordinates, points };
 
 /// The state at one time of a run.

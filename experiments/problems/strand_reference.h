@@ -65,7 +65,7 @@ TipReference converged_rod(const TipsOf& tips, double length, const RodModels& m
 TipReference extrapolated_model(const TipsOf& tips, double length, std::string_view model,
                                 const Finest& finest);
 
-/// As above for a strand of the catalogue.
+/// Returns the extrapolated tips of a strand of the catalogue.
 TipReference extrapolated_model(const MakeStrand& make, std::string_view model,
                                 int elements, const TipSampling& sampling, double step);
 

@@ -41,9 +41,9 @@ State perturbed_start(System& system);
 StabilityBounds stability_bounds(const StrandScene& scene, const Parameters& parameters,
                                  System& system);
 
-/// The same for any passive system released at `start`, such as a tree: 1 % of the
-/// largest kinetic energy until t_end, found by steps of 1 ms. Throws InputError when
-/// those are themselves unstable.
+/// Returns the stability bounds of any passive system released at `start`, such as a
+/// tree: 1 % of the largest kinetic energy until t_end, found by steps of 1 ms. Throws
+/// InputError when those are themselves unstable.
 StabilityBounds release_bounds(System& system, const State& start, double t_end);
 
 /// Upper bound on the speed (m/s) of the tip relative to the root until t_end, for any

@@ -95,7 +95,7 @@ struct LooseHair {
   std::string tangent, shape;
 };
 std::vector<LooseHair> loose_hairs();
-/// Over the length.
+/// Tolerance of the judged runs over the length.
 inline constexpr double judged_tolerance = 5e-3;
 
 /// Elements that cuts = "rest" makes for a tolerance, over the length, and the distance

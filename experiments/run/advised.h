@@ -8,7 +8,7 @@
 
 namespace tress::experiments {
 
-/// What to take, a line each, on standard output.
+/// Prints the advice to standard output, one sentence a line.
 void print_advice(const std::vector<std::string>& lines);
 
 /// The answer of a study about the user's own scene (--scene), a line each, and where the

@@ -35,7 +35,7 @@ struct CommandLine {
   ProgressMode progress = ProgressMode::automatic;
 
   std::vector<std::string> argv;
-  /// Where each option, or setting (as "set:key"), was given: "--models" or
+  /// Place where each option, or setting (as "set:key"), was given: "--models" or
   /// "options.toml:3:1". For messages.
   std::map<std::string, std::string, std::less<>> places;
   std::string place(std::string_view option) const;

@@ -29,7 +29,7 @@ std::array<double, 3> load_average();
 /// where a timing can be trusted.
 std::optional<std::string> timing_doubt();
 
-/// What this process and those that it has waited for took until now.
+/// Resources that this process and those that it has waited for have used so far.
 struct Spent {
   double processor_s = 0;
   double largest_mb = 0;  // memory of the largest of them (MB)

@@ -23,10 +23,11 @@ class Manifest {
   /// A file that the work depends on, stored with its text and checksum.
   void add_input(std::string file, std::string text);
 
-  /// Of a program without a table: the cells of its one row, by column.
+  /// Sets the outcome of a program without a table: the cells of its one row, by
+  /// column.
   void set_outcome(Row row) { outcome_ = std::move(row); }
 
-  /// What other programs did to the timings.
+  /// Sets the load of other programs during the timings.
   void set_load(RowLoads& loads);
 
   /// The JSON text, with end time, load and the counts of `rows`.

@@ -52,7 +52,7 @@ class Heartbeat {
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
 
-  /// What is done from now on.
+  /// Sets the activity from now on.
   void doing(std::string what);
   /// Something was told: the five seconds begin again.
   void told();

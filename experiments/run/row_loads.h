@@ -8,10 +8,11 @@
 
 namespace tress::experiments {
 
-/// Of a processor, used by other programs: timings above are repeated or marked.
+/// Largest load of a processor by other programs: timings with more are repeated or
+/// marked.
 inline constexpr double most_load = 0.5;
 
-/// What other programs used of the processors while rows ran, one row at a time.
+/// Load of the processors by other programs while rows ran, one row at a time.
 class RowLoads {
  public:
   /// The row that ran since the last call, or since this was made, has ended.

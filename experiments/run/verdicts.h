@@ -49,7 +49,7 @@ class Verdicts {
   /// indicates whether all rows that could show it were run.
   void check_found(std::string claim, bool held, bool complete, double value);
 
-  /// As `check`, for a claim known not to hold.
+  /// Checks a claim as `check` does, for a claim known to be false.
   void check_known(std::string claim, bool held, double value, const KnownLimit& limit);
 
   void not_judged(std::string claim);

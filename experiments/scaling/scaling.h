@@ -56,7 +56,7 @@ std::vector<Case> scene_costs(const CommandLine& line,
 /// `first`, and `factor` times the one before, while below `all`; and all.
 std::vector<std::size_t> growing(std::size_t first, std::size_t factor, std::size_t all);
 
-/// What a step takes (s), and an element of all strands of the row.
+/// Sets the cost of a step (s), and the cost per element of all strands of the row.
 void set_cost(double per_step, Row& row);
 
 /// Rows for scene files as heads of hair, by a device or what stands in for it: the cost

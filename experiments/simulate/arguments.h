@@ -27,7 +27,7 @@ std::string help_text(const CLI::App& app);
 
 models::HeadPack pack_of(const Arguments& a);
 
-/// What these options say of a run of the scene.
+/// Returns the options of a run of the scene.
 SceneRunOptions options_of(const std::string& scene, const Arguments& a);
 
 /// Throws InputError if a file that the run writes, of a head or of strands, could not be

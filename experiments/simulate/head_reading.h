@@ -11,8 +11,8 @@ namespace tress::experiments::scene_runs {
 
 using namespace simulation;
 
-/// What of a head goes to the first rank as it runs: strands come by the thousand, so
-/// that it need not hold what all ranks have.
+/// Data of a head that go to the first rank during the run: strands come by the
+/// thousand, so that it need not hold what all ranks have.
 class HeadReading {
  public:
   /// `shown`: strands of pictures.

@@ -18,7 +18,7 @@ namespace tress::experiments::scene_runs {
 
 using namespace simulation;
 
-/// What the run of a head leaves on disk as it proceeds: frames (HeadFrames), the time
+/// Files that the run of a head writes as it proceeds: frames (HeadFrames), the time
 /// series <stem>.csv, lost strands <stem>.lost.csv, and the last saved state
 /// <stem>.state. Only one process at a time writes them.
 class HeadRecording {
@@ -30,7 +30,7 @@ class HeadRecording {
 
   const HeadProgress& progress() const { return progress_; }
   const HeadFrames& frames() const { return *frames_; }
-  /// Where it goes on, to be read once.
+  /// Returns the state from which the run continues, to be read once.
   std::unique_ptr<HeadToResume> take_saved() { return std::move(saved_); }
 
   void lose(const LostStrand& strand) { progress_.lost.push_back(strand); }

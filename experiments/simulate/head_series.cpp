@@ -12,7 +12,7 @@ std::vector<Reading> head_series(const Scene& scene) {
       {"tip_z_m", "tip, mean over the strands"},
       {"kinetic_j", "kinetic energy of all strands"},
       {"elastic_j", "elastic energy of all strands"},
-      {"gravity_j", "its potential energy, 0 at the origin"},
+      {"gravity_j", "potential energy of gravity, 0 at the origin"},
       {"most_kinetic_j", "kinetic energy of the strand that has most"},
       {"most_elastic_j", "elastic energy of the strand that has most"},
       {"fastest_m_s", "largest speed of an element's end"},
@@ -22,7 +22,7 @@ std::vector<Reading> head_series(const Scene& scene) {
   const std::vector<std::string> names = effect_names(scene);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     if (effects[i]->uniform_acceleration()) continue;
-    all.push_back({names[i] + "_j", "its potential energy"});
+    all.push_back({names[i] + "_j", "potential energy of the effect"});
   }
   return all;
 }

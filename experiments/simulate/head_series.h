@@ -21,7 +21,7 @@ class HeadSeriesRow {
   /// The next strand, with the potentials of effects that have a column (J); `lost`:
   /// whether it is.
   void add(const models::HeadEnergy& one, std::span<const double> potentials, bool lost);
-  /// Of all so far, at t.
+  /// Returns the values over all strands so far, at t.
   std::vector<double> at(double t) const;
 
  private:

@@ -21,7 +21,8 @@ class LostStrands {
 
   /// One of this rank's own.
   void lose(const LostStrand& strand) { own_.push_back(strand); }
-  /// Of all ranks, those lost since the last call, by the time and then by the strand.
+  /// Returns the strands of all ranks that have failed since the last call, by time and
+  /// then by strand.
   std::vector<LostStrand> gathered();
 
  private:

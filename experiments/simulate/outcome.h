@@ -11,7 +11,7 @@
 
 namespace tress::experiments::scene_runs {
 
-/// What a manifest says about a run.
+/// Columns of a run in the manifest.
 std::span<const Column> outcome_columns();
 
 /// The run's frames, time and counts, and why it failed if it did.
@@ -30,7 +30,7 @@ std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& sc
 /// A table of both over time: one line a frame.
 std::string errors_csv(const Scene& scene, const ErrorBar& time, const ErrorBar& space);
 
-/// What a pilot found, as cells and as words.
+/// The result of a pilot, as cells and as words.
 void set_pilot(const Pilot& pilot, Row& row);
 std::string in_words(const Pilot& pilot);
 

@@ -49,7 +49,7 @@ inline int bits_of(const models::HeadPack& pack) {
   return pack.number == models::HeadNumber::float64 ? 64 : 32;
 }
 
-/// Of a head.
+/// Outcome of a run of a head.
 struct HeadOutcome {
   models::HeadPack pack;
   std::string engine;          // lanes or replicated: what steps the strands

@@ -17,8 +17,9 @@ namespace tress::experiments::scene_runs {
 class StopRequest {
  public:
   bool asked() const { return asked_; }
-  /// By the thread of signals: returns when the run has answered. A run of several ranks
-  /// may wait in vain for one that was killed, and mpirun ends it a second later.
+  /// Asks the run to stop, called by the thread of signals: returns when the run has
+  /// answered. A run of several ranks may wait in vain for one that was killed, and
+  /// mpirun ends it a second later.
   void ask(bool ranks) {
     constexpr std::chrono::milliseconds before_mpirun_kills(800);
     asked_ = true;
@@ -33,7 +34,7 @@ class StopRequest {
     }
     if (!problem_.empty()) throw std::runtime_error(problem_);
   }
-  /// By the run, when it has saved itself or is over.
+  /// Answers the request, called by the run when it has saved itself or is over.
   void answer(std::string problem = {}) {
     const std::lock_guard lock(mutex_);
     answered_ = true;

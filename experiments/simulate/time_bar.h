@@ -16,7 +16,7 @@ namespace tress::experiments::scene_runs {
 /// Simulated time, wall time and the remaining time, on standard error.
 class TimeBar {
  public:
-  /// From the simulated time on at which the run goes on.
+  /// Starts the bar at the simulated time `from`, at which the run continues.
   TimeBar(ProgressMode mode, const simulation::Scene& scene, double from,
           Heartbeat& heartbeat)
       : mode_(mode),

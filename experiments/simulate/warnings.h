@@ -7,8 +7,8 @@
 
 namespace tress::experiments::scene_runs {
 
-/// What a run that came to its end found wrong with itself, one sentence each: a method
-/// that changed the energy by a large part, a model without a smooth motion.
+/// Returns the warnings of a run that came to its end, one sentence each: a method that
+/// changed the energy by a large part, a model without a smooth motion.
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run);
 
 }  // namespace tress::experiments::scene_runs

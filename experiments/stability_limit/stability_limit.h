@@ -26,7 +26,7 @@ struct Damping {
 
 inline constexpr Damping undamped{"none", "0"};
 
-/// Where methods are compared.
+/// Number of elements where methods are compared.
 inline constexpr int usual_elements = 20;
 
 /// One row of stability_limit: the strand, its motion and the method.
@@ -122,7 +122,8 @@ void find_tolerances(
 std::vector<Case> tolerance_cases(const CommandLine& line, const Settings& settings,
                                   double most_work);
 
-/// The same for scene files; arguments as for scene_cases().
+/// Returns the cases of the study `tolerance` for scene files; arguments as for
+/// scene_cases().
 std::vector<Case> scene_tolerance_cases(const CommandLine& line,
                                         const std::vector<std::string>& files,
                                         const SceneLimits& how);

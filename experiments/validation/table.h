@@ -11,7 +11,8 @@
 namespace tress::experiments::validation {
 
 std::span<const Column> validation_columns();
-/// What each test is, its source, and the reasons for its tolerances.
+/// Returns the description of each test, its source, and the reasons for its
+/// tolerances.
 std::vector<Gloss> validation_glossary();
 
 /// --set keys: tests, and values of their parameters.

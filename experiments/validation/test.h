@@ -42,7 +42,7 @@ struct ValidationTest {
   };
   Grid quick, usual, full;
 
-  /// On |measured/reference - 1| from `judged_from` elements on; with fewer it is
+  /// Bound of |measured/reference - 1| from `judged_from` elements on; with fewer it is
   /// reported, not judged. `why` justifies the value.
   double tolerance;
   std::string_view why;
@@ -50,7 +50,7 @@ struct ValidationTest {
   /// Models for which the finished table must show it; others are only reported.
   std::vector<std::string_view> claimed;
 
-  /// For the continuous rod.
+  /// Value of the continuous rod.
   std::function<double(double parameter)> reference;
   /// Why the test does not apply to a model, empty if it does: "planar", "no twist".
   /// Null: it applies to every model.

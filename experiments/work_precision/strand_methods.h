@@ -4,7 +4,7 @@
 
 #include "contract/integrator.h"
 
-/// Which methods, models and ladders the rows about strands have.
+/// Methods, models and ladders of the rows about strands.
 namespace tress::experiments::work_precision {
 
 /// Accuracy and matrix of the solution of a step's equations. Tolerances are over
@@ -64,7 +64,7 @@ inline constexpr Variation methods[] = {
     {"gsl_bsimp", {}, {}, 0, true},
 };
 
-/// Of the released strand with a tolerance.
+/// Number of elements of the released strand with a tolerance.
 constexpr int controlled_elements = 10;
 
 /// The methods compared on other strands and for the total error.

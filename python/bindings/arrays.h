@@ -43,7 +43,8 @@ py::array_t<T> copy(std::span<const T> x) {
 
 inline py::array_t<double> copy(In x) { return copy<double>(x); }
 
-/// The same memory, for reading only; `owner` lives as long as the array does.
+/// Returns a read-only array over the same memory; `owner` lives as long as the array
+/// does.
 inline py::array view(In x, const py::handle& owner) {
   py::array all(py::dtype::of<double>(), {static_cast<py::ssize_t>(x.size())}, {},
                 x.data(), owner);

@@ -19,7 +19,7 @@ struct PointErrors {
   double largest = 0, rms = 0;
 };
 
-/// Over the frames before the strand's two runs part.
+/// Errors of one strand over the frames before its two runs part.
 struct StrandError {
   PointErrors error;
   double largest_at = 0;        // s
@@ -30,17 +30,17 @@ struct StrandError {
 /// divided by the part of the error that the finer run does not have [Richardson 1911].
 struct ErrorBar {
   std::vector<StrandError> strands;
-  /// Over all strands that have not parted, at every frame until all have.
+  /// Errors at every frame over all strands that have not parted, until all have.
   std::vector<PointErrors> frames;
-  /// Of every material point at every frame of the scene, over the length of its strand;
-  /// `parted_from` of strands that have parted. Empty: there is no estimate.
+  /// Error of every material point at every frame of the scene, over the length of its
+  /// strand; `parted_from` for strands that have parted. Empty: there is no estimate.
   std::vector<std::vector<float>> points;
   std::string missing;      // why there is no estimate; empty: there is
   bool unfinished = false;  // for a run did not come to its end
 
   /// The strand with the largest error; the first of those that part earliest, if any do.
   std::size_t worst() const;
-  /// Over strands, of their largest errors.
+  /// Median over strands of their largest errors.
   double median() const;
   std::size_t parted() const;  // strands
 };
@@ -61,8 +61,8 @@ constexpr std::string_view time_population = "90 runs of 6 clamped hairs",
 /// up to 3/2 of the estimate.
 ErrorBar time_error(const Scene& scene, int threads);
 
-/// Of two runs of one scene that is cut in two ways: what lies between them, at equal arc
-/// length, times `factor`.
+/// Distance of two runs of one scene with two meshes, at equal arc length, times
+/// `factor`.
 ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int threads);
 
 /// Against a run with twice the elements, at equal arc length, by the model's order in

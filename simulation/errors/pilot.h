@@ -7,10 +7,10 @@
 
 namespace tress::simulation {
 
-/// How many elements keep the tolerances of [strand] tables in motion, by trial: the
-/// scene runs with the numbers for its shapes at rest and with twice these numbers.
-/// Where the estimated error in space (error_bars.h) is above a strand's tolerance at
-/// some frame, the strand gets more, up to its `elements`.
+/// Numbers of elements that keep the tolerances of [strand] tables in motion, found by
+/// trial: the scene runs with the numbers for its shapes at rest and with twice these
+/// numbers. Where the estimated error in space (error_bars.h) is above a strand's
+/// tolerance at some frame, the strand gets more, up to its `elements`.
 struct Pilot {
   struct OfStrand {
     std::size_t strand;

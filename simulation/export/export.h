@@ -14,7 +14,7 @@ struct DrawnLine {
   double radius;  // m, of a circle of the root's area
 };
 
-/// For lines as in Readout; empty if the scene has no strands.
+/// Returns the drawn lines as in Readout; empty if the scene has no strands.
 std::vector<DrawnLine> drawn_lines(const Scene& scene, const World& world,
                                    std::span<const int> lines);
 
@@ -30,14 +30,14 @@ struct Animation {
   std::size_t guides = 0;     // lines that were simulated; 0: all
 };
 
-/// For the report page: <scene>.json, positions in 16 bits of their box, colours in 8
-/// bits (experiments/report/README.md has the format). Frames are thinned evenly to about
-/// `most_bytes`, but not below 24 frames.
+/// Returns the text of <scene>.json for the report page: positions in 16 bits of their
+/// box, colours in 8 bits (experiments/report/README.md has the format). Frames are
+/// thinned evenly to about `most_bytes`, but not below 24 frames.
 std::string page_json(const Animation& animation, std::size_t most_bytes = 500'000);
 
-/// For ParaView: one .vtp per frame (PolyData, appended raw, float32) with every channel,
-/// radius and strand as point data and the time as field data, and the .pvd that lists
-/// them with their times [VTK file formats, XML].
+/// Return the files for ParaView: one .vtp per frame (PolyData, appended raw, float32)
+/// with every channel, radius and strand as point data and the time as field data, and
+/// the .pvd that lists them with their times [VTK file formats, XML].
 std::string vtp(const Animation& animation, const Frame3d& frame);
 std::string pvd(const Animation& animation, const std::string& stem);
 std::string vtp_name(const std::string& stem, std::size_t frame);
@@ -47,8 +47,9 @@ std::string vtp_name(const std::string& stem, std::size_t frame);
 /// extent of each frame is that of the points and half the largest width.
 std::string usda(const Animation& animation);
 
-/// For renderers: one .hair per frame [Yuksel], whose comment says the time and the unit;
-/// thickness is the diameter. Throws InputError on a line of more than 65536 points.
+/// Returns a file for renderers: one .hair per frame [Yuksel], with the time and the
+/// unit in its comment; thickness is the diameter. Throws InputError on a line of more
+/// than 65536 points.
 std::string hair(const Animation& animation, const Frame3d& frame);
 std::string hair_name(const std::string& stem, std::size_t frame);
 

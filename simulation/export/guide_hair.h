@@ -80,10 +80,10 @@ class GuideHair {
   const Neighbours& neighbours(std::size_t hair) const { return neighbours_[hair]; }
   std::size_t hairs() const { return hair_roots_.size(); }
 
-  /// From now on every hair keeps its own shape: it differs from that of the formula
-  /// above by as much as it does now, carried along by T_o(s) H of its own guide.
-  /// Arguments as for grow(); `hairs` is where they are while the guides are where they
-  /// are told.
+  /// Lets every hair keep its own shape from now on: it differs from that of the
+  /// formula above by as much as it does now, carried along by T_o(s) H of its own
+  /// guide. Arguments as for grow(); `hairs` is where they are while the guides are
+  /// where they are told.
   void keep_shapes(std::span<const Vec> guides, const Frame& head,
                    std::span<const Vec> hairs);
 

@@ -42,7 +42,7 @@ class Hdf5File {
   enum class Mode { create, extend, read };
   Hdf5File(std::string file, Mode mode);
 
-  /// Of the file.
+  /// Set or return an attribute of the file.
   void set(const std::string& name, const std::string& text);
   void set(const std::string& name, double number);
   double number(const std::string& name) const;
@@ -75,7 +75,7 @@ class Hdf5File {
   std::vector<char> read_chunk(const std::string& dataset,
                                const std::vector<std::size_t>& at) const;
 
-  /// Where it is in the file; nowhere (of no bytes) where it was not written yet.
+  /// Returns the place of the data in the file; no bytes if they were not written yet.
   FileRange place(const std::string& dataset, const std::vector<std::size_t>& at) const;
 
   void flush();

@@ -11,12 +11,12 @@
 
 namespace tress::simulation {
 
-/// Of a head.
+/// Numbers of strands and points of a head.
 struct StrandCount {
   std::size_t strands, points;  // points: of a strand
 };
 
-/// What is stored of every frame of a head.
+/// Data stored for every frame of a head.
 struct StoredFrames {
   int bits = 32;                     // of a coordinate: 64, 32; 0: none of all strands
   std::vector<std::size_t> shown;    // strands for pictures, ascending
@@ -50,13 +50,13 @@ class HeadFrames {
   /// Compresses the root and tips (m) of strands from `first` on, a multiple of
   /// at_once(); not called where frames have no bits.
   void take(Crew& crew, std::size_t first, std::span<const double> x);
-  /// Of the strands for pictures.
+  /// Takes the positions of the strands for pictures.
   void take_shown(std::span<const double> x);
   /// Adds what was taken, and its series.
   void write(std::span<const double> series);
   /// All frames so far are on disk, and the .xdmf with them.
   void sync();
-  /// Of the file as the last sync() left it.
+  /// Returns the state of the file after the last sync().
   FileState state();
 
   std::size_t size() const { return sums_.size(); }
@@ -65,11 +65,11 @@ class HeadFrames {
   /// (3 points) of the shown strands.
   std::vector<float> shown(std::size_t frame) const;
 
-  /// Of the positions of all strands.
+  /// Returns the name of the dataset of the positions of all strands.
   static std::string dataset(std::size_t frame);
 
  private:
-  /// Of a worker.
+  /// Buffers of a worker.
   struct Own {
     std::vector<char> raw, shuffled;
   };

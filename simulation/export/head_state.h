@@ -13,7 +13,7 @@
 
 namespace tress::simulation {
 
-/// How far the run of a head has come.
+/// Progress of the run of a head.
 struct HeadProgress {
   std::vector<std::uint64_t> sums;  // checksums of the frames that are written
   std::size_t step = 0;             // taken towards the next one
@@ -27,7 +27,7 @@ class SavedHead {
  public:
   SavedHead(const std::string& file, const RunKey& key, std::size_t strands,
             std::size_t kept, const HeadProgress& progress);
-  /// What the head keeps of the next strands.
+  /// Stores the data that the head keeps for the next strands.
   void put(const std::vector<double>& kept);
   /// After all strands.
   void finish();

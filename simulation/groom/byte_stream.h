@@ -64,7 +64,7 @@ class ByteStream {
 
  private:
   bool fill();
-  /// What may be a number; until the next call.
+  /// Returns the next characters that may form a number; valid until the next call.
   std::string_view digits();
 
   std::string file_;

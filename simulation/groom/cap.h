@@ -18,8 +18,8 @@ class Cap {
   struct Place {
     Vec x, normal;
   };
-  /// By shares of area: the share `along` lies nearer to the axis, and the share `around`
-  /// of the area equally near lies before the place. Both in [0, 1).
+  /// Returns a place by shares of area: the share `along` lies nearer to the axis, and
+  /// the share `around` of the area equally near lies before the place. Both in [0, 1).
   Place place(double along, double around) const;
 
  private:

@@ -18,7 +18,8 @@ std::optional<CurveBasis> curve_basis(std::string_view type, std::string_view ba
 /// too few for a piece or, for bezier, no whole number of pieces.
 std::size_t points_of_curve(std::size_t control, CurveBasis basis, bool pinned);
 
-/// Which numbers of control points suit a basis, as "... need 4, 7, 10 points".
+/// Returns the numbers of control points that suit a basis, as "... need 4, 7, 10
+/// points".
 std::string counts_in_words(CurveBasis basis, bool pinned);
 
 /// Points on the curve of these control points, which are not on it themselves: four to a

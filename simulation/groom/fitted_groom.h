@@ -10,7 +10,7 @@
 
 namespace tress::simulation {
 
-/// How the strands of a file become elements.
+/// Settings by which the strands of a file become elements.
 struct GroomFit {
   int elements = 20;         // of every strand, or with a tolerance at most
   double tolerance_m = 0;    // largest distance from the file's points, m; 0: none

@@ -9,15 +9,15 @@
 
 namespace tress::simulation {
 
-/// Where a strand is at t = 0: its root and the tips of its segments.
+/// Returns the points of a strand at t = 0: its root and the tips of its segments.
 std::vector<Vec> initial_points(const Strand& strand);
 
-/// Which strands of a groom stand for the others. Two strands are as far apart as their
-/// roots and quarter points at t = 0 are, by root mean square, so that place, length and
-/// shape count, in metres. The farthest strand from all guides so far is the next one
-/// [Gonzalez 1985], the first is drawn by the seed; the middle of each cluster then takes
-/// the place of its guide a few times [Lloyd 1982]. Ascending; all of them if guides >=
-/// strands. O(strands guides).
+/// Returns the strands of a groom that represent the others. The distance of two
+/// strands is the root mean square distance of their roots and quarter points at t = 0,
+/// so that place, length and shape count, in metres. The farthest strand from all
+/// guides so far is the next one [Gonzalez 1985], the first is drawn by the seed; the
+/// middle of each cluster then takes the place of its guide a few times [Lloyd 1982].
+/// Ascending; all of them if guides >= strands. O(strands guides).
 std::vector<std::size_t> choose_guides(std::span<const Strand> strands,
                                        std::size_t guides, std::uint64_t seed);
 

@@ -22,7 +22,7 @@ int elements_by_turning(double turning, double tolerance);
 /// is longer than twice the mean.
 std::vector<double> cut_by_turning(const SpaceCurve& curve,
                                    std::span<const double> turning, int n);
-/// Equal ones.
+/// Returns the ends of n equal elements.
 std::vector<double> cut_equally(double length, int n);
 
 /// A chain of helices, each of constant Darboux vector, that starts at the curve's root.
@@ -53,7 +53,7 @@ struct FitWeights {
 HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints,
                        const FitWeights& weights = {});
 
-/// That sum, of a chain.
+/// Returns this sum for a chain.
 double misfit(const SpaceCurve& curve, const HelixChain& chain);
 
 /// Places on a chain at ascending arc lengths from 0 to its length.

@@ -17,7 +17,7 @@ struct FileUnit {
 inline constexpr FileUnit file_units[] = {
     {"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"inch", 0.0254}};
 
-/// How a file's strands come into a scene.
+/// Settings that place a file's strands in a scene.
 struct GroomPlacing {
   std::optional<double> metres;  // per unit; none: as the file says, or a guess
   std::optional<FileAxis> up;    // likewise

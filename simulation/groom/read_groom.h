@@ -15,10 +15,10 @@ struct FileAxis {
   bool back;  // its negative direction
 };
 
-/// What to do with strands that cannot be simulated.
+/// Treatment of strands that cannot be simulated.
 enum class BadStrands { refuse, drop };
 
-/// How a file is read.
+/// Settings for reading a file.
 struct GroomReading {
   int strand_points = 0;                // of every strand of a .ply; 0: the file's own
   BadStrands bad = BadStrands::refuse;  // of curves whose count does not suit their basis
@@ -37,7 +37,7 @@ struct GroomFile {
   std::vector<std::string> notes;  // for the user, one sentence each
 };
 
-/// By the ending of the file:
+/// Reads a file in the format of its ending:
 ///
 ///     .hair   [Yuksel], 128 bytes of header, then arrays by bits; or without header:
 ///             u32 strands, u32 points, u16 points of each strand, three f32 of each

@@ -32,9 +32,9 @@ class UsdCurves {
   /// The sets from `first` on lie within a prim with this map, which alone places them if
   /// `reset`.
   void place(std::size_t first, const Affine& map, bool reset);
-  /// They lie within a prim that is hidden.
+  /// Marks the curves from `first` on as lying within a hidden prim.
   void hide(std::size_t first, Hidden why);
-  /// They lie within a prim of this purpose, which those have that have none yet.
+  /// Gives this purpose to the curves from `first` on that have none yet.
   void set_purpose(std::size_t first, Hidden why);
 
   /// The strands that are left, with notes on those that are not.

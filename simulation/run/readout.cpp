@@ -44,17 +44,17 @@ Readout::Readout(const Scene& scene, const World& world)
   } else {
     add("elastic_j", "elastic energy of all strands");
     for (std::size_t i = 0; i < effects_.size(); ++i) {
-      add(names[i] + "_j", "its potential energy");
+      add(names[i] + "_j", "potential energy of the effect");
     }
   }
   add("stretch_rel", "largest |length/rest - 1| of a piece");
   add("penetration_m", "largest depth of a strand in a body");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
-  add("mean_distance_m", "from a strand to the nearest other one, mean");
+  add("mean_distance_m", "mean distance from a strand to the nearest other one");
   if (world.mesh() != nullptr) {
-    add("broken_links",
-        "of the control mesh, of " + std::to_string(world.mesh()->mesh().links.size()));
+    add("broken_links", "broken links of the control mesh, of " +
+                            std::to_string(world.mesh()->mesh().links.size()));
     add("mesh_contacts", "points near a strip of the control mesh");
     add("control_mesh_j", "energy of the links that hold");
   }

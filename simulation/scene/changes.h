@@ -13,7 +13,8 @@ namespace tress::simulation {
 // A scene is a value; these functions derive other scenes from it. Nothing is read or
 // checked again; World refuses what cannot be built.
 
-/// How a scene is simulated, except for its discretisation in space and time.
+/// Model, integrator and options of a scene, without its discretisation in space and
+/// time.
 struct Method {
   const ModelEntry* model = nullptr;
   ModelSettings options;  // of the model, if not the default
@@ -28,18 +29,20 @@ struct Method {
 /// InputError on options that the model does not have.
 Scene with_method(Scene scene, const Method& method);
 
-/// The same strands with `elements` elements each. Throws InputError as read_scene does,
-/// and std::logic_error if the scene's tables no longer describe its strands.
+/// Returns the scene with `elements` elements in each strand. Throws InputError as
+/// read_scene does, and std::logic_error if the scene's tables no longer describe its
+/// strands.
 Scene with_elements(Scene scene, int elements);
-/// As above, of the strands of each [strand], [groom] table that has an entry above 0 in
-/// `elements`, in their order.
+/// Returns the scene with these numbers of elements in the strands of each [strand],
+/// [groom] table, in their order, where an entry of `elements` is above 0. Throws as
+/// above.
 Scene with_elements_of_strands(Scene scene, std::span<const int> elements);
-/// As with_elements(), elements that share what bends a strand at rest: cuts = "rest", or
-/// "rest_linear" where the scene's model is super_clothoid. Only of [strand] tables,
-/// without points.
+/// Returns the scene with `elements` elements that share the bending of a strand at
+/// rest: cuts = "rest", or "rest_linear" where the scene's model is super_clothoid.
+/// Only of [strand] tables, without points.
 Scene with_elements_at_rest(Scene scene, int elements);
 bool may_cut_at_rest(const Scene& scene);
-/// As above, every strand with twice its elements.
+/// Returns the scene with twice the elements in every strand.
 Scene with_twice_the_elements(Scene scene);
 
 /// Returns the scene with every strand of its grooms simulated, none a follower, and
@@ -49,7 +52,7 @@ Scene every_strand(Scene scene, std::size_t most);
 /// Returns the scene with `guides` guides, at most the number of strands. The grooms
 /// share them by their numbers of strands, at least one each; all other strands follow.
 Scene with_guides(Scene scene, std::size_t guides);
-/// Which of the strands of every_strand() those are.
+/// Returns the indices of these guides among the strands of every_strand().
 std::vector<std::size_t> guides_of(const Scene& scene, std::size_t guides);
 
 /// The scene with other strands, which no table describes.

@@ -19,7 +19,7 @@ std::shared_ptr<const PlacedGroom> read_file_groom(const Table& groom);
 /// Throws InputError on a key for files in a table without one.
 void refuse_file_keys(const Table& groom);
 
-/// How many of its strands the table takes.
+/// Returns the number of strands of the file that the table takes.
 std::size_t file_strands(const Table& groom, const PlacedGroom& file);
 
 std::shared_ptr<const FittedGroom> fit_file_groom(const Table& groom,

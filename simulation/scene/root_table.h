@@ -16,7 +16,7 @@ std::span<const Use> root_uses();
 /// position is the origin. Throws InputError with the location of an invalid key.
 RootMotion head_motion(const Table& root);
 
-/// For motion = "free": the velocity and spin, without a position.
+/// Returns the velocity and spin for motion = "free", without a position.
 std::optional<FreeRoot> free_motion(const Table& root);
 
 /// Puts the root of a strand at this position, moving with `head`, or free.

@@ -28,8 +28,8 @@ struct EffectChoice {
 /// fall, or are left out.
 enum class RestStrains { natural, inverse };
 enum class Unstable { stiffen, keep, drop };
-/// What a strand that fails does: it ends the run, or stays where it is while the others
-/// go on.
+/// Effect of a failed strand: it ends the run, or stays where it is while the others go
+/// on.
 enum class FailedStrands { end_run, stay };
 
 /// The contents of a scene file, checked and complete: everything a run needs, with
@@ -53,11 +53,11 @@ struct Scene {
   std::vector<Strand> followers;
   /// The tables that describe them; null if there are none.
   std::shared_ptr<const StrandTables> tables;
-  /// How near the strands of grooms from files are to them, at the time of reading.
+  /// Distances of strands from the files of their grooms, at the time of reading.
   std::vector<std::shared_ptr<const FittedGroom>> fitted;
   RootMotion head;  // the rigid motion of roots and of bodies that follow them
 
-  /// Those on each strand, then the one between strands.
+  /// Effects on each strand, then the effect between strands.
   std::vector<EffectChoice> effects;
 
   double duration = 0;    // s
@@ -99,13 +99,13 @@ struct SceneOutline {
 
 /// Throws InputError with file:line:column, what is wrong and what is accepted.
 Scene read_scene(const std::string& file);
-/// As above for up to a million strands; strands after the first of their table are not
-/// checked.
+/// Reads a scene file as above, for up to a million strands; strands after the first of
+/// their table are not checked.
 SceneOutline read_outline(const std::string& file);
-/// As above for several files with different names, which identify scenes in tables.
+/// Reads several scene files with different names, which identify scenes in tables.
 std::vector<Scene> read_scenes(const std::vector<std::string>& files);
-/// As the first two for a text; `file` is its name in messages, and files that the scene
-/// names are relative to its folder.
+/// Read a scene, or its outline, from a text; `file` is its name in messages, and files
+/// that the scene names are relative to its folder.
 Scene parse_scene(const std::string& text, const std::string& file);
 SceneOutline parse_outline(const std::string& text, const std::string& file);
 
@@ -118,8 +118,8 @@ std::vector<std::vector<double>> segment_lengths(const std::vector<Strand>& stra
 std::shared_ptr<const Effect> make_effect(const Scene& scene, const EffectChoice& choice);
 /// The effects on each strand, constructed for one.
 Effects make_effects(const Scene& scene);
-/// Their ids, the second body being body_2, the third body_3; then that of the effect
-/// between strands.
+/// Returns the ids of the effects, the second body being body_2, the third body_3; then
+/// that of the effect between strands.
 std::vector<std::string> effect_names(const Scene& scene);
 
 }  // namespace tress::simulation

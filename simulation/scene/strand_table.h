@@ -37,8 +37,8 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
 Strand cut_strand(const Table& table, const StrandMaterial& material, double length,
                   const Shape& natural, const Shape& initial = {}, int elements = 0);
 
-/// As few elements of equal length, up to the table's, as the shape at rest needs to be
-/// within `tolerance` (m); `tangent`: at the root.
+/// Returns the smallest number of equal elements, up to the table's, that represents
+/// the shape at rest within `tolerance` (m); `tangent`: at the root.
 int needed_elements(const Table& table, const StrandMaterial& material, double length,
                     const Shape& natural, const Vec& tangent, double tolerance);
 

@@ -35,7 +35,8 @@ struct CutStrands {
   std::vector<std::shared_ptr<const FittedGroom>> fitted;  // of grooms from files
 };
 
-/// Of a scene that is read whole, and of one whose strands are made one at a time.
+/// Limits of a scene that is read whole, and of one whose strands are made one at a
+/// time.
 struct StrandLimits {
   std::size_t strands, elements;
 };
@@ -93,15 +94,15 @@ bool has_tolerance(const StrandSource& source);
 /// Takes the tolerance from a groom by which its strands get their elements.
 void clear_detail(Table& groom);
 
-/// The same tables with `elements` elements in every strand.
+/// Returns the tables with `elements` elements in every strand.
 StrandTables with_elements(StrandTables tables, int elements);
 /// Returns the tables with `elements` elements and no tolerance in every strand, where
 /// an entry of `elements` is above 0.
 StrandTables with_elements(StrandTables tables, std::span<const int> elements);
-/// The same tables, every [strand] with these `cuts`.
+/// Returns the tables with these `cuts` in every [strand].
 StrandTables with_cuts(StrandTables tables, std::string_view cuts);
-/// The same tables, every strand with twice its elements. Throws InputError where these
-/// follow from a tolerance.
+/// Returns the tables with twice the elements in every strand. Throws InputError where
+/// these follow from a tolerance.
 StrandTables with_twice_the_elements(StrandTables tables);
 
 }  // namespace tress::simulation

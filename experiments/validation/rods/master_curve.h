@@ -18,8 +18,9 @@ struct Cantilever {
   double tip_angle;      // theta, rad
 };
 
-/// By shooting from the tip for its unknown angle; relative accuracy 1e-10 for Gamma and
-/// alpha in [0, 1e5], not both 0. Throws InputError otherwise.
+/// Solves the cantilever by shooting from the tip for its unknown angle; relative
+/// accuracy 1e-10 for Gamma and alpha in [0, 1e5], not both 0. Throws InputError
+/// otherwise.
 Cantilever cantilever(double gamma, double alpha);
 
 }  // namespace tress::experiments::validation

@@ -13,8 +13,8 @@ namespace tress::experiments::validation {
 using Slope = std::function<void(double x, const double* y, double* dy)>;
 std::vector<double> integrate(const Slope& slope, double from, double to,
                               std::vector<double> y);
-/// The same, each step within 1e-13 at absolute sizes of 1 or more: for entries that
-/// cross 0 and are of at least that size overall.
+/// Integrates as above, each step within 1e-13 at absolute sizes of 1 or more: for
+/// entries that cross 0 and are of at least that size overall.
 std::vector<double> integrate_scaled(const Slope& slope, double from, double to,
                                      std::vector<double> y);
 

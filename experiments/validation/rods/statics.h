@@ -36,7 +36,7 @@ class Statics {
 
   System& system() { return *system_; }
   In q() const { return q_; }
-  /// At the last load: root and ends of the segments, (3 count) m.
+  /// Returns the root and the ends of the segments at the last load, (3 count) m.
   std::vector<double> points();
   Vec tip();
   /// Forces (N) along end.along, then moments (N m) about axes of end.frame, that hold

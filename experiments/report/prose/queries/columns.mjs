@@ -166,7 +166,7 @@ export const series = (_, root) => {
   ).filter(([column]) => !strands.some(([known]) => known.split(', ').includes(column)));
   const rows = [
     ...strands,
-    ...heads.map(([column, what]) => [column, `of a head: ${what}`]),
+    ...heads.map(([column, what]) => [column, `${what} (batches of strands)`]),
   ];
   return table(
     ['column', 'unit', ''],
