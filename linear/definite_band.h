@@ -6,12 +6,13 @@
 
 namespace tress {
 
-/// Solver for band matrices that are usually symmetric positive definite: L D L^T without
-/// pivoting or scaling, which such matrices do not need (the errors of every entry stay
-/// small beside the roots of its diagonal entries, whatever the units) [Higham 2002,
-/// Accuracy and Stability of Numerical Algorithms, section 10.1]. n k^2/2 multiply-adds
-/// for half-bandwidth k, a sixth of BandedSolver's time. A matrix that turns out
-/// unsymmetric, or has a pivot that is not positive, is solved by BandedSolver.
+/// Solver for band matrices that are usually symmetric positive definite: L D L^T
+/// without pivoting or scaling, which such matrices do not need (the errors of every
+/// entry stay small compared with the roots of its diagonal entries, whatever the
+/// units) [Higham 2002, Accuracy and Stability of Numerical Algorithms, section 10.1].
+/// n k^2/2 multiply-adds for half-bandwidth k, a sixth of BandedSolver's time. A matrix
+/// that turns out unsymmetric, or has a pivot that is not positive, is solved by
+/// BandedSolver.
 class DefiniteBand final : public LinearSolver {
  public:
   explicit DefiniteBand(const Pattern& pattern);

@@ -8,7 +8,7 @@
 namespace tress {
 
 /// General sparse LU. Pivots are chosen once; later factorisations reuse them while the
-/// element growth stays small, and are chosen anew (with allocation) when it does not.
+/// element growth stays small, and are chosen again (with allocation) when it does not.
 /// [Davis 2010] T. Davis, E. Palamadai Natarajan, Algorithm 907: KLU, ACM TOMS 37(3).
 class KluSolver final : public DirectSolver {
  public:

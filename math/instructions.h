@@ -11,7 +11,7 @@ namespace tress {
 #endif
 
 /// Sets of vector instructions. A program is compiled for the first, which it needs to
-/// run at all; kernels run by another one where the machine has it.
+/// run at all; kernels use another set where the machine has that set.
 enum class Instructions { base, avx512 };
 
 /// Whether this machine and this program have them.

@@ -32,9 +32,9 @@ struct SineCosine {
   T sine, cosine;
 };
 
-/// Within 2^-51 (2^-22 in 32 bits) for |x| <= 1e4: the remainder r after multiples of
-/// pi/2, |r| <= pi/4, into the Taylor series, whose first omitted term is r^19/19!,
-/// 1e-19.
+/// Within 2^-51 (2^-22 in single precision) for |x| <= 1e4: the remainder r after
+/// multiples of pi/2, |r| <= pi/4, into the Taylor series, whose first omitted term is
+/// r^19/19!, 1e-19.
 template <class Number, int width>
 SineCosine<PackOf<Number, width>> sine_cosine(const PackOf<Number, width>& x) {
   using T = PackOf<Number, width>;
@@ -100,8 +100,9 @@ class ArcTangent {
 
   using Numbers = std::array<Number, width>;
 
-  /// Apart, with arguments by value: what a call might change could not stay in
-  /// registers. As arrays, which all instructions pass alike (math/instructions.h).
+  /// A separate function with arguments by value: what a call might change could not
+  /// stay in registers. Arguments are arrays, which all instruction sets pass in the
+  /// same way (math/instructions.h).
   [[gnu::noinline]] static Numbers any(Numbers sine, Numbers cosine) {
     const T y(sine), x(cosine);
     const T ay = magnitude(y), ax = magnitude(x);

@@ -88,8 +88,8 @@ struct Measured {
 /// JSON context and only medians, spreads and fits on the console when repeating.
 Measured run_benchmarks(int argc, char** argv);
 
-/// The same, then `met`: whether what is required of the program holds. The exit code: 3
-/// where it does not.
+/// Runs the benchmarks, then `met`: whether the requirements of the program are met.
+/// Returns the exit code, 3 where they are not.
 int run_and_judge(int argc, char** argv, const std::function<bool(const Measured&)>& met);
 
 }  // namespace tress::experiments::benchmarks

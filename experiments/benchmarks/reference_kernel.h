@@ -152,7 +152,7 @@ struct Turn {
   return t;
 }
 
-/// In consistent units.
+/// A strand in consistent units.
 struct Strand {
   int elements;
   double length;  // of an element

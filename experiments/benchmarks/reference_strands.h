@@ -33,7 +33,7 @@ class ReferenceStrands {
  public:
   explicit ReferenceStrands(std::size_t strands);
   void step();
-  /// 1/m.
+  /// Returns the curvature, 1/m.
   double curvature(std::size_t strand, std::size_t element) const {
     return state_[strand / reference::lanes * reference_elements + element]
                .k.y[static_cast<int>(strand % reference::lanes)] /

@@ -36,7 +36,7 @@ struct Specimen {
   std::function<BuiltStrand(const Properties&, int finer)> build;
 };
 
-/// From a model's parameters (models/strand/strand_parameters.h).
+/// Returns the specimen with a model's parameters (models/strand/strand_parameters.h).
 Specimen specimen(const ModelEntry& model, const Parameters& parameters);
 
 /// The strand of a scene with everything that acts on it; nu is that of

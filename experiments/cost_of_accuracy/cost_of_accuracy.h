@@ -58,7 +58,8 @@ struct StudyPlan {
 /// Errors are trusted from this multiple of the reference's gap on.
 constexpr double believed = 10;
 
-/// With advise the gap is part of the promise (see below) and may be larger.
+/// This multiple applies with advise, where the gap is part of the promise (see below)
+/// and may be larger.
 constexpr double believed_in_advice = 4;
 
 /// The horizon ends where the two sides are this far apart, over the length: beyond it

@@ -10,7 +10,7 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// What is asked of a reference, over the length.
+/// Target gaps of a reference, over the length.
 struct WantedGap {
   double sought;   // it is refined until its sides are this close
   double allowed;  // where time is over before that, this will do

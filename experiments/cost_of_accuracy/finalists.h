@@ -31,7 +31,7 @@ struct BestRuns {
   std::vector<std::pair<std::string, std::optional<Trial>>> without;
 };
 
-/// Of one model, for one target error: the cheapest run with methods of fixed steps
+/// The cheapest runs of one model for one target error: with methods of fixed steps
 /// only, and with methods that have error control, adaptive or not, extrapolated or
 /// not. Empty where none meets the target.
 struct ControlCompared {
@@ -63,7 +63,7 @@ class Finalists {
   std::size_t known() const { return search_.runs().size() + times_.size(); }
   /// The Pareto front of all runs with errors up to `loosest`.
   std::vector<Trial> front(double floor, double loosest);
-  /// Of a run that is shown, see WallTime.
+  /// Returns the scatter of the time of a shown run, see WallTime.
   double scatter(const Trial& run) const { return times_.at(place(run)).scatter; }
   /// Whether the time of `run` is indistinguishable from that of `best`, which is shown.
   bool tied(const Trial& run, const Trial& best) const;
@@ -71,7 +71,8 @@ class Finalists {
  private:
   using Accept = std::function<bool(const Trial&)>;
 
-  /// Of the search, with the times measured here; once it is cut only those examined.
+  /// Returns the runs of the search, with the times measured here; once the search is
+  /// cut only the examined runs.
   std::vector<Trial> runs() const;
   bool time(const Trial& run);  // false: it was timed before
   void time_simpler(const Trial& run);

@@ -72,7 +72,7 @@ class SceneMeasure {
   /// reference; infinite where `quick` is empty.
   double neighbour_error(const Method& method, int elements, int substeps,
                          Neighbour which, double most_s) const;
-  /// As `quick` for any scene, `count` times.
+  /// Measures a run of any scene `count` times, as `quick` does.
   std::optional<Trial> best_of(const Scene& scene, int count, double most_s) const;
   /// The time alone.
   WallTime time(const Method& method, int elements, int substeps, int count) const;
@@ -81,7 +81,7 @@ class SceneMeasure {
                const std::vector<double>& reference) const;
 
  private:
-  /// What one run shows, or two of which the tips are extrapolated.
+  /// Results of one run, or of two whose tips are extrapolated.
   struct Outcome {
     std::vector<double> tips;
     double once_s = 0, indicator = 0, steps = 0;

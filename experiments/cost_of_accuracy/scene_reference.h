@@ -11,7 +11,7 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// What is compared: the tips of `strands` strands at all frames up to a horizon.
+/// Compared quantities: the tips of `strands` strands at all frames up to a horizon.
 struct Comparison {
   double rate = 60;         // frames per second
   std::size_t frames = 30;  // the horizon
@@ -43,7 +43,8 @@ struct ReferenceCut {
   ReferenceCut halved() const { return {elements / 2, substeps / 2}; }
 };
 
-/// Always recomputed. Throws std::runtime_error where one of the runs fails.
+/// Computes the reference of a scene and reads no stored one. Throws std::runtime_error
+/// where one of the runs fails.
 SceneReference scene_reference(const Scene& given, const Comparison& comparison,
                                const ReferenceCut& cut);
 
@@ -87,7 +88,7 @@ SceneReference kept_sides(const Scene& given, const Comparison& comparison,
                           const ReferenceCut& cut, const std::string& folder,
                           const std::string& name, const ReferenceSides& sides,
                           const MakeReference& make);
-/// The same for the rod's tips, by scene_reference.
+/// Loads or computes the reference of the rod's tips, with scene_reference.
 SceneReference kept_reference(const Scene& given, const Comparison& comparison,
                               const ReferenceCut& cut, const std::string& folder,
                               const std::string& name);

@@ -73,11 +73,11 @@ class Search {
   const Trial* fewest_substeps(std::size_t method, int elements, double target, int guess,
                                int most);
 
-  /// The same, with neighbours that hold.
+  /// Returns such a run whose neighbours meet the target as well.
   const Trial* fewest_that_hold(std::size_t method, int elements, double target,
                                 int guess, int most);
 
-  /// SearchPlan::unit
+  /// Returns SearchPlan::unit of the method, 1 by default.
   int unit(std::size_t method) const { return plan_.unit ? plan_.unit(method) : 1; }
 
   /// One run, measured unless already known; null if it fails.

@@ -8,7 +8,7 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// How a scene is simulated, and how the accuracy of a run is chosen.
+/// Model, integrator and options of a run, and the way to choose its accuracy.
 struct Method : simulation::Method {
   Refresh refresh = Refresh::every_iteration;
   /// Adaptive: the tolerance falls with the "substeps" s as an error of steps 1/s does,
@@ -22,7 +22,7 @@ struct Method : simulation::Method {
   bool cut_at_rest = false;
 };
 
-/// What decides the accuracy of a run in time: one of the two is 0.
+/// Step or tolerance that decides the accuracy of a run in time: one of the two is 0.
 struct Accuracy {
   double step = 0;       // s
   double tolerance = 0;  // of the length
@@ -40,7 +40,7 @@ Accuracy accuracy(const Method& method, int substeps, double rate);
 int steps_unit(const Method& method);
 double frame_work(const Method& method, int elements, int substeps);
 
-/// Of an extrapolated run, the number of elements of its coarser part.
+/// Returns the number of elements of the coarser part of an extrapolated run.
 inline int coarser(int elements) { return (elements + 1) / 2; }
 
 /// c of the limit x_n + c (x_n - x_m) of an error C/n^p, p the model's order, for n
@@ -59,7 +59,8 @@ Scene read_open_scene(const std::string& file);
 /// this step or tolerance. Throws InputError as with_elements does.
 Scene trial_scene(Scene given, const Method& method, int elements, Accuracy accuracy,
                   double rate);
-/// As above, with steps that divide a frame, or a tolerance, of `substeps`.
+/// Returns the scene with steps that divide a frame, or a tolerance, of `substeps`.
+/// Throws as above.
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,
                   double rate);
 
@@ -101,7 +102,7 @@ std::vector<Method> with_other_words(const Scene& given, const Method& method,
 /// The model's options.
 std::vector<std::string_view> choices_of(const ModelEntry& model);
 
-/// The same model, integrator and options, all else too.
+/// Whether two methods agree in model, integrator, options and everything else.
 bool same(const Method& a, const Method& b);
 
 }  // namespace tress::experiments::cost_of_accuracy

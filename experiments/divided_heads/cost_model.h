@@ -33,8 +33,8 @@ double border(double ranks);
 /// b is what an element of one costs, to be sent, received, held and listed; l the
 /// latency of what all ranks agree on in a step.
 struct CostModel {
-  /// Of a machine with that many hairs, ascending: straight in their logarithm between
-  /// these, level beyond.
+  /// Cost of a machine's kernel with this number of hairs, ascending: linear in the
+  /// logarithm of the number between entries, constant beyond.
   struct Kernel {
     double strands, cost;  // cost: s
   };

@@ -6,10 +6,10 @@
 
 namespace tress::experiments::divided_heads {
 
-/// What the model says of all rows, where enough of them were measured to set its
-/// numbers, which all of these set together: its cost, of measured ones also how far it
-/// is off, and efficiency; and how far it is off where it knows heads of all other
-/// numbers of hairs alone. More ranks than cores take turns.
+/// Adds the predictions of the model to all rows, if enough rows were measured to fit
+/// its numbers: cost and efficiency, the difference from measured rows, and the
+/// difference of a model fitted to the other numbers of hairs only. More ranks than
+/// cores take turns.
 void add_predictions(std::vector<Row>& rows);
 
 }  // namespace tress::experiments::divided_heads

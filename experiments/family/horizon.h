@@ -32,13 +32,13 @@ struct Horizon {
 Horizon horizon(const Side& one, const Side& other, double t_end, int samples,
                 double length, double apart);
 
-/// How much a deviation grows to that of the tip: over the instants s of the first
-/// `until` samples, and t = 0, the largest ratio of the tip's deviation from there on
-/// (root mean square over all of them, over `length`) to that of the strand at s
-/// (integrators' PointNorm: the largest |dx|/L or |du| sqrt(L/g)/L of a point). Of a few
-/// deviations of the first velocities at random, of size `apart`: a lower bound, for what
-/// grows most comes to the fore by itself only as time goes on [Benettin et al. 1980,
-/// Meccanica 15, 9]. 0: a run ends before.
+/// Returns the growth of a deviation to that of the tip: over the instants s of the
+/// first `until` samples, and t = 0, the largest ratio of the tip's deviation from
+/// there on (root mean square over all of them, over `length`) to that of the strand at
+/// s (integrators' PointNorm: the largest |dx|/L or |du| sqrt(L/g)/L of a point). Of a
+/// few deviations of the first velocities at random, of size `apart`: a lower bound,
+/// for what grows most comes to the fore by itself only as time goes on [Benettin et
+/// al. 1980, Meccanica 15, 9]. 0: a run ends before.
 double growth(const Side& side, double t_end, int samples, int until, double apart);
 
 /// Growth of the deviation of a body that nothing holds back or drives apart: positions

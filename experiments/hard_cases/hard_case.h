@@ -64,8 +64,8 @@ struct HardCase {
 
   ModelSettings settings = {};
   double t_end = 0.25;  // s
-  /// Not 0: the time of this many steps, however long they are; with a tolerance, of the
-  /// longest that are allowed.
+  /// Number of steps that set the simulated time, of any length; with a tolerance, of
+  /// the longest allowed. 0: t_end sets the time.
   long count = 0;
   /// Accuracy is judged up to this time, s: beyond it an undamped strand is chaotic, or
   /// the remaining motion is too small to compare. 0: judged by the gauge.
@@ -119,7 +119,7 @@ StabilityBounds passive_bounds(const Situation& situation, double t_end);
 /// The tip stays within the length of the root, and below the speed that the root's
 /// motion can give it (strand_speed_bound).
 StabilityBounds driven_bounds(const Situation& situation, double t_end);
-/// Only finite numbers: the gauge judges everything else.
+/// Requires finite numbers only: the gauge judges everything else.
 StabilityBounds no_bounds(const Situation& situation, double t_end);
 
 }  // namespace tress::experiments::hard_cases

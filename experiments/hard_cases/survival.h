@@ -94,7 +94,7 @@ struct WorkLimit {
 /// computed once for all rows of its case and model.
 inline constexpr WorkLimit quick_row{3e6}, quick_reference{6e6};
 
-/// "its work was done at t = 0.1 s".
+/// Returns a reason, as "its work was done at t = 0.1 s".
 std::string cut_at(double t);
 
 /// The reference of a case on one model, at `coarser` times the case's reference step.

@@ -20,11 +20,11 @@ struct HairCurves {
   Vec at(std::size_t instant, std::size_t hair, double share) const;
 };
 
-/// As much again as `coarse` has changed to become `fine`: without the error that falls
-/// with the step, if fine has half the steps of coarse.
+/// Returns 2 fine - coarse, in which the error proportional to the step cancels if the
+/// step of `fine` is half that of `coarse`.
 HairCurves extrapolated_in_step(HairCurves fine, const HairCurves& coarse);
-/// A third as much again as elements of half the length have changed: without the error
-/// that falls with their square [Richardson].
+/// Returns fine + (fine - coarse)/3, in which the error proportional to the square of
+/// the element length cancels if elements of `fine` are half as long [Richardson].
 HairCurves extrapolated_in_elements(HairCurves fine, const HairCurves& coarse);
 
 /// Distances of hairs from those of a reference, root mean square over instants and over

@@ -67,8 +67,8 @@ class HeadMeasure {
   /// elements that wind farther take more quadrature points, and beyond 1.5 rad longer
   /// series.
   double element_work(int elements) const;
-  /// What the last of these changes: a bound of the reference's error as far as errors
-  /// fall like that.
+  /// Returns the change by the last extrapolation of the reference: a bound of its
+  /// error if errors fall as assumed.
   const Spread& gap() const { return gap_; }
 
   /// Empty where hairs are lost.
@@ -82,7 +82,7 @@ class HeadMeasure {
   struct Run;
   class Followers;
   Scene cut(int elements) const;
-  /// Those of hairs that are cut like this, kept.
+  /// Returns the guides of a scene with this mesh, computed once.
   const std::vector<std::size_t>& guides(const Scene& cut, std::size_t number) const;
   HairCurves curves(int elements, int substeps) const;
   /// use(instant, t, points of all strands), after t = 0.

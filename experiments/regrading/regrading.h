@@ -106,9 +106,9 @@ struct MotionError {
   double tip, largest;
 };
 MotionError motion_error(const LooseHair& hair, double tolerance);
-/// The same of the elements that a pilot finds for it (simulation/errors/pilot.h); the
-/// error that it estimates, over the length; the elements of all of its runs, over those
-/// of one run with what it found.
+/// Motion error with the elements that a pilot finds (simulation/errors/pilot.h), the
+/// error that it estimates, over the length, and the elements of all of its runs over
+/// those of one run with the elements found.
 struct PilotError {
   MotionError found;
   double estimate, work;

@@ -33,7 +33,7 @@ void set_counts(const Stats& stats, Row& row);
 void set_achieved(double largest, const Options& options, Row& row);
 /// distance from the reference, whose two sides are `gap` apart,
 void set_error(double relative, double gap, Row& row);
-/// and times (s).
+/// and wall times (s).
 void set_time(double wall, double simulated, Row& row);
 
 /// Options::tolerance from loose to tight, for methods that control their error.

@@ -33,8 +33,8 @@ struct HelixChain {
   std::vector<Vec> darboux;   // twist and curvatures in the frame, 1/m
 };
 
-/// What a fit gives up of its distance for strains that vary little: weights of squares
-/// of angles (rad^-2), relative to squares of distances over the length.
+/// Weights that let a fit trade distance for strains that vary little: of squares of
+/// angles (rad^-2), relative to squares of distances over the length.
 struct FitWeights {
   double jump = 2e-6, twist = 1e-6;
 };

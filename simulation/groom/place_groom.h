@@ -23,7 +23,7 @@ struct GroomPlacing {
   std::optional<FileAxis> up;    // likewise
   Vec position;                  // of the file's origin, m
   BadStrands bad = BadStrands::refuse;
-  std::size_t every = 1;  // take each so-manieth strand
+  std::size_t every = 1;  // take every n-th strand
 };
 
 /// In m, z up, thinned; with what a user should know of guesses and strands left out, one

@@ -18,9 +18,9 @@ struct End {
   Vec place{};               // ... at this position, m
   Section section = Section::free;
   Frame frame{};  // to which the section is held
-  /// For models whose last half edge neither bends nor twists, a spring in its place
-  /// between the edge and the support: compliance (rad/(N m)) to a moment, and rotation
-  /// (rad) at rest, about the axes of the section.
+  /// A spring in place of the last half edge, for models in which it neither bends nor
+  /// twists, between the edge and the support: compliance (rad/(N m)) to a moment, and
+  /// rotation (rad) at rest, about the axes of the section.
   Vec compliance{}, rest{};
 
   /// Rows of the section: 0, 2 (about e1, e2) or 3 (about e0, e1, e2).

@@ -47,10 +47,12 @@ std::unique_ptr<System> on_strand(const ModelVariant& variant, const Strand& str
 End held_section(const ModelVariant& variant, const Strand& strand, End::Section section,
                  const Frame& frame);
 
-/// Why a test that holds the tip section does not apply to a model; empty: it applies.
+/// Returns the reason why a test that holds the tip section does not apply to a model;
+/// empty: it applies.
 std::string no_section(const ModelVariant& variant);
 
-/// The same for a test whose strand has a non-planar natural curvature.
+/// Returns the reason why a test with a non-planar natural curvature does not apply to
+/// a model; empty: it applies.
 std::string no_curl(const ModelVariant& variant);
 
 }  // namespace tress::experiments::validation

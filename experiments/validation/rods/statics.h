@@ -48,7 +48,8 @@ class Statics {
   /// Small motions about the equilibrium with all supports; the least square is negative
   /// where the equilibrium is unstable.
   std::vector<SmallMotion> motions();
-  /// Their omega^2 including follower loads: complex where they grow.
+  /// Returns omega^2 of the small motions, follower loads included: complex where they
+  /// grow.
   std::vector<std::complex<double>> squares();
   double least_square() { return motions().front().square; }
   /// Displacements of the points in a motion's shape, (3 count) m.
