@@ -225,7 +225,7 @@ class StrandsRun:
         self._core = _core.StrandsRun(scene._core, threads)
 
     def advance(self, t):
-        """To t (s) without the interpreter's lock; SolveError says what went wrong."""
+        """Runs to t (s) without the interpreter's lock; SolveError gives the reason."""
         self._core.advance(t)
 
     @property

@@ -208,7 +208,7 @@ class System:
         self._core.reset()
 
     def memory(self):
-        """What accept() has changed, for ``recall`` of a system made alike."""
+        """Returns the state that accept() has changed, for ``recall`` of an equal system."""
         return self._core.memory()
 
     def recall(self, memory):

@@ -299,7 +299,7 @@ export const unsolved = (tables) => {
       own.filter((row) => row.hair === hair).every((row) => row.holds === 'false' && row.failure),
     );
     const named = lost.length > 0 ? ` (${lost.sort((a, b) => a - b).join(', ')})` : '';
-    return `${lost.length}${named} of ${hairs.length} by \`${model}\``;
+    return `${lost.length}${named} of ${hairs.length} with \`${model}\``;
   };
   return `Hairs that neither method solves: ${distinct(rows.map((row) => row.model)).map(of_model).join(', ')}`;
 };

@@ -12,7 +12,7 @@ const head = 'full_head';
 
 const words = (row) =>
   `${every(row) ? `each of ${row.strands} hairs` : `${row.guides} guides for ${row.strands} hairs`}, ` +
-  `${row.elements} elements, steps of ${number(1e3 * row.dt_s)} ms, ${row.bits} bits`;
+  `${row.elements} elements, steps of ${number(1e3 * row.dt_s)} ms, ${row.bits}-bit precision`;
 
 /// Of the shipped head, for the smallest target error.
 export const answer = (tables) => {

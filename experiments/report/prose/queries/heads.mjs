@@ -101,7 +101,7 @@ export const oversubscribed = (tables, root) => {
   });
   const words = odd.map(
     ({ row, full }) =>
-      `${row.strands} hairs in ${row.bits} bits take ${number(1e3 * full.cost_per_step_s)} ms with ${full.threads} threads and ` +
+      `${row.strands} hairs in ${row.bits}-bit precision take ${number(1e3 * full.cost_per_step_s)} ms with ${full.threads} threads and ` +
       `${number(1e3 * row.cost_per_step_s)} ms with ${row.threads}`,
   );
   return (

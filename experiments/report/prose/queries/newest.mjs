@@ -316,7 +316,7 @@ export function published_errors(tables) {
   const rows = rows_of(tables, 'peers_published').filter((row) => row.figure);
   must(
     rows.every((row) => !/error/.test(row.measured ?? '')),
-    'none of the published figures says how wrong the motion is',
+    'no published figure gives the error of the motion',
   );
-  return `None of these ${rows.length} figures says how wrong the motion is`;
+  return `None of these ${rows.length} figures gives the error of the motion`;
 }
