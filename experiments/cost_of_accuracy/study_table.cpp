@@ -14,11 +14,10 @@ namespace {
 constexpr Column table_columns[] = {
     {"scene", "name of the scene"},
     {"kind",
-     "winner, runner_up (another model or integrator), without (one choice replaced), "
-     "by_step and by_tolerance (of one model, the cheapest without and with error "
-     "control), budget, front (Pareto), as_given (by the scene file); method: the "
-     "cheapest of one "
-     "model by one integrator"},
+     "winner, runner_up (another model or integrator), without (one choice "
+     "replaced), by_step and by_tolerance (of one model, the cheapest without and "
+     "with error control), budget, front (Pareto), as_given (by the scene file); "
+     "method: the cheapest of one model with one integrator"},
     {"choice",
      "replaced choice, in kind without; elements: twice, dt_s: half (or the "
      "tolerance that halves the steps)"},
@@ -47,9 +46,8 @@ constexpr Column table_columns[] = {
      "tip against the continuous rod: rms over frames and strands, over the length"},
     {"error_refined_rel", "error_rel against the reference refined once more"},
     {"error_neighbours_rel",
-     "largest error of its neighbours: 1 and 2 elements more, step or tolerance times "
-     "0.7 "
-     "and 1.4, moduli and length 2 % up and down"},
+     "largest error of its neighbours: 1 and 2 elements more, step or tolerance "
+     "times 0.7 and 1.4, moduli and length 2 % up and down"},
     {"worst_neighbour", "neighbour that has this error"},
     {"margin",
      "error_neighbours_rel and reference_gap together, over the target error; at "

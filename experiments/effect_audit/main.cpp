@@ -240,9 +240,8 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
           1e2 * row.number("accuracy_rel")));
     } else {
       lines.push_back(fmt::format(
-          "{}: {}: {} (without it the tips move by {:.2g} % of the length, and {:.0f} % "
-          "of "
-          "the time goes)",
+          "{}: {}: {} (without it the tips move by {:.2g} % of the length, and "
+          "{:.0f} % of the time goes)",
           scene, effect, row.text("verdict"), 1e2 * row.number("error_without_rel"),
           1e2 * row.number("cost_share")));
     }

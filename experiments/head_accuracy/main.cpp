@@ -26,10 +26,10 @@ constexpr Parameter own_settings[] = {
      .text = true,
      .fallback = "scenes/full_head.toml"},
     {.name = "grooms",
-     .help = "grooms of the study, as in curly_varied_shaken,straight_alike_released: "
-             "straight, wavy or curly, equal or varied hairs, released or shaken; "
-             "default: all, "
-             "or none where scenes are given",
+     .help = "grooms of the study, as in "
+             "curly_varied_shaken,straight_alike_released: straight, wavy or curly, "
+             "equal or varied hairs, released or shaken; default: all, or none where "
+             "scenes are given",
      .text = true,
      .fallback = "usual"},
     {.name = "accuracy",

@@ -47,9 +47,8 @@ constexpr Column columns[] = {
     {"steps_usual", "tolerance: steps at 1e-3"},
     {"work_usual", "tolerance: work at 1e-3 (max_work)"},
     {"t_end_s",
-     "time simulated by a run, at least; of your scene that of the run at dt_max, up to "
-     "5 "
-     "times the scene's duration"},
+     "time simulated by a run, at least; of your scene that of the run at dt_max, up "
+     "to 5 times the scene's duration"},
     {"at_1_5", "your scene: reason for instability at 1.5 times dt_max; stable: none"},
     {"energy_bound_j", "passive scenes: gain of energy that is unstable"},
     {"energy_gain_j", "largest gain of energy at dt_max"},

@@ -103,8 +103,7 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
                             best->number(best->has("tolerance") ? "tolerance" : "rtol"));
       lines.push_back(
           fmt::format("{}: within {:.3g} % ({}, over the time compared): {}, {}, {}: "
-                      "{:.2g} % in {:.3g} "
-                      "ms per simulated second",
+                      "{:.2g} % in {:.3g} ms per simulated second",
                       scene, 1e2 * target, best->text("error_kind"), best->text("model"),
                       best->text("integrator"), steps, 1e2 * best->number("error_rel"),
                       1e3 * best->number("wall_s_per_sim_s")));
