@@ -252,9 +252,9 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
 /// A scene that fails without one of its effects is a valid result.
 bool finding(const Row& row) { return row.text("effect") != "none"; }
 
-constexpr Unused unused[] = {{"models", "the scenes say theirs"},
-                             {"integrators", "the scenes say theirs"},
-                             {"elements", "the scenes say theirs"},
+constexpr Unused unused[] = {{"models", "the scene files set them"},
+                             {"integrators", "the scene files set them"},
+                             {"elements", "the scene files set them"},
                              not_random};
 
 }  // namespace

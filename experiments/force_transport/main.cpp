@@ -313,8 +313,8 @@ std::vector<Case> cases(const CommandLine& line) {
 /// A strand that diverges, by its model or by the published step, is a result.
 bool finding(const Row& row) { return row.status() == "unstable"; }
 
-constexpr Unused unused[] = {{"repeat", "its costs are medians of five runs"},
-                             {"seed", "its small starts are always the same"}};
+constexpr Unused unused[] = {{"repeat", "costs are medians of five runs"},
+                             {"seed", "small starts are always the same"}};
 
 }  // namespace
 }  // namespace tress::experiments::force_transport

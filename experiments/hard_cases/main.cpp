@@ -142,7 +142,7 @@ constexpr OwnOption command_options[] = {
 };
 
 constexpr Unused unused[] = {
-    {"elements", "how many there are belongs to each case"}, not_repeated, not_random};
+    {"elements", "each case sets its number of elements"}, not_repeated, not_random};
 
 }  // namespace
 }  // namespace tress::experiments::hard_cases

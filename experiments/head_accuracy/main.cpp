@@ -199,11 +199,11 @@ bool finding(const Row& row) {
          (row.status() == "lost" && row.text("kind") != "cheapest");
 }
 
-constexpr Unused unused[] = {{"models", "the scenes say theirs"},
-                             {"integrators", "the scenes say theirs"},
-                             {"elements", "how many are needed is what it finds"},
+constexpr Unused unused[] = {{"models", "the scene files set them"},
+                             {"integrators", "the scene files set them"},
+                             {"elements", "the search finds the number needed"},
                              {"repeat", "the frames of a run are its repetitions"},
-                             {"seed", "the scenes say theirs"}};
+                             {"seed", "the scene files set them"}};
 
 }  // namespace
 }  // namespace tress::experiments::head_accuracy

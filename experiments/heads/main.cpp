@@ -247,7 +247,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
-constexpr Unused unused[] = {{"repeat", "--set frames says how long a row is timed"},
+constexpr Unused unused[] = {{"repeat", "--set frames sets the timed duration of a row"},
                              not_random};
 
 }  // namespace

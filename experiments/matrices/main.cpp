@@ -299,7 +299,7 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
 }
 
 constexpr Unused unused[] = {
-    {"integrators", "the scenes say theirs"}, not_random, not_repeated};
+    {"integrators", "the scene files set them"}, not_random, not_repeated};
 
 }  // namespace
 }  // namespace tress::experiments::matrices

@@ -195,8 +195,8 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-constexpr Unused unused[] = {{"models", "the scenes say theirs"},
-                             {"integrators", "the scenes say theirs"},
+constexpr Unused unused[] = {{"models", "the scene files set them"},
+                             {"integrators", "the scene files set them"},
                              {"elements", "the study tries many"},
                              not_random,
                              not_repeated};
