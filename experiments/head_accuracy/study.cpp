@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "contract/input_error.h"
 #include "experiments/head_accuracy/head_accuracy.h"
 #include "simulation/scene/strand_tables.h"
 
