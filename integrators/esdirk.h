@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 
 namespace tress::integrators {
 

@@ -1,7 +1,7 @@
 #include "contract/moving_history.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 
 namespace tress::integrators {
 namespace {

@@ -4,7 +4,7 @@
 #include "integrators/entry.h"
 #include "integrators/error_indicator.h"
 #include "integrators/fixed_step.h"
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {

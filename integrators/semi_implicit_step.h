@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {

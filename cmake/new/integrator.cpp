@@ -2,7 +2,7 @@
 #include "contract/fill_in.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {

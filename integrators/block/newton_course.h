@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "integrators/block/block_work.h"
-#include "integrators/newton_rules.h"
+#include "integrators/stage/newton_rules.h"
 
 namespace tress::integrators {
 
@@ -29,7 +29,7 @@ class NewtonCourse {
   virtual void go_on(BlockWork<N>& work, Verdicts all) = 0;
 };
 
-/// One whole correction, as Stage::single_step().
+/// One whole correction, as Newton::single_step().
 template <class N>
 class SingleCourse final : public NewtonCourse<N> {
  public:
@@ -38,7 +38,7 @@ class SingleCourse final : public NewtonCourse<N> {
   void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
 };
 
-/// Whole corrections, as Stage::newton().
+/// Whole corrections, as Newton.
 template <class N>
 class PlainCourse final : public NewtonCourse<N> {
  public:
@@ -65,7 +65,7 @@ class PlainCourse final : public NewtonCourse<N> {
 };
 
 /// Damped corrections: the whole one, or the largest halving of it after which the next
-/// one with the same matrix is smaller [Deuflhard 2011, section 3.3], as Stage::damped().
+/// one with the same matrix is smaller [Deuflhard 2011, section 3.3], as Damped.
 /// Lanes wait for the one that halves most.
 template <class N>
 class DampedCourse final : public NewtonCourse<N> {

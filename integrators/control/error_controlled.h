@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "contract/integrator.h"
-#include "integrators/control/effort.h"
 #include "integrators/control/error_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
+#include "integrators/stage/effort.h"
 
 namespace tress::integrators {
 

@@ -4,7 +4,7 @@
 
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 #include "integrators/sundials/sundials.h"
 
 namespace tress::integrators {

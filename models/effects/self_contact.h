@@ -22,9 +22,9 @@ std::span<const Parameter> self_contact_parameters();
 /// four points about a contact and sum to zero (PieceContact). If two places are equally
 /// near, as inside a corner of the polyline, the force jumps from one to the other: a
 /// coil of 20 elements came to rest there, and implicit steps are solved on the jump
-/// (integrators/stage.h). The repulsion is in potential(). The search along the strand
-/// takes strides too short to skip a contact: O(n) for n points without near contacts,
-/// O(n^2) at worst.
+/// (integrators/stage/stage.h). The repulsion is in potential(). The search along the
+/// strand takes strides too short to skip a contact: O(n) for n points without near
+/// contacts, O(n^2) at worst.
 class SelfContact final : public Effect {
  public:
   /// Throws InputError unless `separation` is finite and exceeds the law's reach: a

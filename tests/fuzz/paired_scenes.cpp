@@ -32,10 +32,10 @@ constexpr double newton = 1e-6;
 constexpr double tolerance = 1e-3;
 // of the largest energy of the run. Strands that take a step again in shorter ones are no
 // longer the same steps: only their verdicts are compared. A strand by itself has more
-// ways to solve a step than a head has (integrators/stage.h): a head that says that it
-// found no solution is counted, but is no finding. The equations of a long step may have
-// several solutions, as where hairs start deep in a body, and either way takes one of
-// them: where energies differ, both must come to the same ones with a sixteenth of the
+// ways to solve a step than a head has (integrators/stage/stage.h): a head that says that
+// it found no solution is counted, but is no finding. The equations of a long step may
+// have several solutions, as where hairs start deep in a body, and either way takes one
+// of them: where energies differ, both must come to the same ones with a sixteenth of the
 // step.
 
 namespace {

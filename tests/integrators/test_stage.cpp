@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 #include "tests/support/catalogue_cases.h"
 
 namespace tress::test_stage {

@@ -2,7 +2,7 @@
 
 #include "example.h"
 #include "integrators/fixed_step.h"
-#include "integrators/stage.h"
+#include "integrators/stage/stage.h"
 #include "linear/vector_ops.h"
 
 namespace example {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-/// When Newton's iterations go on and end, of one strand (integrators/stage.h) and of
-/// strands in lanes (integrators/block/newton_course.h).
+/// When Newton's iterations go on and end, of one strand (integrators/stage/stage.h) and
+/// of strands in lanes (integrators/block/newton_course.h).
 namespace tress::integrators {
 
 /// After this many growing corrections the iteration counts as not converging.

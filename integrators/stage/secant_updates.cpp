@@ -1,4 +1,4 @@
-#include "integrators/secant_updates.h"
+#include "integrators/stage/secant_updates.h"
 
 #include <algorithm>
 #include <cmath>

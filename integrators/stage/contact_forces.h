@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "integrators/stage/stage_equations.h"
+
+namespace tress::integrators {
+
+/// The state and the forces of rigid contacts at once: each iteration solves the
+/// equations and the laws of contact, linear about the last state [Josephy 1979], and is
+/// damped as those of Damped are. Tried with exact contact where Newton's method fails
+/// with the multipliers of now, from its guess and from zero acceleration; for systems
+/// with a Complementarity.
+///
+/// Cost: for each correction a matrix, a residual and a solve for each of the three
+/// components of every contact, and two of both more, again for each halving. So contacts
+/// with more than two components for every unknown are left to other ways.
+class ContactForces {
+ public:
+  ContactForces(StageEquations& equations, ContactForm& contacts, double tolerance)
+      : equations_(equations),
+        contacts_(contacts),
+        tolerance_(tolerance),
+        start_(equations.dynamics),
+        step_(start_),
+        next_(start_),
+        response_(start_),
+        free_(start_),
+        q_next_(start_.a.size()),
+        v_next_(start_.a.size()) {}
+
+  /// x: guess in, solution out. `touched`: something may have been in contact.
+  Status solve(Unknowns& x, bool& touched) noexcept;
+
+ private:
+  Status iterate(Complementarity& law, Unknowns& x, bool& touched) noexcept;
+  Status find_compliance(Complementarity& law, const Unknowns& x,
+                         std::size_t count) noexcept;
+  Status balance(Complementarity& law, const Unknowns& x, Unknowns& step, double& size,
+                 double& violation) noexcept;
+  Status halve_until_smaller(Complementarity& law, double size, Unknowns& x) noexcept;
+  void go(Complementarity& law, double part, Unknowns& x) noexcept;
+
+  StageEquations& equations_;
+  ContactForm& contacts_;
+  double tolerance_;              // m/s
+  Unknowns start_, step_, next_;  // of a correction, and the one after it
+  Unknowns response_, free_;      // to a force, without one
+  std::vector<double> q_next_, v_next_;
+  // Forces of contacts and velocities that they cause, and the matrix between both.
+  std::vector<double> force_, force_start_, force_step_, velocity_, change_, compliance_;
+};
+
+}  // namespace tress::integrators

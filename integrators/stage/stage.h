@@ -1,0 +1,101 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "integrators/stage/contact_forces.h"
+#include "integrators/stage/continuation.h"
+#include "integrators/stage/damped.h"
+#include "integrators/stage/effort.h"
+#include "integrators/stage/jump.h"
+#include "integrators/stage/lengthened.h"
+#include "integrators/stage/newton.h"
+
+namespace tress::integrators {
+
+/// Solves the nonlinear equations of one implicit stage, for every implicit fixed-step
+/// method: finds a (n) and lambda (m) with
+///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a.
+///
+/// Each way to solve them is a class of its own, tried in this order until one succeeds:
+///
+///     Newton         whole corrections
+///     Jump           where Newton's iterates alternate between two states
+///     Damped         from the guess, from zero acceleration and from standstill
+///     Lengthened     a part of the step that grows, with the drift of the whole step,
+///                    then with its own
+///     Continuation   where the last of these gets stuck
+///
+/// With exact contact (ContactForm) the multipliers of contact are constants while the
+/// equations are solved; they are improved and the equations are solved again until the
+/// law holds within Options::contact_tolerance (augmented Lagrangian). There
+/// ContactForces follows Jump.
+class Stage {
+ public:
+  using Ending = NewtonEnding;
+  using Matrix = Newton::Matrix;
+
+  Stage(Dynamics& dynamics, const Options& options) : Stage(dynamics, options, {}) {}
+  Stage(Dynamics& dynamics, const Options& options, Ending ending);
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  /// a, lambda: guess in, solution out. `retry` when nothing converges. Where a later
+  /// solution with contact fails, or after Options::contact_iterations, the one before
+  /// stands, and stats tell by how much the law is violated. `retry` where friction would
+  /// do work on a slide: ContactForm::drive() above that tolerance.
+  Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
+               Matrix matrix = Matrix::own, Effort effort = Effort::whole) noexcept;
+
+  /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
+  /// with the matrix at acceleration a_matrix.
+  Status single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
+                     InOut lambda) noexcept;
+
+  /// The state from which the next solution goes on, to be told of every step: its
+  /// stresses are near those of the solution, where those of a guess need not be.
+  void leave(double t, In q) noexcept { stresses_.leave(t, q); }
+
+  /// Where solve() goes on from along the bodies that points may touch (ContactForm): x0
+  /// in X = x0 + tau U. Empty without exact contact.
+  InOut place_bar() { return place_bar_; }
+  /// X, or U, at a state, in vectors of that size.
+  void places(double t, In q, In v, Out x) noexcept {
+    if (contacts_ != nullptr) contacts_->places(t, q, v, x);
+  }
+  void slides(double t, In q, In v, Out u) noexcept {
+    if (contacts_ != nullptr) contacts_->slides(t, q, v, u);
+  }
+
+  In q() const { return equations_.q(); }  // of the last call
+  In v() const { return equations_.v(); }
+
+ private:
+  void pose(double t, In q_bar, In v_bar, Weights w, In a, In lambda) noexcept;
+  Status solve_with_contact(Matrix matrix, Effort effort) noexcept;
+  Status first_contact(Matrix matrix, Effort effort) noexcept;
+  Status next_contact() noexcept;
+  Status by_newton(Matrix matrix) noexcept;
+  Status by_all_means() noexcept;
+  Status with_forces(bool& touched) noexcept;
+  Status noted(Status s) noexcept;
+
+  StageEquations equations_;
+  StressOrigin stresses_;
+  ContactForm* contacts_;  // null: none
+  Newton newton_;
+  Jump jump_;
+  Damped damped_;
+  Continuation continuation_;
+  Lengthened lengthened_;
+  Unknowns x_, guess_;  // guess_: of by_newton()
+
+  // With contacts.
+  double contact_tolerance_;
+  int contact_iterations_;
+  std::optional<ContactForces> forces_;
+  Unknowns held_;  // the guess, or the last solution
+  std::vector<double> q_start_, place_bar_;
+};
+
+}  // namespace tress::integrators

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "integrators/formulation/dynamics.h"
+
+namespace tress::integrators {
+
+/// Where Newton's matrices of systems with a StressForm take their stresses: first from
+/// the state that the motion left last, then from Newton's corrections, so that an edge
+/// that turns within an iteration is not stretched by that. Without such a form: nothing.
+class StressOrigin {
+ public:
+  explicit StressOrigin(Dynamics& dynamics)
+      : form_(dynamics.system().stress_form()),
+        q_left_(size(dynamics.n())),
+        q_corrected_(q_left_) {}
+
+  bool exists() const { return form_ != nullptr; }
+  /// The state from which the next solution goes on.
+  void leave(double t, In q) noexcept {
+    if (form_ == nullptr) return;
+    t_left_ = t;
+    left_ = true;
+    std::ranges::copy(q, q_left_.begin());
+  }
+  /// A solution is a state to go on from, once leave() has been called.
+  void found(double t, In q) noexcept {
+    if (left_) leave(t, q);
+  }
+  /// Before the first matrix of an iteration.
+  void hold() noexcept {
+    if (left_) form_->take_stresses(t_left_, q_left_, StressForm::Stresses::held);
+  }
+  /// The next correction starts at q.
+  void correct_from(In q) noexcept {
+    if (form_ != nullptr) std::ranges::copy(q, q_corrected_.begin());
+  }
+  /// Before the matrices that follow a correction.
+  void follow(double t) noexcept {
+    if (form_ != nullptr) {
+      form_->take_stresses(t, q_corrected_, StressForm::Stresses::followed);
+    }
+  }
+
+ private:
+  StressForm* form_;  // null: none
+  double t_left_ = 0;
+  bool left_ = false;                         // at t_left_ and q_left_
+  std::vector<double> q_left_, q_corrected_;  // q before the last correction
+};
+
+}  // namespace tress::integrators
