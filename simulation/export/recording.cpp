@@ -63,14 +63,14 @@ struct Saved {
 std::string state_text(const std::string& key, const Saved& saved) {
   const Snapshot& s = saved.snapshot;
   Bytes bytes(key);
-  bytes.put(std::vector<std::uint64_t>{saved.frames, saved.sum, s.strands.size()});
+  bytes.put(std::vector<std::uint64_t>{saved.frames, saved.sum, s.strands.size(),
+                                       s.couplings.size()});
   bytes.put(std::vector{s.t});
   for (const auto& strand : s.strands) {
     for (const auto* x : {&strand.q, &strand.v, &strand.memory}) bytes.put_sized(*x);
   }
   bytes.put_sized(s.guards);
-  bytes.put_sized(s.rubs);
-  bytes.put_sized(s.mesh);
+  for (const auto& coupling : s.couplings) bytes.put_sized(coupling);
   std::vector<std::uint64_t> which;
   std::vector<double> when;
   for (const LostStrand& one : s.lost) {
@@ -94,22 +94,24 @@ Saved parse_state(std::string_view text, const RunKey& key, const std::string& f
   Bytes bytes(std::string(content.substr(first.size() + 1)));
   std::vector<std::uint64_t> head;
   std::vector<double> t;
-  bool whole = bytes.take(head, 3) && bytes.take(t, 1);
+  bool whole = bytes.take(head, 4) && bytes.take(t, 1);
   Saved saved;
   if (whole) {
-    saved = {
-        head[0],
-        head[1],
-        {.t = t[0], .strands = {}, .guards = {}, .rubs = {}, .mesh = {}, .lost = {}}};
+    saved = {head[0],
+             head[1],
+             {.t = t[0], .strands = {}, .guards = {}, .couplings = {}, .lost = {}}};
     saved.snapshot.strands.resize(head[2]);
+    saved.snapshot.couplings.resize(head[3]);
   }
   for (auto& strand : saved.snapshot.strands) {
     for (auto* x : {&strand.q, &strand.v, &strand.memory}) {
       whole = whole && bytes.take_sized(*x);
     }
   }
-  whole = whole && bytes.take_sized(saved.snapshot.guards) &&
-          bytes.take_sized(saved.snapshot.rubs) && bytes.take_sized(saved.snapshot.mesh);
+  whole = whole && bytes.take_sized(saved.snapshot.guards);
+  for (auto& coupling : saved.snapshot.couplings) {
+    whole = whole && bytes.take_sized(coupling);
+  }
   std::vector<std::uint64_t> which;
   std::vector<double> when;
   whole = whole && bytes.take_sized(which) && bytes.take_sized(when) &&

@@ -82,8 +82,9 @@ void Guard::start(double t, In q, In v) {
   account_.start(t, {}, 0);
   if (energetics_ == nullptr) return;
   const Energy energy = energetics_->energy(t, q, v);
-  meter_.start(energy, energetics_->power(t, q, v));
-  const EnergyMeasure begin = measure(t, q, v, energy);
+  const double power = energetics_->power(t, q, v);
+  meter_.start(energy, power);
+  const EnergyMeasure begin = measure(t, q, v, energy, power);
   account_.start(t, begin, slack(t, q, v, begin));
 }
 
@@ -118,19 +119,20 @@ bool Guard::judge(double t, In q, In v) {
   if (stretched(t, q)) return false;
   if (energetics_ == nullptr) return true;
   const Energy energy = energetics_->energy(t, q, v);
-  const EnergyMeasure now = measure(t, q, v, energy);
-  meter_.gather(t - account_.seen(), energy, energetics_->power(t, q, v));
+  const double power = energetics_->power(t, q, v);
+  meter_.gather(t - account_.seen(), energy, power);
+  const EnergyMeasure now = measure(t, q, v, energy, power);
   account_.gather(t, now);
   return !gained(t, now) && !too_fast(t);
 }
 
-EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy) {
+EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double power) {
   EnergyMeasure now{.kinetic = energy.kinetic, .potential = energy.potential};
   if (points_ != nullptr) {
     points_->positions(t, q, x_);
     points_->velocities(t, q, v, u_);
   }
-  if (strands_.empty()) now.power = energetics_->power(t, q, v);
+  if (strands_.empty()) now.power = power;
   std::size_t first = 0;
   for (const GuardedStrand& strand : strands_) {
     const Points p = points_of(strand, first);

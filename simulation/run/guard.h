@@ -69,7 +69,7 @@ class Guard {
   void recall(In memory);
 
  private:
-  EnergyMeasure measure(double t, In q, In v, const Energy& energy);
+  EnergyMeasure measure(double t, In q, In v, const Energy& energy, double power);
   Points points_of(const GuardedStrand& strand, std::size_t first);
   void move_with(double t, const GuardedStrand& strand, const Points& p,
                  std::size_t first, EnergyMeasure& now);

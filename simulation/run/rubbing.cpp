@@ -101,7 +101,7 @@ void Rubbing::add(System& strands, Integrator& method, const Options& options) {
   }
 }
 
-void Rubbing::restart(In memory) {
+void Rubbing::restore(In memory) {
   friction_.recall(memory);
   for (Responder& responder : responders_) responder.touches = false;
   for (const std::size_t k : friction_.touching()) {

@@ -10,14 +10,14 @@
 #include "integrators/control/impulsive.h"
 #include "models/effects/strand_friction.h"
 #include "models/strand/strand.h"
+#include "simulation/run/strand_coupling.h"
 
 namespace tress::simulation {
 
 /// Strands that touch exactly, each or some advanced by a method of their own: they move
 /// as if they were alone, then impulses at the end of the step keep them from passing
-/// through each other and through obstacles (StrandFriction). A step: before_step(), all
-/// methods advance by h, after_step().
-class Rubbing {
+/// through each other and through obstacles (StrandFriction).
+class Rubbing final : public StrandCoupling {
  public:
   /// Obstacles are found among the effects. Throws InputError on strands with branches.
   Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
@@ -25,24 +25,21 @@ class Rubbing {
   /// The next strands, one or several as one system (StrandBlock), and the method that
   /// steps them; both must outlive this. Throws InputError if the method cannot go on
   /// after impulses.
-  void add(System& strands, Integrator& method, const Options& options);
+  void add(System& strands, Integrator& method, const Options& options) override;
 
-  /// x: all points, 3 numbers each, strand after strand.
-  void before_step(In x, const Loop& loop);
-  /// Need not be called: what was added as the k-th, if it touched others in the last
-  /// step, finds how it responds to forces right after its step of h, while what that
-  /// needs is near in memory. Safe for different ones at once.
-  void prepare(std::size_t k, double h);
-  /// After a step of h that ended at t, with points and their velocities there. Methods
-  /// of friction().touching() then go on from new states. Not ok: failure() tells why.
-  Status after_step(double t, double h, In x, In u, const Loop& loop);
-  const std::string& failure() const { return failure_; }
+  void before_step(In x, const Loop& loop) override;
+  /// Need not be called: if system k touched others in the last step, finds how it
+  /// responds to forces.
+  void prepare(std::size_t k, double h) override;
+  Status after_step(double t, double h, In x, In u, const Loop& loop) override;
+  std::span<const std::size_t> moved() const override { return friction_.touching(); }
+  std::string failure() const override { return failure_; }
 
   const StrandFriction& friction() const { return friction_; }
-  /// Sweeps, and steps that ended before the law held, since restart().
-  const Stats& stats() const { return stats_; }
-  std::vector<double> memory() const { return friction_.memory(); }
-  void restart(In memory);
+  /// Sweeps, and steps that ended before the law held, since restore().
+  Stats stats() const override { return stats_; }
+  std::vector<double> memory() const override { return friction_.memory(); }
+  void restore(In memory) override;
 
  private:
   /// Strands that respond to forces at once: one, or those of a block that can.

@@ -107,7 +107,7 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
                                     double end) {
   const double begin = t;
   const std::vector<double> old_q = q, old_v = v, memory = system->memory();
-  const auto gathered = guard ? guard->memory() : Guard::Memory{};
+  const auto gathered = guard ? guard->memory() : Guards::Memory{};
   Options shorter = options;
   for (int k = 0; k < halvings && work_left(options) > 0; ++k) {
     ++before_.rejected;

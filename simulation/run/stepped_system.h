@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "integrators/catalogue.h"
-#include "simulation/run/guard.h"
+#include "simulation/run/guards.h"
 #include "simulation/run/metered.h"
 
 namespace tress::simulation {
@@ -25,7 +25,7 @@ struct SteppedSystem {
 
   std::unique_ptr<System> system;
   std::unique_ptr<Integrator> integrator;  // null before take_method()
-  std::optional<Guard> guard;
+  std::optional<Guards> guard;
   /// Effects of its first strand, of the second ...
   std::vector<std::shared_ptr<const Metered>> meters;
 

@@ -74,20 +74,26 @@ std::optional<SteppedSystem> StrandMaker::together(std::span<const StrandToMake>
   SteppedSystem made(std::move(system));
   made.meters = std::move(meters);
   hold(*made.system, strands);
-  add_guard(made, strands, first);
+  if (guard_) {
+    made.guard.emplace(dynamic_cast<StrandBlock&>(*made.system), guarded(strands), first);
+  }
   return made;
+}
+
+std::vector<GuardedStrand> StrandMaker::guarded(
+    std::span<const StrandToMake> strands) const {
+  std::vector<GuardedStrand> all;
+  for (const StrandToMake& strand : strands) {
+    Effects effects = effects_on(strand);
+    effects.insert(effects.end(), strand.between.begin(), strand.between.end());
+    all.push_back(guarded_strand(strand.strand, std::move(effects)));
+  }
+  return all;
 }
 
 void StrandMaker::add_guard(SteppedSystem& system, std::span<const StrandToMake> strands,
                             std::size_t first) const {
-  if (!guard_) return;
-  std::vector<GuardedStrand> guarded;
-  for (const StrandToMake& strand : strands) {
-    Effects effects = effects_on(strand);
-    effects.insert(effects.end(), strand.between.begin(), strand.between.end());
-    guarded.push_back(guarded_strand(strand.strand, std::move(effects)));
-  }
-  system.guard.emplace(*system.system, std::move(guarded), first);
+  if (guard_) system.guard.emplace(Guard(*system.system, guarded(strands), first));
 }
 
 }  // namespace tress::simulation

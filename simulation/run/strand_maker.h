@@ -39,12 +39,13 @@ class StrandMaker {
   std::unique_ptr<System> metered(
       const StrandToMake& strand,
       std::vector<std::shared_ptr<const Metered>>& meters) const;
-  /// A guard of strands that are this system, if the scene has guards.
+  /// One guard of strands that are this system, if the scene has guards.
   void add_guard(SteppedSystem& system, std::span<const StrandToMake> strands,
                  std::size_t first) const;
 
  private:
   Effects effects_on(const StrandToMake& strand) const;
+  std::vector<GuardedStrand> guarded(std::span<const StrandToMake> strands) const;
   Effects acting(const StrandToMake& strand,
                  std::vector<std::shared_ptr<const Metered>>& meters) const;
 

@@ -40,26 +40,27 @@ void World::restore(const Snapshot& snapshot) {
   failure_.clear();
   x_.forget();
   u_.forget();
-  if (rubbing_) rubbing_->restart(snapshot.rubs);
-  if (mesh_) mesh_->recall(snapshot.mesh);
+  for (std::size_t k = 0; k < couplings_.size(); ++k) {
+    couplings_[k]->restore(snapshot.couplings.empty() ? In() : snapshot.couplings[k]);
+  }
   exchange();
-  if (interaction_ && maker_.options().tolerance > 0) start_control();
+  if (interaction_ != nullptr && maker_.options().tolerance > 0) start_control();
   for (Body& body : bodies_) {
     if (!body.guard) continue;
     if (guards.empty()) {
       body.guard->start(t_, body.integrator->q(), body.integrator->v());
     } else {
-      body.guard->recall(guards.first(Guard::remembered));
-      guards = guards.subspan(Guard::remembered);
+      body.guard->recall(guards.first(body.guard->remembered()));
+      guards = guards.subspan(body.guard->remembered());
     }
   }
 }
 
 Snapshot World::snapshot() {
-  Snapshot snapshot{
-      .t = t_, .strands = {}, .guards = {}, .rubs = {}, .mesh = {}, .lost = lost_};
-  if (rubbing_) snapshot.rubs = rubbing_->memory();
-  if (mesh_) snapshot.mesh = mesh_->memory();
+  Snapshot snapshot{.t = t_, .strands = {}, .guards = {}, .couplings = {}, .lost = lost_};
+  for (const auto& coupling : couplings_) {
+    snapshot.couplings.push_back(coupling->memory());
+  }
   for (const Body& body : bodies_) {
     snapshot.add(body.seen_q(), body.seen_v(), body.system->memory(), body.coordinates,
                  body.memory);
@@ -156,8 +157,9 @@ void World::read_velocities(std::size_t k, double t) {
 }
 
 void World::exchange() {
-  if (interaction_) interaction_->update(positions(), velocities(), loop());
-  if (mesh_) mesh_->update(positions(), velocities());
+  for (const auto& coupling : couplings_) {
+    coupling->exchange(positions(), velocities(), loop());
+  }
 }
 
 Loop World::loop() {

@@ -10,12 +10,11 @@
 #include "integrators/control/point_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
-#include "models/effects/control_mesh.h"
-#include "models/effects/strand_interaction.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/rest/held_shape.h"
 #include "simulation/run/lost_strand.h"
 #include "simulation/run/rubbing.h"
+#include "simulation/run/strand_coupling.h"
 #include "simulation/run/strand_maker.h"
 #include "simulation/scene/scene.h"
 #include "simulation/threads/crew.h"
@@ -28,9 +27,8 @@ struct Snapshot {
   using OfStrand = SteppedSystem::State;
   double t = 0;  // s
   std::vector<OfStrand> strands;
-  std::vector<double> guards;  // their Guard::memory(); empty: they start here
-  std::vector<double> rubs;    // StrandFriction::memory()
-  std::vector<double> mesh;    // ControlMesh::memory()
+  std::vector<double> guards;  // their Guards::memory(); empty: they start here
+  std::vector<std::vector<double>> couplings;  // StrandCoupling::memory() of each
   std::vector<LostStrand> lost;
 
   /// Adds the strands of one system: parts of q and v of so many coordinates, and of its
@@ -111,11 +109,9 @@ class World {
   std::vector<ContactForce> contact_forces();
   double stretch();  // largest |length/rest - 1|, 0 if not available
   // Null if the scene names none.
-  const StrandInteraction* interaction() const { return interaction_.get(); }
-  const ControlMesh* mesh() const { return mesh_.get(); }
-  const StrandFriction* friction() const {
-    return rubbing_ ? &rubbing_->friction() : nullptr;
-  }
+  const StrandInteraction* interaction() const { return interaction_; }
+  const ControlMesh* mesh() const { return mesh_; }
+  const StrandFriction* friction() const { return friction_; }
   /// The point that point i is attached to, -1: none.
   const std::vector<int>& before() const { return before_; }
 
@@ -140,7 +136,7 @@ class World {
     Rewindable* rewindable = nullptr;
     State marked;
     double marked_t = 0;
-    Guard::Memory marked_guard{};
+    Guards::Memory marked_guard;
     PointNorm norm;
     void mark();
     void rewind();
@@ -173,9 +169,8 @@ class World {
   /// Those of the points of a body, which is at t, unless they are known.
   void read_positions(std::size_t k, double t);
   void read_velocities(std::size_t k, double t);
+  Status couple(double h);
   void exchange();
-
-  Status rub(double h);
 
   // With a tolerance, by intervals.
   struct Difference {
@@ -191,9 +186,11 @@ class World {
 
   const StrandMaker maker_;
   const bool stay_;  // failed strands do
-  std::unique_ptr<StrandInteraction> interaction_;
-  std::unique_ptr<ControlMesh> mesh_;
-  std::unique_ptr<Rubbing> rubbing_;
+  std::vector<std::unique_ptr<StrandCoupling>> couplings_;
+  // Parts of couplings, or null.
+  StrandInteraction* interaction_ = nullptr;
+  ControlMesh* mesh_ = nullptr;
+  const StrandFriction* friction_ = nullptr;
   std::vector<HeldShape> held_;
   std::optional<StepControl> control_;  // of the exchanges, with a tolerance
   Exchanges exchanges_;

@@ -19,9 +19,9 @@ Status World::advance(double t_end) {
   if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
-  const bool exchanges = interaction_ || rubbing_ || mesh_;
   const double count =
-      exchanges ? std::max(1.0, std::ceil(span / maker_.options().step - 1e-9)) : 1.0;
+      couplings_.empty() ? 1.0
+                         : std::max(1.0, std::ceil(span / maker_.options().step - 1e-9));
   const double begin = t_;
   for (long i = 1; i <= static_cast<long>(count); ++i) {
     const double t = i == static_cast<long>(count)
@@ -29,16 +29,16 @@ Status World::advance(double t_end) {
                          : begin + static_cast<double>(i) * (span / count);
     const bool last = i == static_cast<long>(count);
     const double h = t - t_;
-    if (rubbing_) rubbing_->before_step(positions(), loop());
+    for (const auto& coupling : couplings_) coupling->before_step(positions(), loop());
     x_.forget();
     u_.forget();
     crew_.run(bodies_.size(), [&](std::size_t k) {
       advance(bodies_[k], t, last);
       // What an exchange asks for costs least while the strand is near in memory.
-      if (!exchanges || bodies_[k].status != Status::ok) return;
+      if (couplings_.empty() || bodies_[k].status != Status::ok) return;
       read_positions(k, t);
       read_velocities(k, t);
-      if (rubbing_) rubbing_->prepare(k, h);
+      for (const auto& coupling : couplings_) coupling->prepare(k, h);
     });
     t_ = t;
     for (Body& body : bodies_) {
@@ -52,28 +52,32 @@ Status World::advance(double t_end) {
       failure_ = failure_of(body);
       return body.status;
     }
-    if (rubbing_) {
-      if (const Status s = rub(h); s != Status::ok) return s;
-    }
+    if (const Status s = couple(h); s != Status::ok) return s;
     exchange();
   }
   return Status::ok;
 }
 
-Status World::rub(double h) {
-  const Status done = rubbing_->after_step(t_, h, positions(), velocities(), loop());
-  std::size_t body = 0;
-  for (const std::size_t k : rubbing_->friction().touching()) {
-    while (k >= bodies_[body].first + bodies_[body].coordinates.size()) ++body;
-    x_.done[body] = u_.done[body] = 0;
+/// Couplings may give strands new states, after which all points are those of the new
+/// ones.
+Status World::couple(double h) {
+  for (const auto& coupling : couplings_) {
+    const Status done = coupling->after_step(t_, h, positions(), velocities(), loop());
+    std::size_t body = 0;
+    for (const std::size_t k : coupling->moved()) {
+      while (k >= bodies_[body].first + bodies_[body].coordinates.size()) ++body;
+      x_.done[body] = u_.done[body] = 0;
+    }
+    crew_.run(bodies_.size(), [&](std::size_t k) {
+      if (x_.done[k] != 0) return;
+      Body& touched = bodies_[k];
+      touched.keep(t_, touched.integrator->q(), touched.integrator->v());
+    });
+    if (done == Status::ok) continue;
+    failure_ = coupling->failure();
+    return done;
   }
-  crew_.run(bodies_.size(), [&](std::size_t k) {
-    if (x_.done[k] != 0) return;
-    Body& touched = bodies_[k];
-    touched.keep(t_, touched.integrator->q(), touched.integrator->v());
-  });
-  if (done != Status::ok) failure_ = rubbing_->failure();
-  return done;
+  return Status::ok;
 }
 
 std::string World::failure_of(const Body& body) const {
@@ -99,7 +103,7 @@ const Breach* World::breach() const {
 
 std::optional<MethodDissipation> World::dissipation() const {
   MethodDissipation sum;
-  if (interaction_ || mesh_ || rubbing_) return {};
+  if (!couplings_.empty()) return {};
   for (const Body& body : bodies_) {
     const bool known = body.guard && body.system->energetics() != nullptr &&
                        body.system->contact_form() == nullptr;
@@ -118,7 +122,8 @@ std::string World::not_smooth() const {
 }
 
 Stats World::stats() const {
-  Stats sum = rubbing_ ? rubbing_->stats() : Stats{};
+  Stats sum;
+  for (const auto& coupling : couplings_) add_work(coupling->stats(), sum);
   for (const Body& body : bodies_) add_work(body.stats(), sum);
   return sum;
 }

@@ -22,6 +22,14 @@ std::vector<int> material_points(const Scene& scene) {
   return points;
 }
 
+template <class Kind, class... Parts>
+Kind& couple_by(std::vector<std::unique_ptr<StrandCoupling>>& all, Parts&&... parts) {
+  auto made = std::make_unique<Kind>(std::forward<Parts>(parts)...);
+  Kind& kind = *made;
+  all.push_back(std::move(made));
+  return kind;
+}
+
 }  // namespace
 
 World::World(const Scene& scene, int threads, std::vector<HeldShape> held)
@@ -33,8 +41,8 @@ World::World(const Scene& scene, int threads, std::vector<HeldShape> held)
   if (scene.strands.empty()) {
     SteppedSystem made(scene.model->make(scene.model_options));
     if (scene.guard) {
-      made.guard.emplace(*made.system,
-                         guarded_strands(*scene.model, scene.model_options));
+      made.guard.emplace(
+          Guard(*made.system, guarded_strands(*scene.model, scene.model_options)));
     }
     add(std::move(made), 1);
   } else if (const Parameters* between = scene.interaction();
@@ -69,25 +77,22 @@ void World::add(SteppedSystem made, std::size_t strands) {
 
 Effects World::effects_between(std::size_t strand) const {
   Effects effects;
-  if (interaction_) effects.push_back(interaction_->effect(strand));
-  if (mesh_) effects.push_back(mesh_->effect(strand));
+  for (const auto& coupling : couplings_) {
+    if (auto effect = coupling->effect(strand)) effects.push_back(std::move(effect));
+  }
   return effects;
 }
 
 /// Natural strains by which all strands are at rest.
 void World::hold(const Scene& scene) {
   if (scene.rest != RestStrains::inverse) return;
-  if (interaction_) {
+  if (interaction_ != nullptr) {
     const std::vector<double> x = points_at_start(scene);
     interaction_->update(x, std::vector<double>(x.size()), loop());
   }
   if (held_.empty()) {
     held_ = held_shapes(
-        scene,
-        [this](std::size_t k) {
-          return interaction_ ? Effects{interaction_->effect(k)} : Effects{};
-        },
-        crew_);
+        scene, [this](std::size_t k) { return effects_between(k); }, crew_);
   }
   if (scene.unstable != Unstable::drop) return;
   const auto falls = std::ranges::find_if(held_, &HeldShape::falls);
@@ -101,7 +106,8 @@ void World::hold(const Scene& scene) {
 /// Each strand separately, or up to four of equal discretisation together.
 void World::build_strands(const Scene& scene, const Parameters* between) {
   if (between != nullptr) {
-    interaction_ = std::make_unique<StrandInteraction>(*between, material_points(scene));
+    interaction_ =
+        &couple_by<LaggedInteraction>(couplings_, *between, material_points(scene)).law;
   }
   hold(scene);
   std::vector<Strand> stiffer_strands;
@@ -110,10 +116,11 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
   }
   const std::vector<Strand>& strands = held_.empty() ? scene.strands : stiffer_strands;
   if (const Parameters* mesh = scene.mesh(); mesh != nullptr) {
-    mesh_ = std::make_unique<ControlMesh>(*mesh, segment_lengths(strands));
+    mesh_ = &couple_by<MeshCoupling>(couplings_, *mesh, segment_lengths(strands)).mesh;
   }
   if (const Parameters* rubs = scene.friction(); rubs != nullptr) {
-    rubbing_ = std::make_unique<Rubbing>(strands, *rubs, maker_.effects());
+    friction_ =
+        &couple_by<Rubbing>(couplings_, strands, *rubs, maker_.effects()).friction();
   }
   const auto to_make = [&](std::size_t k) {
     return StrandToMake{strands[k], effects_between(k),
@@ -169,7 +176,9 @@ void World::ready(const Scene& scene) {
   for (Body& body : bodies_) {
     body.take_method(scene.integrator, scene.options);
     body.rewindable = dynamic_cast<Rewindable*>(body.integrator.get());
-    if (rubbing_) rubbing_->add(*body.system, *body.integrator, scene.options);
+    for (const auto& coupling : couplings_) {
+      coupling->add(*body.system, *body.integrator, scene.options);
+    }
     const Snapshot::OfStrand all = body.initial_state();
     begin.add(all.q, all.v, all.memory, body.coordinates, body.memory);
   }
@@ -179,7 +188,7 @@ void World::ready(const Scene& scene) {
   x_.done.resize(bodies_.size());
   u_.done.resize(bodies_.size());
   restore(begin);
-  if (!mesh_) return;
+  if (mesh_ == nullptr) return;
   mesh_->tie(positions());
   exchange();
 }

@@ -100,7 +100,7 @@ TEST(ControlMeshScene, ContinuesASnapshotBitByBitOnAnyThreads) {
       if (i == 5) {
         EXPECT_GT(whole.mesh()->broken(), 0U);
         const Snapshot middle = half.snapshot();
-        EXPECT_EQ(middle.mesh.size(), half.mesh()->broken());
+        EXPECT_EQ(middle.couplings.back().size(), half.mesh()->broken());
         whole.restore(whole.snapshot());
         rest.restore(middle);
       }

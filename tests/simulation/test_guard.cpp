@@ -1,6 +1,7 @@
 // What physics rules out ends a run with a reason; what it allows goes on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -147,6 +148,48 @@ TEST_F(GuardTest, FindsAPointThatIsTooFast) {
   EXPECT_FALSE(guard_->judge(0.001, state_.q, state_.v));
   EXPECT_EQ(guard_->breach()->kind, Breach::Kind::speed);
   EXPECT_EQ(guard_->breach()->where, "strand 0, point 40");
+}
+
+/// Two strands as one system. One of them has 1.5 times the energy that it could gain by
+/// hanging down, which is less than both could.
+TEST(Guards, KnowTheEnergyOfEachStrandOfASystem) {
+  const Scene read =
+      scene({"super_helix\"\ntangent = \"stiff", "semi_implicit_euler", "0.001",
+             "elements = 4\n", "motion = \"fixed\"\n", "[effects.gravity]\n"});
+  const std::vector<StrandToMake> two(2, StrandToMake{read.strands.front()});
+  std::optional<SteppedSystem> made = StrandMaker(read).together(two, 3);
+  ASSERT_TRUE(made && made->guard);
+  const GuardedStrand one = guarded_strand(read.strands.front(), make_effects(read));
+  Guard whole(*made->system, {one, one});
+  auto [q, v] = initial_state(*made->system);
+  whole.start(0, q, v);
+  made->guard->start(0, q, v);
+  const std::size_t n = q.size() / 2;
+  std::fill(v.begin() + static_cast<std::ptrdiff_t>(n), v.end(), 1.0);
+  const double kinetic = made->system->energetics()->energy(0, q, v).kinetic;
+  for (double& rate : v) rate *= std::sqrt(1.5 * one.slack() / kinetic);
+  EXPECT_TRUE(whole.judge(0.001, q, v));
+  EXPECT_FALSE(made->guard->judge(0.001, q, v));
+  EXPECT_EQ(made->guard->breach()->kind, Breach::Kind::energy);
+  EXPECT_TRUE(says(made->guard->breach()->where, "strand 4"));
+}
+
+TEST(Guards, RememberWhatEachHasGathered) {
+  const Scene read = scene({"super_helix\"\ntangent = \"stiff", "semi_implicit_euler",
+                            "0.001", "elements = 4\n"});
+  const std::vector<StrandToMake> two(2, StrandToMake{read.strands.front()});
+  std::optional<SteppedSystem> made = StrandMaker(read).together(two, 0);
+  ASSERT_TRUE(made && made->guard);
+  Guards& guards = *made->guard;
+  const auto [q, v] = initial_state(*made->system);
+  guards.start(0, q, v);
+  EXPECT_TRUE(guards.judge(0.001, q, v));
+  const Guards::Memory memory = guards.memory();
+  EXPECT_EQ(memory.size(), guards.remembered());
+  guards.start(0.5, q, v);
+  EXPECT_NE(guards.memory(), memory);
+  guards.recall(memory);
+  EXPECT_EQ(guards.memory(), memory);
 }
 
 // Six links that begin at rest without weight, in wind on a root that moves: all of their
