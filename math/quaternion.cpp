@@ -18,22 +18,4 @@ Quaternion quaternion_of(const Frame& f) {
   return 1 / std::sqrt(dot(q, q)) * q;
 }
 
-void axis_gradient(const Quaternion& q, double (&g)[3][4]) {
-  const auto& [w, v] = q;
-  const double rows[3][4] = {
-      {w, v.x, -v.y, -v.z}, {v.z, v.y, v.x, w}, {-v.y, v.z, -w, v.x}};
-  for (int k = 0; k < 3; ++k) {
-    for (int l = 0; l < 4; ++l) g[k][l] = 2 * rows[k][l];
-  }
-}
-
-void turn_slope(const Quaternion& p, double (&g)[3][4]) {
-  const auto& [w, v] = p;
-  const double rows[3][4] = {
-      {-v.x, w, v.z, -v.y}, {-v.y, -v.z, w, v.x}, {-v.z, v.y, -v.x, w}};
-  for (int k = 0; k < 3; ++k) {
-    for (int l = 0; l < 4; ++l) g[k][l] = 2 * rows[k][l];
-  }
-}
-
 }  // namespace tress

@@ -30,8 +30,9 @@ inline Quaternion nearer(const Quaternion& p, const Quaternion& q) {
   return dot(p, q) < 0 ? -1.0 * q : q;
 }
 /// q' for a frame rotating with omega (rad/s, world components): omega q/2.
-inline Quaternion rate_of(const Quaternion& q, const Vec& omega) {
-  return 0.5 * (Quaternion{0, omega} * q);
+template <class T>
+QuaternionOf<T> rate_of(const QuaternionOf<T>& q, const Vec3<T>& omega) {
+  return T(0.5) * (QuaternionOf<T>{T(0), omega} * q);
 }
 
 /// First axis of the frame times |q|^2: a quadratic form of q.
@@ -73,15 +74,31 @@ void store_quaternion(const QuaternionOf<T>& q, T* p) {
 }
 
 /// The k-th of the four basis quaternions.
-inline Quaternion unit_quaternion(int k) {
-  double q[4] = {};
-  q[k] = 1;
+template <class T = double>
+QuaternionOf<T> unit_quaternion(int k) {
+  T q[4] = {T(0), T(0), T(0), T(0)};
+  q[k] = T(1);
   return load_quaternion(q);
 }
 
 /// d first_axis/dq.
-void axis_gradient(const Quaternion& q, double (&g)[3][4]);
+template <class T>
+void axis_gradient(const QuaternionOf<T>& q, T (&g)[3][4]) {
+  const auto& [w, v] = T(2) * q;
+  const T rows[3][4] = {{w, v.x, -v.y, -v.z}, {v.z, v.y, v.x, w}, {-v.y, v.z, -w, v.x}};
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 4; ++l) g[k][l] = rows[k][l];
+  }
+}
+
 /// d turn_between(p, q)/dq; the derivative by p is turn_slope(-q).
-void turn_slope(const Quaternion& p, double (&g)[3][4]);
+template <class T>
+void turn_slope(const QuaternionOf<T>& p, T (&g)[3][4]) {
+  const auto& [w, v] = T(2) * p;
+  const T rows[3][4] = {{-v.x, w, v.z, -v.y}, {-v.y, -v.z, w, v.x}, {-v.z, v.y, -v.x, w}};
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 4; ++l) g[k][l] = rows[k][l];
+  }
+}
 
 }  // namespace tress

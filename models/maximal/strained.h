@@ -1,19 +1,28 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
+#include <utility>
 
 #include "models/maximal/elasticity.h"
 
 /// Energies that are sums of squares of strains. A `Part` of a strand is a kernel over
-/// few coordinates x:
+/// few coordinates x, in numbers of type T, double or a pack:
 ///
 ///     static constexpr int strains, coordinates;
-///     double stiffness[strains], friction[strains];
-///     template <class T> void strain(const T* x, T* s) const;
-///     void gradient(const double* x, double (&g)[strains][coordinates]) const;
+///     T stiffness[strains], friction[strains];
+///     template <class U> void strain(const U* x, U* s) const;
+///     void gradient(const T* x, T (&g)[strains][coordinates]) const;
 ///     /// h += sum_k stress_k d^2 s_k/dx^2
-///     void add_second(const double* x, const double* stress,
-///                     double (&h)[coordinates][coordinates]) const;
+///     void add_second(const T* x, const T* stress,
+///                     T (&h)[coordinates][coordinates]) const;
+///
+/// and, needed where T is a pack, which of its strains have friction, the first ones, and
+/// the derivatives of their rates by x:
+///
+///     static constexpr int with_friction;
+///     void slope_of_speed(const T* x, const T* rate,
+///                         T (&g)[with_friction][coordinates]) const;
 namespace tress::models {
 
 /// sum k s^2/2.
@@ -23,7 +32,7 @@ T strain_energy(const Part& part, const T* x) {
   part.strain(x, s);
   T sum(0);
   for (int k = 0; k < Part::strains; ++k) {
-    sum = sum + T(part.stiffness[k] / 2) * s[k] * s[k];
+    sum = sum + T(0.5) * T(part.stiffness[k]) * s[k] * s[k];
   }
   return sum;
 }
@@ -32,13 +41,14 @@ T strain_energy(const Part& part, const T* x) {
 template <class Part>
 struct Strained {
   static constexpr int strains = Part::strains, size = Part::coordinates;
+  using T = std::remove_cvref_t<decltype(std::declval<Part>().stiffness[0])>;
 
-  Strained(const Part& of_part, const double* at, const double* moving)
+  Strained(const Part& of_part, const T* at, const T* moving)
       : part(of_part), x(at), rate(moving) {
     part.strain(x, value);
     part.gradient(x, gradient);
     for (int k = 0; k < strains; ++k) {
-      speed[k] = 0;
+      speed[k] = T(0);
       for (int i = 0; i < size; ++i) speed[k] += gradient[k][i] * rate[i];
       stress[k] = part.stiffness[k] * value[k] + part.friction[k] * speed[k];
       second_stress[k] = stress[k];
@@ -46,7 +56,7 @@ struct Strained {
   }
 
   /// f += G^T stress.
-  void add_force(double* f) const {
+  void add_force(T* f) const {
     for (int k = 0; k < strains; ++k) {
       for (int i = 0; i < size; ++i) f[i] += stress[k] * gradient[k][i];
     }
@@ -55,30 +65,38 @@ struct Strained {
   /// The elastic stresses in the tangent's terms of second order come from there, where
   /// the part is at x0 (see StressForm).
   void take_stresses(const StressOrigin& origin, const double* x0) {
-    double value0[strains], gradient0[strains][size];
+    double value0[strains], gradient0[strains][size], elastic[strains];
     part.strain(x0, value0);
     part.gradient(x0, gradient0);
     for (int k = 0; k < strains; ++k) {
       double change = 0;
       for (int i = 0; i < size; ++i) change += gradient0[k][i] * (x[i] - x0[i]);
-      second_stress[k] += origin.stress(part.stiffness[k], value0[k], change) -
-                          part.stiffness[k] * value[k];
+      elastic[k] = origin.stress(part.stiffness[k], value0[k], change);
+    }
+    take_stresses(elastic);
+  }
+  void take_stresses(const T* elastic) {
+    for (int k = 0; k < strains; ++k) {
+      second_stress[k] += elastic[k] - part.stiffness[k] * value[k];
     }
   }
 
   /// h = pos df/dx + vel df/d(rate).
-  void tangent(double pos, double vel, double (&h)[size][size]) const {
-    for (auto& row : h) std::ranges::fill(row, 0.0);
-    double weighted[strains];
-    for (int k = 0; k < strains; ++k) weighted[k] = pos * second_stress[k];
-    part.add_second(x, weighted, h);
+  void tangent(const T& pos, const T& vel, T (&h)[size][size]) const {
+    for (auto& row : h) std::ranges::fill(row, T(0));
+    T weighted[strains], by[strains][size];  // pos d stress/dx + vel d stress/d(rate)
     for (int k = 0; k < strains; ++k) {
-      double by[size];  // pos d stress_k/dx + vel d stress_k/d(rate)
-      const double factor = pos * part.stiffness[k] + vel * part.friction[k];
-      for (int j = 0; j < size; ++j) by[j] = factor * gradient[k][j];
-      if (part.friction[k] != 0) add_slope_of_speed(k, pos * part.friction[k], by);
-      for (int i = 0; i < size; ++i) {
-        for (int j = 0; j < size; ++j) h[i][j] += gradient[k][i] * by[j];
+      weighted[k] = pos * second_stress[k];
+      const T factor = pos * part.stiffness[k] + vel * part.friction[k];
+      for (int j = 0; j < size; ++j) by[k][j] = factor * gradient[k][j];
+    }
+    part.add_second(x, weighted, h);
+    add_slopes_of_speed(pos, by);
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j) {
+        T sum = gradient[0][i] * by[0][j];
+        for (int k = 1; k < strains; ++k) sum += gradient[k][i] * by[k][j];
+        h[i][j] += sum;
       }
     }
   }
@@ -91,17 +109,31 @@ struct Strained {
   }
 
   const Part& part;
-  const double *x, *rate;
-  double value[strains], gradient[strains][size], speed[strains], stress[strains];
-  double second_stress[strains];  // of the tangent's terms of second order
+  const T *x, *rate;
+  T value[strains], gradient[strains][size], speed[strains], stress[strains];
+  T second_stress[strains];  // of the tangent's terms of second order
 
  private:
-  void add_slope_of_speed(int k, double factor, double (&by)[size]) const {
-    double only[strains] = {}, second[size][size] = {};
-    only[k] = factor;
-    part.add_second(x, only, second);
-    for (int i = 0; i < size; ++i) {
-      for (int j = 0; j < size; ++j) by[j] += second[i][j] * rate[i];
+  void add_slopes_of_speed(const T& pos, T (&by)[strains][size]) const {
+    if constexpr (requires { Part::with_friction; }) {
+      if constexpr (Part::with_friction > 0) {
+        T slope[Part::with_friction][size];
+        part.slope_of_speed(x, rate, slope);
+        for (int k = 0; k < Part::with_friction; ++k) {
+          const T factor = pos * part.friction[k];
+          for (int j = 0; j < size; ++j) by[k][j] += factor * slope[k][j];
+        }
+      }
+    } else {
+      for (int k = 0; k < strains; ++k) {
+        if (part.friction[k] == 0) continue;
+        double only[strains] = {}, second[size][size] = {};
+        only[k] = pos * part.friction[k];
+        part.add_second(x, only, second);
+        for (int i = 0; i < size; ++i) {
+          for (int j = 0; j < size; ++j) by[k][j] += second[i][j] * rate[i];
+        }
+      }
     }
   }
 };

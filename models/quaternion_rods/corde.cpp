@@ -1,9 +1,6 @@
 #include <algorithm>
 
 #include "models/entry.h"
-#include "models/maximal/maximal_system.h"
-#include "models/maximal/nodal_strand.h"
-#include "models/quaternion_rods/corde_edge.h"
 #include "models/quaternion_rods/quaternion_rod.h"
 
 namespace tress::models {
@@ -41,7 +38,6 @@ struct CordeOptions {
   double coupling = 100;        // kappa l^2/EI
   double norm = 100;            // nu l^2/EI
   double stretch_friction = 0;  // force per rate of stretch, N s
-  LinearKind solver = LinearKind::automatic;
 };
 
 CordeEdge edge(const Material& material, const Segment& segment,
@@ -55,15 +51,6 @@ CordeEdge edge(const Material& material, const Segment& segment,
           .stiffness = {material.youngs_modulus * section.area() / l, coupling, coupling,
                         coupling, options.norm * bending / l},
           .friction = {options.stretch_friction / l}};
-}
-
-/// Throws InputError unless the strand is a chain.
-std::unique_ptr<System> corde(const Strand& strand, const CordeOptions& options,
-                              Effects effects) {
-  return quaternion_rod<CordeEdge>(
-      strand, "corde",
-      [&](const Segment& segment) { return edge(strand.material, segment, options); }, 0,
-      std::move(effects), options.solver);
 }
 
 std::span<const Parameter> corde_parameters() {
@@ -85,15 +72,25 @@ std::span<const Parameter> corde_parameters() {
 
 std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& parameters,
                                    Effects effects) {
-  return corde(strand,
-               {.coupling = parameters.number("coupling"),
-                .norm = parameters.number("norm"),
-                .stretch_friction = parameters.number("stretch_friction_n_s"),
-                .solver = maximal_solver(parameters)},
-               std::move(effects));
+  return quaternion_rod(strand, rod_kind<CordeEdge>(&parameters), std::move(effects),
+                        maximal_solver(parameters));
 }
 
 }  // namespace
+
+template <>
+QuaternionRodKind<CordeEdge> rod_kind(const Parameters* options) {
+  CordeOptions own;
+  if (options != nullptr) {
+    own = {.coupling = options->number("coupling"),
+           .norm = options->number("norm"),
+           .stretch_friction = options->number("stretch_friction_n_s")};
+  }
+  return {.model = "corde",
+          .edge_of = [own](const Material& material, const Segment& segment) {
+            return edge(material, segment, own);
+          }};
+}
 
 ModelEntry corde_entry() {
   return {.id = "corde",

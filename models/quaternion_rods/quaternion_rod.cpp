@@ -2,9 +2,6 @@
 
 #include <cmath>
 
-#include "models/maximal/nodal_strand.h"
-#include "models/quaternion_rods/corde_edge.h"
-#include "models/quaternion_rods/cosserat_edge.h"
 #include "models/quaternion_rods/orientation_step.h"
 
 namespace tress::models {
@@ -17,32 +14,10 @@ void store_wall(const RootPose& root, const Quaternion& q, double* x, double* ra
   store_quaternion(rate_of(wall, root.omega), rate);
 }
 
+/// The state at which stresses of second order are.
+Placement origin_of(const Placement& p) { return {p.origin->root, p.origin->z, p.rate}; }
+
 }  // namespace
-
-void QuaternionJoint::gradient(const double* x, double (&g)[strains][coordinates]) const {
-  double before[3][4], behind[3][4];
-  turn_slope(-1.0 * load_quaternion(x + 4), before);
-  turn_slope(load_quaternion(x), behind);
-  for (int k = 0; k < 3; ++k) {
-    std::ranges::copy(before[k], g[k]);
-    std::ranges::copy(behind[k], g[k] + 4);
-  }
-}
-
-/// stress . 2 vec(conj(p) q) = 2 p^T form q.
-void QuaternionJoint::add_second(const double*, const double* s,
-                                 double (&h)[coordinates][coordinates]) const {
-  const double form[4][4] = {{0, s[0], s[1], s[2]},
-                             {-s[0], 0, -s[2], s[1]},
-                             {-s[1], s[2], 0, -s[0]},
-                             {-s[2], -s[1], s[0], 0}};
-  for (int k = 0; k < 4; ++k) {
-    for (int l = 0; l < 4; ++l) {
-      h[k][4 + l] += 2 * form[k][l];
-      h[4 + l][k] += 2 * form[k][l];
-    }
-  }
-}
 
 template <class Edge>
 QuaternionRod<Edge>::QuaternionRod(std::vector<Edge> edges,
@@ -50,7 +25,8 @@ QuaternionRod<Edge>::QuaternionRod(std::vector<Edge> edges,
     : edges_(std::move(edges)),
       joints_(std::move(joints)),
       walled_(walled),
-      quaternions_(3 * (edges_.size() + 1)) {}
+      quaternions_(3 * (edges_.size() + 1)),
+      factors_(walled ? edges_.size() : 0) {}
 
 template <class Edge>
 std::vector<std::vector<int>> QuaternionRod<Edge>::groups() const {
@@ -119,25 +95,32 @@ void QuaternionRod<Edge>::add_force(const Placement& p, InOut f) noexcept {
 }
 
 template <class Edge>
+void QuaternionRod<Edge>::edge_tangent(const Placement& p, std::size_t i, double pos,
+                                       double vel, double (&h)[7][7]) const noexcept {
+  const auto now = edge(p, i);
+  Strained strained(edges_[i], now.x, now.rate);
+  if (p.origin != nullptr) strained.take_stresses(*p.origin, edge(origin_of(p), i).x);
+  strained.tangent(pos, vel, h);
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::joint_tangent(const Placement& p, std::size_t j, double pos,
+                                        double vel, double (&h)[8][8]) const noexcept {
+  const auto now = joint(p, j);
+  Strained strained(joints_[j], now.x, now.rate);
+  if (p.origin != nullptr) strained.take_stresses(*p.origin, joint(origin_of(p), j).x);
+  strained.tangent(pos, vel, h);
+}
+
+template <class Edge>
 void QuaternionRod<Edge>::add_tangent(const Placement& p, double pos, double vel,
                                       GroupSum& s) noexcept {
-  const Placement before =
-      p.origin == nullptr ? p : Placement{p.origin->root, p.origin->z, p.rate};
-  const auto joint_tangent = [&](std::size_t j, double(&h)[8][8]) {
-    const auto now = joint(p, j);
-    Strained strained(joints_[j], now.x, now.rate);
-    if (p.origin != nullptr) strained.take_stresses(*p.origin, joint(before, j).x);
-    strained.tangent(pos, vel, h);
-  };
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     double h[7][7], m[10][10];
-    const auto now = edge(p, i);
-    Strained strained(edges_[i], now.x, now.rate);
-    if (p.origin != nullptr) strained.take_stresses(*p.origin, edge(before, i).x);
-    strained.tangent(pos, vel, h);
+    edge_tangent(p, i, pos, vel, h);
     if (walled_ && i == 0) {
       double of_joint[8][8];
-      joint_tangent(0, of_joint);
+      joint_tangent(p, 0, pos, vel, of_joint);
       for (int k = 0; k < 4; ++k) {
         for (int l = 0; l < 4; ++l) h[3 + k][3 + l] += of_joint[4 + k][4 + l];
       }
@@ -147,8 +130,54 @@ void QuaternionRod<Edge>::add_tangent(const Placement& p, double pos, double vel
   }
   for (std::size_t j = walled_ ? 1 : 0; j < joints_.size(); ++j) {
     double h[8][8];
-    joint_tangent(j, h);
+    joint_tangent(p, j, pos, vel, h);
     s.add(edges_.size() + behind(j) - 1, &h[0][0]);
+  }
+}
+
+template <class Edge>
+bool QuaternionRod<Edge>::factor(const Placement& p, Weights w,
+                                 const Others& others) noexcept {
+  using Elimination = QuaternionElimination<double>;
+  typename Elimination::Beyond beyond;
+  StrandPivots pivots;
+  for (std::size_t i = edges_.size(); i-- > 0;) {
+    typename Elimination::Own own;
+    edge_tangent(p, i, w.pos, w.vel, own.edge);
+    joint_tangent(p, i, w.pos, w.vel, own.joint);
+    for (std::size_t k = 0; k < 4; ++k) {
+      own.edge[3 + k][3 + k] += w.acc * others.inertia[4 * i + k];
+    }
+    const double mass = w.acc * others.mass[i + 1];
+    beyond.add_block({{{mass, 0, 0}, {0, mass, 0}, {0, 0, mass}}});
+    if (!others.blocks.empty()) add_block(&others.blocks[9 * (i + 1)], beyond);
+    auto& f = factors_[i];
+    Elimination::eliminate(own, i == 0, beyond, f);
+    for (int k = 0; k < Elimination::size; ++k) {
+      for (int l = 0; l < k; ++l) pivots(1, f.matrix[k][l]);
+    }
+  }
+  return pivots.kept();
+}
+
+template <class Edge>
+void QuaternionRod<Edge>::solve(In b, Out x) noexcept {
+  using Elimination = QuaternionElimination<double>;
+  const std::size_t n = edges_.size();
+  typename Elimination::Right right;
+  for (std::size_t i = n; i-- > 0;) {
+    store3(load3(right.force) + load3(&b[3 * i]), right.force);
+    double own[Elimination::size] = {};
+    std::copy_n(&b[3 * n + 4 * i], 4, own + 3);
+    Elimination::reduce(own, {}, i == 0, factors_[i], right);
+  }
+  double before[Elimination::size] = {}, y[Elimination::size];
+  for (std::size_t i = 0; i < n; ++i) {
+    Elimination::change(factors_[i], i == 0, before, y);
+    store3(load3(before) + load3(y), before);
+    std::copy_n(y + 3, 4, before + 3);
+    std::copy_n(before, 3, &x[3 * i]);
+    std::copy_n(before + 3, 4, &x[3 * n + 4 * i]);
   }
 }
 
@@ -348,51 +377,6 @@ void QuaternionRod<Edge>::edge_strain(std::size_t i, const double* z,
   }
 }
 
-template <class Edge>
-std::unique_ptr<System> quaternion_rod(const Strand& strand, const std::string& model,
-                                       const std::function<Edge(const Segment&)>& edge_of,
-                                       double rotary, Effects effects,
-                                       LinearKind solver) {
-  const std::size_t n = strand.segments.size();
-  NodalStrand nodal(strand, model, 4 * n);
-  MaximalStrand& parts = nodal.parts;
-  const Quaternion root = quaternion_of(nodal.root.place.frame);
-  std::vector<Edge> edges;
-  std::vector<QuaternionJoint> joints;
-  Quaternion now = root, natural = root;  // neighbours on the same side of the sphere
-  for (std::size_t i = 0; i < n; ++i) {
-    const Segment& segment = strand.segments[i];
-    edges.push_back(edge_of(segment));
-    now = nearer(now, quaternion_of(nodal.initial[i]));
-    const std::size_t at = 3 * (n + 1) + 4 * i;
-    store_quaternion(now, &parts.z[at]);
-    store_quaternion(rate_of(now, nodal.root.spin), &parts.rate[at]);
-    const CrossSection& section = segment.section;
-    const double l = segment.length;
-    std::fill_n(&parts.inertia[4 * i], 4,
-                4 * strand.material.density * l *
-                    (section.polar() + rotary * section.area() * l * l));
-    const Quaternion before = natural;
-    natural = nearer(before, quaternion_of(nodal.natural[i]));
-    if (i == 0 && !parts.clamped) continue;
-    joints.emplace_back(rod_joint(strand.material,
-                                  i > 0 ? &strand.segments[i - 1] : nullptr, segment,
-                                  turn_between(before, natural)));
-  }
-  parts.elasticity = std::make_unique<QuaternionRod<Edge>>(
-      std::move(edges), std::move(joints), parts.clamped);
-  parts.effects = std::move(effects);
-  parts.solver = solver;
-  return std::make_unique<MaximalSystem>(std::move(parts));
-}
-
 template class QuaternionRod<CordeEdge>;
 template class QuaternionRod<CosseratEdge>;
-template std::unique_ptr<System> quaternion_rod(
-    const Strand&, const std::string&, const std::function<CordeEdge(const Segment&)>&,
-    double, Effects, LinearKind);
-template std::unique_ptr<System> quaternion_rod(
-    const Strand&, const std::string&, const std::function<CosseratEdge(const Segment&)>&,
-    double, Effects, LinearKind);
-
 }  // namespace tress::models

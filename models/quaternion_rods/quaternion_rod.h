@@ -1,44 +1,21 @@
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <string>
 
-#include "math/quaternion.h"
 #include "models/maximal/maximal_system.h"
-#include "models/maximal/rod_joint.h"
 #include "models/maximal/strained.h"
+#include "models/maximal/strand_elimination.h"
+#include "models/quaternion_rods/quaternion_elimination.h"
+#include "models/quaternion_rods/rod_kind.h"
 
 namespace tress::models {
-
-/// Bending and twisting between neighbouring quaternions x = (q_j, q_{j+1}) of a rod, or
-/// between a clamp's frame and the first: strains 2 vec(conj(q_j) q_{j+1}) minus those at
-/// rest.
-/// A Part of strained.h.
-struct QuaternionJoint {
-  static constexpr int strains = 3, coordinates = 8;
-  double rest[strains], stiffness[strains], friction[strains];
-
-  explicit QuaternionJoint(const RodJoint& joint) {
-    store3(joint.rest, rest);
-    store3(joint.stiffness, stiffness);
-    store3(joint.friction, friction);
-  }
-  template <class T>
-  void strain(const T* x, T* s) const {
-    store3(turn_between(load_quaternion(x), load_quaternion(x + 4)), s);
-    for (int k = 0; k < strains; ++k) s[k] = s[k] - T(rest[k]);
-  }
-  void gradient(const double* x, double (&g)[strains][coordinates]) const;
-  void add_second(const double* x, const double* stress,
-                  double (&h)[coordinates][coordinates]) const;
-};
 
 /// Internal forces of a rod with a quaternion for every edge, coordinates z = (x_0, ...,
 /// x_n, q_0, ..., q_{n-1}). `Edge` holds the strains of a single edge: a Part over
 /// (x_{i+1} - x_i, q_i). Instantiated for CordeEdge and CosseratEdge.
 template <class Edge>
 class QuaternionRod final : public Elasticity,
+                            private StrandElimination,
                             private StrainForm,
                             private NaturalStrains {
  public:
@@ -54,6 +31,7 @@ class QuaternionRod final : public Elasticity,
   double power(const Placement& p) noexcept override;
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
+  StrandElimination* elimination() override { return walled_ ? this : nullptr; }
   StrainForm* strain_form() override { return this; }
   bool takes_stresses() const override { return true; }
   NaturalStrains* natural_strains() override { return this; }
@@ -85,6 +63,8 @@ class QuaternionRod final : public Elasticity,
     double x[Part::coordinates], rate[Part::coordinates];
   };
 
+  bool factor(const Placement& p, Weights w, const Others& others) noexcept override;
+  void solve(In b, Out x) noexcept override;
   std::vector<ComplianceForm::Block> strain_blocks() const override;
   void strain(std::size_t k, const RootPose& root, const double* z,
               ComplianceForm::Value& value) noexcept override;
@@ -107,19 +87,23 @@ class QuaternionRod final : public Elasticity,
   std::size_t before(std::size_t edge) const { return walled_ ? edge : edge - 1; }
   Local<Edge> edge(const Placement& p, std::size_t i) const noexcept;
   Local<QuaternionJoint> joint(const Placement& p, std::size_t j) const noexcept;
+  /// h = pos df/dx + vel df/d(rate).
+  void edge_tangent(const Placement& p, std::size_t i, double pos, double vel,
+                    double (&h)[7][7]) const noexcept;
+  void joint_tangent(const Placement& p, std::size_t j, double pos, double vel,
+                     double (&h)[8][8]) const noexcept;
 
   std::vector<Edge> edges_;
   std::vector<QuaternionJoint> joints_;
   bool walled_;
   std::size_t quaternions_;  // first one in z
+  std::vector<QuaternionElimination<double>::Factor> factors_;
 };
 
-/// A chain with nodes at the segments' ends, masses lumped there, and a quaternion of
-/// inertia 4 rho (I1 + I2 + rotary A l^2) l for every edge. `edge_of` makes the Edge of a
-/// segment. Throws InputError naming `model` unless the strand is a chain.
+/// A rod of this kind. Throws InputError naming the model unless the strand is a chain.
 template <class Edge>
-std::unique_ptr<System> quaternion_rod(const Strand& strand, const std::string& model,
-                                       const std::function<Edge(const Segment&)>& edge_of,
-                                       double rotary, Effects effects, LinearKind solver);
+std::unique_ptr<System> quaternion_rod(const Strand& strand,
+                                       const QuaternionRodKind<Edge>& kind,
+                                       Effects effects, LinearKind solver);
 
 }  // namespace tress::models

@@ -1,9 +1,6 @@
 #include <algorithm>
 
 #include "models/entry.h"
-#include "models/maximal/maximal_system.h"
-#include "models/maximal/nodal_strand.h"
-#include "models/quaternion_rods/cosserat_edge.h"
 #include "models/quaternion_rods/quaternion_rod.h"
 
 namespace tress::models {
@@ -53,7 +50,6 @@ struct XpbdCosseratOptions {
   double shear_factor = 0.9;  // k [Cowper 1966: 6 (1 + p)/(7 + 6 p), solid circle, p 1/2]
   double norm = 100;          // nu l^2/EI
   double edge_inertia = 0;    // of quaternions, beyond the section's, over rho A l^3
-  LinearKind solver = LinearKind::automatic;
 };
 
 CosseratEdge edge(const Material& material, const Segment& segment,
@@ -68,16 +64,6 @@ CosseratEdge edge(const Material& material, const Segment& segment,
       .stiffness = {l * options.stretch_factor * material.youngs_modulus * section.area(),
                     shear, shear, options.norm * bending / l},
       .friction = {}};
-}
-
-/// Throws InputError unless the strand is a chain.
-std::unique_ptr<System> xpbd_cosserat(const Strand& strand,
-                                      const XpbdCosseratOptions& options,
-                                      Effects effects) {
-  return quaternion_rod<CosseratEdge>(
-      strand, "xpbd_cosserat",
-      [&](const Segment& segment) { return edge(strand.material, segment, options); },
-      options.edge_inertia, std::move(effects), options.solver);
 }
 
 std::span<const Parameter> xpbd_cosserat_parameters() {
@@ -106,16 +92,27 @@ std::span<const Parameter> xpbd_cosserat_parameters() {
 std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
                                            const Parameters& parameters,
                                            Effects effects) {
-  return xpbd_cosserat(strand,
-                       {.stretch_factor = parameters.number("stretch_factor"),
-                        .shear_factor = parameters.number("shear_factor"),
-                        .norm = parameters.number("norm"),
-                        .edge_inertia = parameters.number("edge_inertia"),
-                        .solver = maximal_solver(parameters)},
-                       std::move(effects));
+  return quaternion_rod(strand, rod_kind<CosseratEdge>(&parameters), std::move(effects),
+                        maximal_solver(parameters));
 }
 
 }  // namespace
+
+template <>
+QuaternionRodKind<CosseratEdge> rod_kind(const Parameters* options) {
+  XpbdCosseratOptions own;
+  if (options != nullptr) {
+    own = {.stretch_factor = options->number("stretch_factor"),
+           .shear_factor = options->number("shear_factor"),
+           .norm = options->number("norm"),
+           .edge_inertia = options->number("edge_inertia")};
+  }
+  return {
+      .model = "xpbd_cosserat",
+      .edge_of = [own](const Material& material,
+                       const Segment& segment) { return edge(material, segment, own); },
+      .rotary = own.edge_inertia};
+}
 
 ModelEntry xpbd_cosserat_entry() {
   return {.id = "xpbd_cosserat",
