@@ -260,6 +260,34 @@ bool iterations_met() {
   return met;
 }
 
+/// As many strands side by side as registers have over one at a time, which takes the
+/// same iterations.
+bool lanes_met() {
+  constexpr std::size_t strands = 64;
+  const HeadPack wide = models::widest_pack(HeadNumber::float64);
+  struct Kind {
+    std::string_view name;
+    Make make;
+  };
+  bool met = true;
+  for (const Kind& kind : {Kind{"corde", simulation::corde_head},
+                           {"xpbd_cosserat", simulation::cosserat_head}}) {
+    const auto stepping = [&](const HeadPack& pack) {
+      return Stepping{
+          head(strands, pack, 0, kind.make, simulation::HeadMethod::backward_euler)};
+    };
+    Stepping many = stepping(wide), one = stepping({HeadNumber::float64, 1});
+    for (Stepping* of : {&many, &one}) {
+      of->dt = 1.0 / 300;
+      for (int s = 0; s < 2; ++s) of->step();
+    }
+    met = kept("heads", fmt::format("{}, {} lanes over 1", kind.name, wide.lanes),
+               time_ratio([&] { many.step(); }, [&] { one.step(); }), 1 / 3.0) &&
+          met;
+  }
+  return met;
+}
+
 /// Hair that has come to rest on its head: a body over none, touching and 5 m away.
 bool bodies_met() {
   constexpr std::size_t strands = 256;
@@ -340,7 +368,7 @@ int main(int argc, char** argv) {
   register_all();
   return run_and_judge(argc, argv, [](const Measured&) {
     const bool same = same_motion(), costs = costs_met(), iterations = iterations_met(),
-               bodies = bodies_met(), whole = head_met();
-    return same && costs && iterations && bodies && whole;
+               lanes = lanes_met(), bodies = bodies_met(), whole = head_met();
+    return same && costs && iterations && lanes && bodies && whole;
   });
 }

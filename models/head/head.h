@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "contract/newton_work.h"
+#include "contract/parameters.h"
 #include "math/instructions.h"
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
@@ -33,6 +34,8 @@ struct LaneOptions {
   /// are computed for all lanes at once, others strand by strand. Refused: effects that
   /// couple points (self_contact) or hold contact forces (friction_law = exact).
   Effects effects = {};
+  /// Options of corde or xpbd_cosserat; none: those by default. Not read by other models.
+  std::optional<Parameters> model = {};
 };
 
 /// Why a head cannot have an effect, and what would help; nothing if it can.

@@ -214,7 +214,7 @@ class ModelLanes<Model>::OfThread final : public Block<N> {
       for (int lane = 0; lane < T::lanes; ++lane) {
         if ((which >> lane & 1U) != 0) in.set(lane, 1);
       }
-      model_.take_stresses(*strand_, packs(q), in, scratch_);
+      model_.take_stresses(*strand_, elements_, packs(q), in, scratch_);
     }
   }
   void newton(Weights w, const N* q, const N* v, const N* a, N* correction,

@@ -63,5 +63,9 @@ AnyLaneKernel der_lanes(const LaneOptions& options, const HeadPack& pack,
 /// Point masses and springs: with bodies; of 64 bits.
 AnyLaneKernel spring_lanes(const LaneOptions& options, const HeadPack& pack,
                            Tangent tangent);
+/// Rods of quaternions, corde and xpbd_cosserat, exact: with gravity, linear drag and
+/// bodies.
+AnyLaneKernel corde_lanes(const LaneOptions& options, const HeadPack& pack);
+AnyLaneKernel cosserat_lanes(const LaneOptions& options, const HeadPack& pack);
 
 }  // namespace tress::models

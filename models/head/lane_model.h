@@ -26,10 +26,12 @@ namespace tress::models {
 ///     iterates                              // whether its Jacobian is exact, and it has
 ///     again(as newton)                      // with the matrix of the last newton()
 ///     takes_stresses                        // whether it has
-///     take_stresses(Strand, q, which, Scratch&)   // from where terms of second order of
-///                                           // the next newton() have stresses, in lanes
-///                                           // where which > 0; from then on those that
-///                                           // each correction has found (StressForm)
+///     take_stresses(Strand, Element*, q, which, Scratch&)   // from where terms of
+///     second
+///                                           // order of the next newton() have stresses,
+///                                           // in lanes where which > 0; from then on
+///                                           // those that each correction has found
+///                                           // (StressForm)
 ///     straight                              // whether elements are
 ///     element_length(Strand)
 ///     takes_bodies                          // whether it has these, too:

@@ -211,7 +211,7 @@ LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_res
       moves_(!options.motion.fixed()),
       works_(moves_ || !at_rest),
       at_rest_(at_rest),
-      stretches_(steps_springs(scene)),
+      stretches_(steps_edges(scene)),
       acts_somewhere_(std::ranges::any_of(effects_,
                                           [](const auto& effect) {
                                             return !effect->uniform_acceleration() &&

@@ -55,6 +55,16 @@ void check_mended(const HeadOptions& options, const HeadPack& pack) {
             "use 64 bits, or tr_bdf2");
 }
 
+/// The method whose single correction is from zero acceleration is refused: with the
+/// exact Jacobian there, strands of a shaken root are less stable (SemiImplicitStep).
+void check_quaternions(const HeadOptions& options, const HeadPack& pack) {
+  check_steps(options, pack);
+  refuse_if(options.method == HeadMethod::semi_implicit_euler,
+            "semi_implicit_euler with an exact Jacobian", place,
+            "use linearly_implicit_midpoint, backward_euler or tr_bdf2");
+  check_mended(options, pack);
+}
+
 bool linear(const HeadOptions& options) { return block_method(options.method).linear(); }
 Tangent tangent(const HeadOptions& options) {
   return linear(options) ? Tangent::stiff : Tangent::exact;
@@ -112,6 +122,18 @@ std::unique_ptr<models::Head> spring_head(const HeadOptions& options,
                                           const HeadPack& pack) {
   check_steps(options, pack);
   return in_steps(models::spring_lanes(options, pack, tangent(options)), options);
+}
+
+std::unique_ptr<models::Head> corde_head(const HeadOptions& options,
+                                         const HeadPack& pack) {
+  check_quaternions(options, pack);
+  return in_steps(models::corde_lanes(options, pack), options);
+}
+
+std::unique_ptr<models::Head> cosserat_head(const HeadOptions& options,
+                                            const HeadPack& pack) {
+  check_quaternions(options, pack);
+  return in_steps(models::cosserat_lanes(options, pack), options);
 }
 
 }  // namespace tress::simulation

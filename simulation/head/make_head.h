@@ -57,4 +57,16 @@ std::unique_ptr<models::Head> der_head(const HeadOptions& options,
 std::unique_ptr<models::Head> spring_head(const HeadOptions& options,
                                           const models::HeadPack& pack);
 
+/// Heads of corde and xpbd_cosserat (models/head/maximal/quaternion_strand.h), `elements`
+/// edges each, with the options `model`, by all methods but semi_implicit_euler,
+/// linearly_implicit_midpoint in 64 bits; of
+/// effects beyond gravity and linear drag they have bodies. Coordinates are, per edge,
+/// the vector along it (m, world axes) and its quaternion; the rate of the first edge is
+/// the velocity of its end. `points`, `twist` and `rotary_inertia` are not read. They
+/// throw InputError as above.
+std::unique_ptr<models::Head> corde_head(const HeadOptions& options,
+                                         const models::HeadPack& pack);
+std::unique_ptr<models::Head> cosserat_head(const HeadOptions& options,
+                                            const models::HeadPack& pack);
+
 }  // namespace tress::simulation

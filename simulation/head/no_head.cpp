@@ -59,13 +59,22 @@ std::optional<NoHead> no_springs(const Scene& scene) {
   return no_tangent(scene, "filtered");
 }
 
+std::optional<NoHead> no_quaternions(const Scene& scene) {
+  if (auto no = no_integrator(scene)) return no;
+  if (has_exact_tangent(scene)) return {};
+  return NoHead{fmt::format("{} with an exact Jacobian", scene.integrator),
+                "use [integrator] id = \"linearly_implicit_midpoint\", "
+                "\"backward_euler\" or \"tr_bdf2\""};
+}
+
 std::optional<NoHead> no_model(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (steps_springs(scene)) return no_springs(scene);
+  if (steps_quaternions(scene)) return no_quaternions(scene);
   if (scene.model->id != "super_helix" && !steps_chains(scene)) {
     return NoHead{std::string(scene.model->id),
-                  "use [model] id = \"super_helix\", \"articulated_chain\" or "
-                  "\"mass_spring\""};
+                  "use [model] id = \"super_helix\", \"articulated_chain\", "
+                  "\"mass_spring\", \"corde\" or \"xpbd_cosserat\""};
   }
   if (auto no = no_integrator(scene)) return no;
   if (p.word("modes") == "bend_planar") {
@@ -124,13 +133,13 @@ std::optional<NoHead> no_strands(const Scene& scene) {
 
 /// Lanes with bodies alone, beside what all have; empty: there are others.
 std::string only_with_bodies(const Scene& scene) {
-  if (steps_springs(scene)) return "mass_spring";
+  if (steps_edges(scene)) return std::string(scene.model->id);
   return has_exact_tangent(scene) ? scene.integrator : "";
 }
 std::string with_others(const Scene& scene) {
-  return steps_springs(scene) ? "leave it out, or use [model] id = \"super_helix\""
-                              : "leave it out, or use [integrator] id = "
-                                "\"semi_implicit_euler\"";
+  return steps_edges(scene) ? "leave it out, or use [model] id = \"super_helix\""
+                            : "leave it out, or use [integrator] id = "
+                              "\"semi_implicit_euler\"";
 }
 
 std::optional<NoHead> no_effects(const Scene& scene) {
@@ -160,10 +169,12 @@ std::optional<NoHead> no_number(const Scene& scene, models::HeadNumber number) {
     return NoHead{"springs in 32 bits, which do not resolve their strains",
                   "give --bits 64"};
   }
-  if (narrow && steps_chains(scene) && scene.integrator == "linearly_implicit_midpoint") {
-    return NoHead{
-        "rigid links in 32 bits, whose rounding a single correction does not mend",
-        "give --bits 64, or [integrator] id = \"tr_bdf2\""};
+  if (narrow && (steps_chains(scene) || steps_quaternions(scene)) &&
+      scene.integrator == "linearly_implicit_midpoint") {
+    return NoHead{fmt::format("{} in 32 bits, whose rounding a single correction does "
+                              "not mend",
+                              steps_chains(scene) ? "rigid links" : scene.model->id),
+                  "give --bits 64, or [integrator] id = \"tr_bdf2\""};
   }
   const double tolerance = scene.options.tolerance;
   if (tolerance == 0 || resolve(number, tolerance)) return {};
@@ -208,6 +219,12 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
 }  // namespace
 
 bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"; }
+bool steps_quaternions(const Scene& scene) {
+  return scene.model->id == "corde" || scene.model->id == "xpbd_cosserat";
+}
+bool steps_edges(const Scene& scene) {
+  return steps_springs(scene) || steps_quaternions(scene);
+}
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
 
 std::optional<HeadMethod> head_method(const Scene& scene) {

@@ -27,9 +27,13 @@ std::optional<NoHead> no_lanes(const Scene& scene,
 std::optional<NoHead> no_head(const SceneOutline& outline,
                               models::HeadNumber number = models::HeadNumber::float64);
 
-/// Of a scene that has lanes: of springs, of rigid links, or else of super-helices.
+/// Of a scene that has lanes: of springs, of rods with a quaternion for every edge, of
+/// rigid links, or else of super-helices.
 bool steps_springs(const Scene& scene);
+bool steps_quaternions(const Scene& scene);
 bool steps_chains(const Scene& scene);
+/// Whether nodes carry mass and edges between them stretch.
+bool steps_edges(const Scene& scene);
 /// Methods that heads have, by the ids of integrators.
 inline constexpr std::pair<std::string_view, HeadMethod> head_methods[] = {
     {"semi_implicit_euler", HeadMethod::semi_implicit_euler},

@@ -35,7 +35,8 @@ bool at_rest_in_head(const Scene& scene) {
 HeadOptions options_of(const Scene& scene) {
   HeadOptions options;
   options.elements = static_cast<int>(scene.strands.front().segments.size());
-  if (!steps_springs(scene)) {
+  if (steps_quaternions(scene)) options.model = scene.model_options;
+  if (!steps_edges(scene)) {
     options.points = scene.model_options.whole("quadrature");
     options.twist = scene.model_options.word("modes") == "bend_twist";
     options.rotary_inertia = scene.model_options.word("rotary_inertia") == "on";
@@ -53,9 +54,10 @@ HeadOptions options_of(const Scene& scene) {
 
 std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
                                  const HeadPack& pack) {
-  return steps_springs(scene)  ? spring_head(options, pack)
-         : steps_chains(scene) ? chain_head(options, pack)
-                               : helix_head(options, pack);
+  if (steps_springs(scene)) return spring_head(options, pack);
+  if (scene.model->id == "corde") return corde_head(options, pack);
+  if (steps_quaternions(scene)) return cosserat_head(options, pack);
+  return steps_chains(scene) ? chain_head(options, pack) : helix_head(options, pack);
 }
 
 /// Points of an element that winds by so much, as reduced_strand() takes them.

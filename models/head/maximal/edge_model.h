@@ -17,7 +17,7 @@ namespace tress::models {
 
 /// What LaneModels (models/head/lane_model.h) have in common whose strands are
 /// chains of edges from the root on: `per_element` numbers of an edge, the first three
-/// the vector along it, in axes of the world. The rate of the first edge is that of its
+/// the vector along it, in axes of the world, and all others without unit. The rate of the first edge is that of its
 /// end. Flat as ReducedLoads.
 template <class Pack, int per_element>
 class EdgeModel {
@@ -65,10 +65,10 @@ class EdgeModel {
   std::size_t elements() const { return n_; }
   std::size_t unknowns() const { return per_element * n_; }
   double unit(const HeadUnits& units, std::size_t k) const {
-    return k % per_element == 3 ? 1 : units.length;
+    return k % per_element < 3 ? units.length : 1;
   }
 
-  /// Of nodes over edges, and of angles, as those of a strand by itself are counted.
+  /// Of nodes over edges, and of all others, as those of a strand by itself are counted.
   template <class Strand>
   Real coordinate_size(const Strand& strand, const Real* dq) const {
     V node{};

@@ -31,16 +31,16 @@ class NodeLoads {
 
   /// Of the ends of edges, or null; of PointLoads from the motion at the step's end,
   /// whose length is h (s). `root`: from the head's position, in its units as `length` of
-  /// an edge, its `drag` on the velocity, q and v.
+  /// an edge, its `drag` on the velocity, q and v, `of_edge` numbers of each edge.
   TRESS_FLATTEN const OfNode* find(std::span<const NearBody> bodies,
                                    const HeadUnits& units, double h, Vec3T root,
-                                   const T& length, const T& drag, const T* q,
-                                   const T* v) {
+                                   const T& length, const T& drag, const T* q, const T* v,
+                                   std::size_t of_edge) {
     if (bodies.empty()) return nullptr;
     Vec3T rate{};
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      root = root + load3(q + 3 * i);
-      rate = rate + load3(v + 3 * i);
+      root = root + load3(q + of_edge * i);
+      rate = rate + load3(v + of_edge * i);
       x_[i] = T(units.length) * root;
       v_[i] = T(units.speed()) * rate;
       loads_[i] = {{}, T(0)};

@@ -145,8 +145,8 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
     });
     return size;
   }
-  void take_stresses(const Strand& strand, const Real* q, const Real& which,
-                     Scratch& scratch) const {
+  void take_stresses(const Strand& strand, const Element* /*elements*/, const Real* q,
+                     const Real& which, Scratch& scratch) const {
     kernel_.take_tensions(strand.material, q, which, scratch.tensions.data());
   }
 
@@ -160,8 +160,9 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   void find_loads(const Strand& strand, std::span<const NearBody> bodies, const V& root,
                   double h, const Real* q, const Real* v, StiffScratch& scratch) const {
     by(instructions_, [&] {
-      scratch.loads = scratch.node_loads.find(
-          bodies, units_, h, root, strand.material.length, strand.material.drag, q, v);
+      scratch.loads =
+          scratch.node_loads.find(bodies, units_, h, root, strand.material.length,
+                                  strand.material.drag, q, v, Kernel::per_element);
     });
   }
   void find_loads(const Strand& strand, const Real* q, const Real* v,
