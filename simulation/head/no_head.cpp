@@ -61,6 +61,19 @@ std::optional<NoHead> no_springs(const Scene& scene) {
 
 std::optional<NoHead> no_quaternions(const Scene& scene) {
   if (auto no = no_integrator(scene)) return no;
+  // Long steps of a motion that is not smooth have several solutions, and a lane has
+  // fewer ways to stay on one of them than a strand by itself.
+  if (scene.options.tolerance > 0) {
+    return NoHead{fmt::format("{} with a tolerance, in whose long steps lanes find no "
+                              "solution",
+                              scene.model->id),
+                  "give [integrator] dt_s instead of tolerance"};
+  }
+  if (scene.integrator == "tr_bdf2" && scene.model->id == "xpbd_cosserat") {
+    return NoHead{
+        "tr_bdf2 on xpbd_cosserat, in whose long steps lanes leave the solution",
+        "use [integrator] id = \"backward_euler\""};
+  }
   if (has_exact_tangent(scene)) return {};
   return NoHead{fmt::format("{} with an exact Jacobian", scene.integrator),
                 "use [integrator] id = \"linearly_implicit_midpoint\", "
