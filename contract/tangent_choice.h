@@ -1,9 +1,14 @@
 #pragma once
 
 #include "contract/parameters.h"
-#include "contract/system.h"
+#include "contract/tangent_choice.h"
 
 namespace tress {
+
+/// Terms included in dr/dq and dr/dv: all (full Newton), or only mass, damping and
+/// elastic stiffness (semi-implicit Newton). A constructor option of models whose two
+/// tangents differ.
+enum class Tangent { exact, stiff };
 
 /// The catalogue parameter of models whose two tangents differ.
 inline constexpr Parameter tangent_parameter{

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "contract/moving_history.h"
+#include "contract/forms/moving_history.h"
 #include "integrators/bdf2_formula.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"

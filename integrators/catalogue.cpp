@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
+#include "contract/forms/sparse_form.h"
 #include "contract/open_catalogue.h"
 #include "contract/parameters.h"
 #include "integrators/integrator_options.h"

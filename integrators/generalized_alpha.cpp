@@ -1,4 +1,4 @@
-#include "contract/moving_history.h"
+#include "contract/forms/moving_history.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/stage/stage.h"

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/pattern.h"
 #include "linear/direct_solver.h"
 
 namespace tress {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contract/pattern.h"
 #include "linear/banded.h"
 
 namespace tress {

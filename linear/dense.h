@@ -3,6 +3,7 @@
 #include <memory>
 #include <string_view>
 
+#include "contract/pattern.h"
 #include "linear/direct_solver.h"
 
 namespace tress {

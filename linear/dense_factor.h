@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "linear/dense_lu.h"
 
 namespace tress {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "contract/pattern.h"
 #include "linear/linear_solver.h"
 
 namespace tress {

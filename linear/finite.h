@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress {
 

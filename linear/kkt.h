@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/pattern.h"
 #include "linear/block_matrix.h"
 #include "linear/linear_solver.h"
 #include "linear/rank.h"

@@ -3,8 +3,9 @@
 #include <memory>
 #include <string_view>
 
+#include "contract/basics.h"
 #include "contract/linear_kind.h"
-#include "contract/system.h"
+#include "contract/pattern.h"
 
 namespace tress {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress {
 

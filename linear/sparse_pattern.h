@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/pattern.h"
 
 namespace tress {
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/system.h"
 #include "models/strand/strand_parameters.h"
 
 namespace tress::models {

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/sparse_form.h"
 #include "experiments/benchmarks/fixture.h"
 
 namespace tress::experiments::benchmarks {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "contract/forms/sparse_form.h"
 #include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/trial.h"

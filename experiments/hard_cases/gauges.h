@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/forms/material_points.h"
 #include "experiments/hard_cases/hard_case.h"
 
 /// The measures of the cases. Each reads the situation's system, which must outlive it.

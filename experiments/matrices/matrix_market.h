@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/pattern.h"
 
 namespace tress::experiments::matrices {
 

@@ -2,6 +2,9 @@
 
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "contract/system.h"
 
 namespace tress::experiments {

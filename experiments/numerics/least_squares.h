@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress::experiments {
 

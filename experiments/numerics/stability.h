@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "simulation/run/simulation.h"
 
 namespace tress::experiments {

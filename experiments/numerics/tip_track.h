@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "contract/integrator.h"
 #include "math/vec3.h"
 #include "simulation/run/guard.h"

@@ -13,6 +13,7 @@ bool operator==(const Index& a, const Index& b) {
 
 #include <Simbody.h>
 
+#include "contract/system.h"
 #include "experiments/peers/peer.h"
 
 namespace tress::experiments::peers {

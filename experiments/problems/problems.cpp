@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "contract/forms/material_points.h"
 #include "experiments/problems/pendulum_reference.h"
 #include "experiments/problems/reference.h"
 #include "models/published/references.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "simulation/files/row.h"
 
 namespace tress::experiments {

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <string>
 
+#include "contract/forms/energetics.h"
 #include "contract/input_error.h"
 #include "experiments/validation/rods/motion.h"
 #include "experiments/validation/rods/rod.h"

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <string>
 
+#include "contract/forms/energetics.h"
 #include "experiments/validation/exact_rods.h"
 #include "experiments/validation/rods/motion.h"
 #include "experiments/validation/rods/rod.h"

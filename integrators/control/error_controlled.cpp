@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "contract/forms/contact_form.h"
 #include "integrators/control/step_factors.h"
 #include "linear/finite.h"
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "integrators/control/point_norm.h"
 #include "integrators/formulation/dynamics.h"
 

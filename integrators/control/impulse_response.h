@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "integrators/formulation/dynamics.h"
 
 namespace tress::integrators {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress::integrators {
 

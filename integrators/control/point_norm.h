@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/forms/material_points.h"
 
 namespace tress::integrators {
 

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/sparse_form.h"
 #include "contract/integrator.h"
 #include "linear/kkt.h"
 

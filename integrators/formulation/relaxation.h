@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
 #include "contract/integrator.h"
 
 namespace tress::integrators {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/compliance_form.h"
 #include "integrators/entry.h"
 #include "integrators/position_based/windows.h"
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contract/forms/compliance_form.h"
 #include "integrators/fixed_step.h"
 #include "integrators/position_based/block_descent.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "contract/compliance_form.h"
+#include "contract/forms/compliance_form.h"
 #include "integrators/entry.h"
 
 namespace tress::integrators {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/forms/compliance_form.h"
 #include "integrators/position_based/descent_method.h"
 
 namespace tress::integrators {

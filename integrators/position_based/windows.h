@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contract/compliance_form.h"
+#include "contract/forms/compliance_form.h"
 #include "linear/skyline.h"
 
 namespace tress::integrators {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contract/forms/contact_form.h"
 #include "integrators/stage/stage_equations.h"
 
 namespace tress::integrators {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress::integrators {
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
 #include "integrators/stage/contact_forces.h"
 #include "integrators/stage/continuation.h"
 #include "integrators/stage/damped.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "contract/forms/stress_form.h"
 #include "integrators/formulation/dynamics.h"
 
 namespace tress::integrators {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/forms/sparse_form.h"
 #include "integrators/formulation/dynamics.h"
 
 namespace tress::integrators {

@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 /// Ownership and return codes of SUNDIALS in one place. All differences between 6.4 and
 /// 7.x are handled here; the rest of this folder works with both.

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "contract/natural_strains.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/natural_strains.h"
 #include "models/batch/packed_strands.h"
 #include "models/groom/strand_block.h"
 #include "models/reduced/contact_tangent.h"

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contract/system.h"
 #include "models/constrained/bead_on_wire.h"
 #include "models/constrained/inextensible_chain.h"
 #include "models/constrained/on_curve.h"

@@ -4,7 +4,14 @@
 #include <memory>
 #include <span>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/sparse_form.h"
 #include "contract/parameters.h"
+#include "contract/pattern.h"
+#include "contract/system.h"
+#include "contract/tangent_choice.h"
 #include "models/constrained/curve.h"
 #include "models/constrained/particles.h"
 #include "models/effects/effect.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress::models {
 

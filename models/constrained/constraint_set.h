@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/pattern.h"
 #include "models/constrained/constraint.h"
 #include "models/constrained/curve.h"
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "contract/input_error.h"
+#include "contract/system.h"
 #include "models/constrained/joints.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"

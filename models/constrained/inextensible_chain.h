@@ -4,6 +4,7 @@
 #include <span>
 
 #include "contract/parameters.h"
+#include "contract/system.h"
 #include "models/constrained/particles.h"
 
 namespace tress::models {

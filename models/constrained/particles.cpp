@@ -5,6 +5,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "contract/system.h"
 #include "linear/finite.h"
 #include "linear/sparse_pattern.h"
 #include "models/strand/not_finite.h"

@@ -3,6 +3,14 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/contact_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
+#include "contract/system.h"
 #include "models/constrained/constraint_set.h"
 #include "models/effects/effect.h"
 #include "models/held/held_contacts.h"

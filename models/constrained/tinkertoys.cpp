@@ -7,6 +7,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "contract/system.h"
 #include "models/constrained/angles.h"
 #include "models/constrained/joints.h"
 #include "models/effects/gravity.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/mat3.h"
 #include "math/pack.h"
 #include "models/contact/box_pairs.h"

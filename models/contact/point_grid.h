@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "models/contact/box_pairs.h"
 
 namespace tress::models {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/vec3.h"
 
 namespace tress::models {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/closest.h"
 #include "models/contact/box_pairs.h"
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "contract/forms/energetics.h"
 #include "models/clothoid/super_clothoid.h"
 #include "models/effects/gravity.h"
 #include "models/reduced/super_helix.h"

@@ -5,7 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/forms/material_points.h"
+#include "contract/pattern.h"
 #include "linear/block_matrix.h"
 #include "linear/linear_solver.h"
 #include "models/effects/coupling.h"

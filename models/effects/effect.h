@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/frame.h"
 #include "math/vec3.h"
 #include "models/effects/coupling.h"

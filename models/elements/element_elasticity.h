@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "contract/forms/compliance_form.h"
 #include "models/elements/rod_element.h"
 
 namespace tress::models {

@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 
+#include "contract/forms/compliance_form.h"
 #include "math/dual.h"
 #include "models/maximal/strained.h"
 

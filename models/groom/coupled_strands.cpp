@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "contract/forms/sparse_form.h"
 #include "contract/input_error.h"
 #include "linear/finite.h"
 

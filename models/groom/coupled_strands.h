@@ -3,7 +3,11 @@
 #include <memory>
 #include <vector>
 
-#include "contract/moving_history.h"
+#include "contract/forms/contact_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/history.h"
+#include "contract/forms/moving_history.h"
+#include "contract/forms/stress_form.h"
 #include "contract/parameters.h"
 #include "contract/system.h"
 #include "models/effects/coupled_solver.h"

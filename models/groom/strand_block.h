@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "contract/system.h"
 
 namespace tress::models {

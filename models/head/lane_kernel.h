@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "contract/block.h"
+#include "contract/tangent_choice.h"
 #include "models/head/head.h"
 
 namespace tress::models {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/gauss_legendre.h"
 #include "math/instructions.h"
 #include "math/lane_choice.h"

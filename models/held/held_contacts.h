@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
 #include "models/effects/effect.h"
 #include "models/held/taken_contacts.h"
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
 #include "models/contact/contact_problem.h"
 #include "models/effects/effect.h"
 

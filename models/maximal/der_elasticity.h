@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/tangent_choice.h"
 #include "math/pack.h"
 #include "models/maximal/edge_reference.h"
 #include "models/maximal/elasticity.h"

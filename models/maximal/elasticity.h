@@ -2,8 +2,9 @@
 
 #include <vector>
 
-#include "contract/compliance_form.h"
-#include "contract/natural_strains.h"
+#include "contract/forms/compliance_form.h"
+#include "contract/forms/natural_strains.h"
+#include "contract/forms/stress_form.h"
 #include "models/maximal/groups.h"
 #include "models/motion/root_motion.h"
 

@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/pattern.h"
 #include "math/pack.h"
 
 namespace tress::models {

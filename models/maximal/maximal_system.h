@@ -5,7 +5,18 @@
 #include <memory>
 #include <vector>
 
-#include "contract/moving_history.h"
+#include "contract/forms/compliance_form.h"
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/contact_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/history.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/moving_history.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/forms/stress_form.h"
+#include "contract/pattern.h"
+#include "contract/tangent_choice.h"
 #include "linear/kkt.h"
 #include "linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"

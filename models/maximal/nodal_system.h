@@ -3,6 +3,13 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/material_points.h"
+#include "contract/pattern.h"
+#include "contract/system.h"
+#include "contract/tangent_choice.h"
 #include "linear/linear_solver.h"
 #include "math/dual.h"
 #include "models/effects/effect.h"

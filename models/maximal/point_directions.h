@@ -3,7 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/pattern.h"
 #include "math/vec3.h"
 #include "models/maximal/groups.h"
 

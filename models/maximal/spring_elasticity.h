@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "contract/forms/compliance_form.h"
 #include "models/maximal/angle_strain.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/spring_strain.h"

@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "contract/forms/compliance_form.h"
 #include "models/maximal/elasticity.h"
 
 /// Energies that are sums of squares of strains. A `Part` of a strand is a kernel over

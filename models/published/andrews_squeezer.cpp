@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 
+#include "contract/forms/energetics.h"
 #include "contract/tangent_choice.h"
 #include "models/entry.h"
 #include "models/published/dense_system.h"

@@ -22,6 +22,10 @@
 #include <numbers>
 #include <vector>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/material_points.h"
+#include "contract/system.h"
 #include "contract/tangent_choice.h"
 #include "math/banded_lu.h"
 #include "models/entry.h"

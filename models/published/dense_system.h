@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
 #include "contract/system.h"
+#include "contract/tangent_choice.h"
 #include "math/dual.h"
 
 namespace tress::models {

@@ -12,6 +12,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/material_points.h"
 #include "models/entry.h"
 #include "models/published/dense_system.h"
 

@@ -3,7 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/forms/constraint_form.h"
+#include "contract/pattern.h"
 
 namespace tress::models {
 

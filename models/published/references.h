@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress::models {
 

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contract/forms/constraint_form.h"
 #include "contract/tangent_choice.h"
 #include "models/entry.h"
 #include "models/published/dense_system.h"

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "contract/forms/compliance_form.h"
 #include "models/maximal/maximal_system.h"
 #include "models/maximal/strained.h"
 #include "models/maximal/strand_elimination.h"

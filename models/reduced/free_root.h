@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "models/reduced/helix.h"
 #include "models/strand/strand.h"
 

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/lanes.h"
 #include "models/reduced/free_root.h"
 #include "models/reduced/reduced_strand.h"

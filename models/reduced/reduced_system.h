@@ -4,7 +4,12 @@
 #include <cmath>
 #include <memory>
 
-#include "contract/natural_strains.h"
+#include "contract/forms/contact_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/history.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/natural_strains.h"
 #include "models/held/held_contacts.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"

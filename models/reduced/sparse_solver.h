@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "contract/pattern.h"
 #include "linear/klu.h"
 #include "models/reduced/tree_solver.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "models/effects/effect.h"
 
 namespace tress::models {

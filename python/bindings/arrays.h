@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "contract/basics.h"
 #include "contract/input_error.h"
-#include "contract/system.h"
 
 /// numpy arrays as the spans of the contract, and back.
 namespace tress::python {

@@ -1,6 +1,14 @@
 // System and its optional forms.
 #include <pybind11/stl.h>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/contact_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/history.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
 #include "experiments/numerics/dense_form.h"
 #include "models/catalogue.h"
 #include "python/bindings/owned_system.h"

@@ -4,6 +4,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
 #include "experiments/numerics/dense_form.h"
 #include "linear/dense_lu.h"
 #include "python/bindings/owned_system.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "models/contact/box_pairs.h"
 #include "models/effects/strand_interaction.h"
 #include "models/motion/root_motion.h"

@@ -74,10 +74,10 @@ class LaneGuard final : public HeadGuard {
   bool stretches_;       // springs
   bool acts_somewhere_;  // whether some effect is neither uniform nor drag
   std::vector<double> at_, weight_;  // of points, of an element's length; none: nodes
-  bool helices_;         // elements are helices, not straight
+  bool helices_;                     // elements are helices, not straight
   std::size_t elements_;
   std::vector<OfStrand> strands_;
-  std::vector<Frame> frames_;  // of the roots at rest, of helices
+  std::vector<Frame> frames_;         // of the roots at rest, of helices
   std::vector<models::Effects> own_;  // of each strand, or empty
 };
 

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/sparse_form.h"
 #include "linear/sparse_pattern.h"
 
 namespace tress::simulation {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "simulation/rest/body_support.h"
 #include "simulation/rest/dense_statics.h"

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "simulation/run/energy_account.h"
 #include "simulation/run/guarded_strand.h"
 #include "simulation/run/method_dissipation.h"

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "contract/system.h"
+#include "contract/basics.h"
+#include "contract/forms/energetics.h"
 
 namespace tress::simulation {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "contract/natural_strains.h"
+#include "contract/forms/natural_strains.h"
 
 namespace tress::simulation {
 namespace {

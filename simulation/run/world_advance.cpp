@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contract/moving_history.h"
+#include "contract/forms/moving_history.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "contract/natural_strains.h"
+#include "contract/forms/natural_strains.h"
 #include "simulation/scene/scene.h"
 
 namespace tress::simulation {

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "contract/compliance_form.h"
+#include "contract/forms/compliance_form.h"
 #include "integrators/catalogue.h"
 #include "integrators/formulation/dynamics.h"
 #include "models/effects/linear_drag.h"

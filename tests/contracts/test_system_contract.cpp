@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "contract/natural_strains.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/natural_strains.h"
+#include "contract/forms/stress_form.h"
 #include "integrators/formulation/projection.h"
 #include "tests/support/bare_system.h"
 #include "tests/support/compliance.h"

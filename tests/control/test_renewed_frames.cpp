@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "contract/moving_history.h"
+#include "contract/forms/moving_history.h"
 #include "math/vec3.h"
 #include "models/catalogue.h"
 #include "simulation/run/simulation.h"

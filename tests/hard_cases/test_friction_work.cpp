@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
 #include "contract/input_error.h"
 #include "experiments/hard_cases/course.h"
 #include "experiments/problems/formulations.h"

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "contract/forms/constraint_form.h"
 #include "contract/input_error.h"
 #include "experiments/matrices/system_matrices.h"
 #include "simulation/scene/scene.h"

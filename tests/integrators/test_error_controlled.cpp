@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/pendulum_reference.h"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/pendulum_reference.h"
 #include "integrators/integrator_options.h"

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "experiments/numerics/fit.h"
 #include "integrators/formulation/projection.h"
 #include "integrators/formulation/relaxation.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "models/effects/exact_body.h"

@@ -4,6 +4,8 @@
 #include <map>
 #include <ostream>
 
+#include "contract/forms/compliance_form.h"
+#include "contract/forms/constraint_form.h"
 #include "experiments/numerics/fit.h"
 #include "experiments/problems/strand_models.h"
 #include "integrators/integrator_options.h"

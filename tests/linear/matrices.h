@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/pattern.h"
 #include "linear/linear_solver.h"
 
 namespace tress::testing_matrices {

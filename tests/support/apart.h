@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/forms/history.h"
 #include "contract/system.h"
 
 namespace tress::testing_support {

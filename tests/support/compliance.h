@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contract/compliance_form.h"
+#include "contract/forms/compliance_form.h"
 #include "tests/support/tangent.h"
 
 namespace tress::testing_support {

@@ -7,7 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "contract/compliance_form.h"
+#include "contract/forms/compliance_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
 #include "integrators/integrator_options.h"
 #include "simulation/run/simulation.h"
 #include "tests/support/drive.h"

@@ -7,6 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/history.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
 #include "contract/system.h"
 #include "linear/linear_solver.h"
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "contract/system.h"
 #include "math/frame.h"
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "contract/forms/energetics.h"
 #include "contract/input_error.h"
 #include "experiments/problems/formulations.h"
 #include "experiments/validation/rods/rod.h"

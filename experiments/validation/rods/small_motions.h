@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress::experiments::validation {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/energetics.h"
 #include "experiments/numerics/dense_algebra.h"
 #include "experiments/numerics/dense_form.h"
 #include "experiments/validation/rods/rod.h"

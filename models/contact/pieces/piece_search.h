@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "models/contact/box_pairs.h"
 #include "models/contact/pieces/piece_approach.h"
 #include "models/contact/pieces/piece_touch.h"

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/frame.h"
 #include "math/instructions.h"
 #include "math/lane_math.h"

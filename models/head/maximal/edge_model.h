@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/instructions.h"
 #include "math/lane_choice.h"
 #include "models/head/head.h"
@@ -17,8 +17,8 @@ namespace tress::models {
 
 /// What LaneModels (models/head/lane_model.h) have in common whose strands are
 /// chains of edges from the root on: `per_element` numbers of an edge, the first three
-/// the vector along it, in axes of the world, and all others without unit. The rate of the first edge is that of its
-/// end. Flat as ReducedLoads.
+/// the vector along it, in axes of the world, and all others without unit. The rate of
+/// the first edge is that of its end. Flat as ReducedLoads.
 template <class Pack, int per_element>
 class EdgeModel {
  public:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "math/instructions.h"
 #include "math/lane_choice.h"
 #include "models/head/lane_energies.h"

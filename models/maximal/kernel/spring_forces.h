@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 #include "models/maximal/kernel/spring_elimination.h"
 
 namespace tress::models {

@@ -3,6 +3,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/pattern.h"
 #include "contract/system.h"
 #include "tests/support/dense.h"
 

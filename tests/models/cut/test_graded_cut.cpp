@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "contract/forms/material_points.h"
 #include "models/clothoid/super_clothoid.h"
 #include "models/cut/graded_cut.h"
 #include "models/strand/geometry.h"

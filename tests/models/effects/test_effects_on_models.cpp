@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "contract/forms/energetics.h"
 #include "integrators/formulation/dynamics.h"
 #include "models/effects/air_drag.h"
 #include "models/effects/body.h"

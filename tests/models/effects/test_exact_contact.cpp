@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
+#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "integrators/bdf2_formula.h"
 #include "integrators/catalogue.h"
 #include "integrators/tr_bdf2.h"

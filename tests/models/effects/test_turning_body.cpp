@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "models/effects/exact_body.h"

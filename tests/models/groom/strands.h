@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "contract/system.h"
 #include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contract/system.h"
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"

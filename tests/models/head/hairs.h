@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "contract/forms/material_points.h"
 #include "integrators/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"

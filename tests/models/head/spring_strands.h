@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/forms/material_points.h"
 #include "integrators/catalogue.h"
 #include "models/effects/body.h"
 #include "tests/models/head/der_strands.h"

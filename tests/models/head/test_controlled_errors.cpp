@@ -3,6 +3,7 @@
 #include <functional>
 #include <tuple>
 
+#include "contract/forms/material_points.h"
 #include "contract/integrator.h"
 #include "integrators/block/block_method.h"
 #include "integrators/catalogue.h"

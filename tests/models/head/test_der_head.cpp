@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "tests/models/head/der_strands.h"

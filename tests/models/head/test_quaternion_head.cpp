@@ -2,6 +2,7 @@
 
 #include <tuple>
 
+#include "contract/forms/energetics.h"
 #include "models/effects/constant_force.h"
 #include "tests/models/head/mixed_hairs.h"
 #include "tests/models/head/spring_strands.h"

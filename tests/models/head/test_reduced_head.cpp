@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "contract/forms/energetics.h"
 #include "contract/input_error.h"
 #include "tests/models/head/hairs.h"
 #include "tests/support/apart.h"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "contract/forms/energetics.h"
 #include "integrators/catalogue.h"
 #include "models/effects/gravity.h"
 #include "models/reduced/articulated_chain.h"

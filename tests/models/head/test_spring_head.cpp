@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include "contract/forms/energetics.h"
 #include "contract/input_error.h"
 #include "models/effects/constant_force.h"
 #include "tests/models/head/spring_strands.h"

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/contact_form.h"
+#include "contract/system.h"
 #include "models/catalogue.h"
 #include "models/contact/cone.h"
 #include "models/effects/exact_body.h"

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/forms/energetics.h"
 #include "experiments/numerics/fit.h"
 #include "tests/models/reduced/strand_cases.h"
 

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/forms/material_points.h"
 #include "tests/models/reduced/strand_cases.h"
 
 namespace tress::testing_support {

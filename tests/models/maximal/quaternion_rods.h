@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "contract/forms/compliance_form.h"
 #include "math/frame.h"
 #include "models/quaternion_rods/quaternion_rod.h"
 #include "tests/support/variable.h"

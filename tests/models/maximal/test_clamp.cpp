@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
 #include "experiments/numerics/fit.h"
 #include "integrators/integrator_options.h"
 #include "tests/models/reduced/strand_cases.h"

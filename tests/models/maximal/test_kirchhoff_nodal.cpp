@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "contract/forms/explicit_form.h"
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
 #include "experiments/numerics/fit.h"

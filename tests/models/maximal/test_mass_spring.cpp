@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "contract/forms/explicit_form.h"
 #include "experiments/numerics/dense_algebra.h"
 #include "experiments/numerics/fit.h"
 #include "tests/models/maximal/clamped_modes.h"

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "contract/pattern.h"
+#include "contract/system.h"
 #include "experiments/numerics/dense_algebra.h"
 #include "models/catalogue.h"
 

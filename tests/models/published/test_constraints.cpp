@@ -2,6 +2,9 @@
 
 #include <functional>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/system.h"
 #include "tests/models/published/support.h"
 #include "tests/support/dense.h"
 

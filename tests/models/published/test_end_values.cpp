@@ -7,6 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/system.h"
 #include "models/published/references.h"
 #include "tests/models/published/support.h"
 

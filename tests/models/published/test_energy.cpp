@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/sparse_form.h"
 #include "tests/models/published/support.h"
 
 namespace tress::test_energy {

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/sparse_form.h"
+#include "contract/system.h"
 #include "tests/models/published/support.h"
 
 namespace tress::test_tangents {

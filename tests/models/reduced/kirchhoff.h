@@ -3,6 +3,7 @@
 #include <array>
 #include <numbers>
 
+#include "contract/forms/energetics.h"
 #include "tests/models/reduced/static_equilibrium.h"
 
 /// Strands at rest under gravity against solutions of Kirchhoff's equations of the

@@ -2,6 +2,9 @@
 
 #include <cstdio>
 
+#include "contract/forms/constraint_form.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/sparse_form.h"
 #include "linear/kkt.h"
 #include "tests/models/reduced/strand_cases.h"
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "contract/forms/explicit_form.h"
 #include "integrators/catalogue.h"
 #include "models/clothoid/super_clothoid.h"
 #include "models/groom/strand_block.h"

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "contract/forms/energetics.h"
 #include "experiments/numerics/fit.h"
 #include "integrators/integrator_options.h"
 #include "tests/models/reduced/strand_cases.h"

@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
 #include "math/frame.h"
 #include "tests/models/reduced/static_equilibrium.h"
 

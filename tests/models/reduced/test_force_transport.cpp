@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "contract/forms/explicit_form.h"
 #include "contract/input_error.h"
 #include "experiments/numerics/equilibrium.h"
 #include "tests/models/reduced/kirchhoff.h"

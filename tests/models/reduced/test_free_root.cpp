@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "contract/forms/explicit_form.h"
 #include "integrators/catalogue.h"
 #include "models/reduced/free_root.h"
 #include "simulation/run/simulation.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contract/forms/material_points.h"
 #include "math/frame.h"
 #include "models/strand/geometry.h"
 #include "models/strand/strand_parameters.h"

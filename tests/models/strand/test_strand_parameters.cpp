@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/forms/energetics.h"
 #include "contract/input_error.h"
 #include "models/catalogue.h"
 #include "models/strand/strand_parameters.h"

@@ -1,3 +1,4 @@
+#include "contract/basics.h"
 #include "example.h"
 
 namespace example {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "contract/system.h"
+#include "contract/basics.h"
 
 namespace tress {
 

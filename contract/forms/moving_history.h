@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "contract/forms/history.h"
 #include "contract/system.h"
 
 namespace tress {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "contract/basics.h"
+#include "contract/pattern.h"
+
+namespace tress {
+
+/// S(w) as a sparse matrix, for direct solvers. Required for systems with constraints.
+class SparseForm {
+ public:
+  virtual ~SparseForm() = default;
+  virtual const Pattern& pattern() const = 0;  // (n x n), fixed for the system's life
+  virtual Status values(double t, In q, In v, In a, Weights w, Out s) noexcept = 0;
+};
+
+}  // namespace tress

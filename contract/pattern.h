@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+namespace tress {
+
+/// Structure of a sparse matrix in compressed columns; rows ascend inside a column.
+struct Pattern {
+  int rows = 0;
+  int cols = 0;
+  std::vector<int> start;  // (cols + 1)
+  std::vector<int> row;    // (start[cols])
+
+  int nonzeros() const { return start.empty() ? 0 : start.back(); }
+};
+
+}  // namespace tress
