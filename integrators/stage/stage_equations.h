@@ -20,10 +20,10 @@ class StageEquations {
   /// 0. `own`: left = (1 - s) w.pos/w.vel, so that the part starts where the step does.
   enum class Drift { whole, own };
 
-  StageEquations(Dynamics& dynamics, const NewtonRules& rules, int iterations)
-      : dynamics(dynamics),
-        rules(rules),
-        iterations(iterations),
+  StageEquations(Dynamics& system, const NewtonRules& endings, int most_iterations)
+      : dynamics(system),
+        rules(endings),
+        iterations(most_iterations),
         q_part_(size(dynamics.n())),
         q_(q_part_.size()),
         v_(q_part_.size()) {}
