@@ -76,8 +76,7 @@ std::optional<NoHead> no_quaternions(const Scene& scene) {
   }
   if (has_exact_tangent(scene)) return {};
   return NoHead{fmt::format("{} with an exact Jacobian", scene.integrator),
-                "use [integrator] id = \"linearly_implicit_midpoint\", "
-                "\"backward_euler\" or \"tr_bdf2\""};
+                "use [integrator] id = \"backward_euler\""};
 }
 
 std::optional<NoHead> no_model(const Scene& scene) {

@@ -162,7 +162,13 @@ asks() {
     { echo "scenes share references:"; find "$house/results/ask"; exit 1; }
   touch "$work/own/a,b.toml"
   expect 2 'simulate: give one scene file' "$house/tress" simulate
+  expect 2 'simulate: give one scene file' "$house/tress" simulate --help
   expect 2 "simulate: no file 'none.toml'" "$house/tress" simulate none.toml
+  expect 2 "is a folder" "$house/tress" simulate "$work/own/a"
+  expect 2 "give one scene" "$house/tress" simulate "$work/own/a/s.toml" "$work/own/b/s.toml"
+  expect 2 "simulate: --out is results/simulate/s-" \
+    "$house/tress" simulate "$work/own/a/s.toml" --out here
+  expect 2 'no-install: give a command' "$house/tress" --no-install
   # shellcheck disable=SC2016
   study simulate 'echo "ran $*"'
   expect 0 'build: [0-9]+ s' "$house/tress" simulate "$work/own/a/s.toml" --error-bars
