@@ -233,7 +233,7 @@ LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_res
 void LaneGuard::add(const Strand& strand, models::Effects own) {
   const GuardedStrand guarded = guarded_strand(strand, effects_);
   strands_.push_back({strand.segments.front().length, guarded.slack(), {}, {}});
-  if (helices_) frames_.push_back(strand.root.frame);
+  if (curved()) frames_.push_back(strand.root.frame);
   if (own.empty() && own_.empty()) return;
   own_.resize(strands_.size());
   own_.back() = std::move(own);

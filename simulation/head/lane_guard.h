@@ -64,6 +64,7 @@ class LaneGuard final : public HeadGuard {
   };
   class Reader;
 
+  /// Whether effects act on points of helices.
   bool curved() const { return helices_ && !at_.empty(); }
 
   RootMotion motion_;
@@ -77,7 +78,7 @@ class LaneGuard final : public HeadGuard {
   bool helices_;                     // elements are helices, not straight
   std::size_t elements_;
   std::vector<OfStrand> strands_;
-  std::vector<Frame> frames_;         // of the roots at rest, of helices
+  std::vector<Frame> frames_;         // of the roots at rest, if curved()
   std::vector<models::Effects> own_;  // of each strand, or empty
 };
 

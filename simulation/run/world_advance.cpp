@@ -63,16 +63,18 @@ Status World::advance(double t_end) {
 Status World::couple(double h) {
   for (const auto& coupling : couplings_) {
     const Status done = coupling->after_step(t_, h, positions(), velocities(), loop());
-    std::size_t body = 0;
-    for (const std::size_t k : coupling->moved()) {
-      while (k >= bodies_[body].first + bodies_[body].coordinates.size()) ++body;
-      x_.done[body] = u_.done[body] = 0;
+    if (const auto moved = coupling->moved(); !moved.empty()) {
+      std::size_t body = 0;
+      for (const std::size_t k : moved) {
+        while (k >= bodies_[body].first + bodies_[body].coordinates.size()) ++body;
+        x_.done[body] = u_.done[body] = 0;
+      }
+      crew_.run(bodies_.size(), [&](std::size_t k) {
+        if (x_.done[k] != 0) return;
+        Body& touched = bodies_[k];
+        touched.keep(t_, touched.integrator->q(), touched.integrator->v());
+      });
     }
-    crew_.run(bodies_.size(), [&](std::size_t k) {
-      if (x_.done[k] != 0) return;
-      Body& touched = bodies_[k];
-      touched.keep(t_, touched.integrator->q(), touched.integrator->v());
-    });
     if (done == Status::ok) continue;
     failure_ = coupling->failure();
     return done;
