@@ -6,7 +6,7 @@ set(changes "")
 # What is compiled, or says how.
 set(compiled CMakeLists.txt CMakePresets.json cmake math contract linear models integrators
     simulation experiments python ":(exclude)experiments/report" ":(exclude)*.md"
-    ":(exclude)*.mjs")
+    ":(exclude)*.mjs" ":(exclude)*.py")
 
 # git(VARIABLE argument...): what git prints; "failed" where it fails, or hangs.
 function(git variable)

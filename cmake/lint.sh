@@ -13,7 +13,7 @@ case ${1:-} in
   format) sources | xargs -0 clang-format --dry-run -Werror ;;
   fix) sources | xargs -0 clang-format -i ;;
   shellcheck)
-    shellcheck -x tress .ci/run cmake/*.sh tests/{commands,cluster,plugin,simulation,support}/*.sh experiments/report/*.sh
+    shellcheck -x tress .ci/run cmake/*.sh tests/{commands,plugin,simulation,support}/*.sh experiments/report/*.sh
     ;;
   tidy)
     # The options are GCC's: some it alone knows, and its -Wconversion leaves signs alone.

@@ -6,11 +6,11 @@
 
 #include "contract/weights.h"
 
-/// The contract between models and integrators for many strands at once. A block is W
-/// strands of equal resolution, a strand in each of W lanes: entry k of lane l lies at
-/// [k W + l], in memory of contract/lane_vector.h. Every call is for all lanes and says
-/// of each what came of it; lanes do not mix. Numbers are in units of the model's own in
-/// which earth_gravity is 1, times in s where they are named so.
+/// Contract between models and integrators for many strands at once. A block holds W
+/// strands of equal resolution, one in each of W lanes. Entry k of lane l lies at [k W +
+/// l], in memory of contract/lane_vector.h. Every call acts on all lanes and returns a
+/// result for each; lanes do not mix. Numbers are in units of the model in which
+/// earth_gravity is 1. Times named "(s)" are in seconds.
 namespace tress {
 
 /// A set of lanes: bit l is lane l.
@@ -22,9 +22,9 @@ struct LanePlace {
   int lane;
 };
 
-/// What a model knows of strands beyond coordinates and rates, in blocks: material, rest
-/// shape and root, and what steps change, such as reference frames. Copies are between
-/// memories of one model.
+/// Data of a model's strands, in blocks, other than coordinates and rates: material, rest
+/// shape, root, and data that steps change, such as reference frames. Both sides of a
+/// copy must be memories of one model.
 class StrandMemory {
  public:
   virtual ~StrandMemory() = default;
@@ -36,10 +36,10 @@ class StrandMemory {
 
   virtual void copy(const StrandMemory& from, LanePlace of, LanePlace to) = 0;
   virtual void copy_block(const StrandMemory& from, std::size_t of, std::size_t to) = 0;
-  /// What steps change alone.
+  /// Copies only the data that steps change.
   virtual void copy_changed(const StrandMemory& from, LanePlace of, LanePlace to) = 0;
 
-  /// The same as `kept` numbers of a strand.
+  /// Returns how many numbers keep() writes and recall() reads for one strand.
   virtual std::size_t kept() const = 0;
   virtual void keep(LanePlace of, double* to) const = 0;
   virtual void recall(LanePlace of, const double* from) = 0;
@@ -48,7 +48,7 @@ class StrandMemory {
   virtual double length(LanePlace of) const = 0;
 };
 
-/// Times at which roots have a place: the start of a step, a stage of it, and its end.
+/// Times at which roots have a position: start of a step, one of its stages, and its end.
 enum class Instant { start, stage, end };
 
 /// The equations of a block of strands, r(t, q, v, a) = 0, with working memory of one
@@ -77,17 +77,18 @@ class Block {
   virtual Lanes renew(Instant at, N* q, N* v) = 0;
   /// q_bar = q + h v from the start of the step on, for roots that move as they do.
   virtual void predict(Instant to, double h, const N* q, const N* v, N* q_bar) const = 0;
-  /// Roots and loads there are those of newton() and again() from now on: what acts on
-  /// the strands of a stage of gamma h = `h` (s), as far as it is found once, at (q, v).
+  /// Sets the roots and loads of the following newton() and again() calls. Loads that are
+  /// found once per stage are evaluated at (q, v). The stage has gamma h = `h` (s).
   virtual void meet(Instant at, double h, const N* q, const N* v) = 0;
-  /// In these lanes terms of second order of the next newton() have the stresses of q,
-  /// then those that each correction has found (StressForm).
+  /// Makes the second-order terms of these lanes use the stresses of q in the next
+  /// newton(). After each correction they use the stresses that the correction found
+  /// (StressForm).
   virtual void take_stresses(const N* q, Lanes which) = 0;
   /// correction = S(w)^-1 r, and its size in each lane (W): the largest change of q or v
   /// over their typical sizes.
   virtual void newton(Weights w, const N* q, const N* v, const N* a, N* correction,
                       N* size) = 0;
-  /// The same with the matrix of the last newton().
+  /// Computes a correction as newton() does, with the matrix of the last newton().
   virtual void again(Weights w, const N* q, const N* v, const N* a, N* correction,
                      N* size) = 0;
   /// Size of corrections that are rounding errors.

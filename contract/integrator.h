@@ -12,7 +12,8 @@
 
 namespace tress {
 
-/// How constraints enter the equations (shared by all integrators; see formulation/).
+/// Form of the constraints in the equations (shared by all integrators; see
+/// formulation/).
 enum class Formulation {
   parametric,    // the model's coordinates satisfy the constraints, or it has none
   acceleration,  // g'' = 0: index 1, drifts

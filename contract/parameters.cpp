@@ -6,24 +6,10 @@
 
 #include "contract/decimal.h"
 #include "contract/input_error.h"
+#include "contract/renamed.h"
 
 namespace tress {
 namespace {
-
-/// Keys that once had another name than the same thing elsewhere. Whoever gives the old
-/// one learns the new one, where that one is declared.
-struct Renamed {
-  std::string_view before, now;
-};
-constexpr Renamed renamed[] = {{"acceleration_m_s2", "gravity_m_s2"},
-                               {"frequency_1_s", "frequency_hz"},
-                               {"gravity", "gravity_m_s2"},
-                               {"head_angle_rad", "angle_rad"},
-                               {"nu_kg_m_s", "drag_kg_m_s"},
-                               {"root", "motion"},
-                               {"stop_speed_m_s", "speed_m_s"},
-                               {"stop_time_s", "time_s"},
-                               {"tangent", "root_tangent"}};
 
 std::string join(std::span<const std::string_view> words) {
   std::string text;
@@ -138,10 +124,8 @@ std::string_view nearest(std::string_view word,
 std::string suggestion(std::string_view word,
                        std::span<const std::string_view> candidates,
                        const std::string& otherwise) {
-  for (const auto& [before, now] : renamed) {
-    if (before == word && std::ranges::count(candidates, now) > 0) {
-      return "it is called '" + std::string(now) + "' now";
-    }
+  for (const std::string_view now : candidates) {
+    if (renamed(word, now)) return "it is called '" + std::string(now) + "' now";
   }
   const std::string_view near = nearest(word, candidates);
   return near.empty() ? otherwise : "did you mean '" + std::string(near) + "'?";
@@ -196,10 +180,13 @@ void Parameters::set(std::string_view key, std::string_view value,
   }
   const auto words = words_of(declared.choices);
   if (!declared.text && std::find(words.begin(), words.end(), value) == words.end()) {
-    const std::string_view near = nearest(value, words);
+    const std::string near = suggestion(value, words, "");
     throw InputError(std::string(key) + " = '" + std::string(value) + "' is unknown",
                      where,
-                     (near.empty() ? "" : "did you mean '" + std::string(near) + "'? ") +
+                     near +
+                         (near.empty()          ? ""
+                          : near.ends_with('?') ? " "
+                                                : "; ") +
                          "use one of: " + join(words));
   }
   values_[i].word = value;

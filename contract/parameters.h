@@ -43,14 +43,16 @@ class Parameters {
   /// Throws InputError on an unknown key, a malformed or non-finite number, a number out
   /// of range or a value not among the choices; the message lists the accepted values.
   void set(std::string_view key, std::string_view value);
-  /// As above, with `where` (file:line:column) instead of the owner in messages.
+  /// Sets a value as set(key, value) does; messages name `where` (file:line:column)
+  /// instead of the owner.
   void set(std::string_view key, std::string_view value, const std::string& where);
   bool knows(std::string_view key) const;
 
   double number(std::string_view key) const;
   int whole(std::string_view key) const;
   std::string_view word(std::string_view key) const;  // of choices, or text
-  Vec vec(std::string_view key) const;                // of three components
+  /// Returns the value of a parameter with three components.
+  Vec vec(std::string_view key) const;
   /// Components of all rows, one row after the other.
   std::span<const double> numbers(std::string_view key) const;
   /// The value as text for set(), which restores it bit for bit.

@@ -63,9 +63,9 @@ class System {
   /// Solves S(w) x = b with the S of the last linearize(); b and x (n) may be the same.
   virtual Status solve(In b, Out x) noexcept = 0;
 
-  /// The first time after t at which the equations are not smooth in time (a prescribed
-  /// motion stops, a force is switched); methods that rely on smoothness end a step
-  /// there. Infinity: none.
+  /// Returns the first time after t at which the equations are not smooth in time: a
+  /// prescribed motion stops, or a force is switched. Methods that rely on smoothness end
+  /// a step there. Infinity: none.
   virtual double next_breakpoint(double /*t*/) const {
     return std::numeric_limits<double>::infinity();
   }

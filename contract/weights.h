@@ -2,7 +2,7 @@
 
 namespace tress {
 
-/// Of S(w) = w.acc dr/da + w.vel dr/dv + w.pos dr/dq (contract/system.h).
+/// Weights of S(w) = w.acc dr/da + w.vel dr/dv + w.pos dr/dq (contract/system.h).
 struct Weights {
   double acc = 0;
   double vel = 0;

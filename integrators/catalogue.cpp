@@ -17,7 +17,7 @@
   METHOD(rk4)                        \
   METHOD(rattle)                     \
   METHOD(predictor_corrector)        \
-  METHOD(semi_implicit_euler)        \
+  METHOD(linearly_implicit_euler)    \
   METHOD(backward_euler)             \
   METHOD(implicit_midpoint)          \
   METHOD(linearly_implicit_midpoint) \

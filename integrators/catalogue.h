@@ -9,7 +9,7 @@
 
 namespace tress::integrators {
 
-/// Those of tress, then those of plug-ins.
+/// Returns the integrators of tress, then those of plug-ins.
 std::span<const IntegratorEntry> integrator_catalogue();
 std::span<const IntegratorEntry> added_integrators();  // those of plug-ins
 

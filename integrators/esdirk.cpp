@@ -52,9 +52,9 @@ constexpr double smooth_newton_part = 0.03;
 /// has no friction. On a slope at 97 % of the friction, esdirk43 at 1e-3 takes 32 steps
 /// and moves by 10 um with this, 82 steps and 163 um with 1e-2 (super_helix, compliant).
 constexpr double contact_newton_part = 1e-3;
-/// From this tolerance on, first corrections of points are so large that a matrix is out
-/// of date after them: new ones in every iteration take a tenth less time for tr_bdf2 at
-/// 1e-2 and as much more at 2e-3. (der on scenes/accuracy.)
+/// Tolerance from which a matrix is out of date after the first correction, because the
+/// corrections of points are large. New matrices in every iteration take a tenth less
+/// time for tr_bdf2 at 1e-2 and a tenth more at 2e-3. (der on scenes/accuracy.)
 constexpr double loose_tolerance = 3e-3;
 /// Below, after a correction that turns an edge by so much: a fifth less work for
 /// esdirk43 at 1e-3 than without. A tenth of a radian saves another tenth, but ends
@@ -246,7 +246,7 @@ std::unique_ptr<Integrator> make_esdirk(const EsdirkTable& table, System& system
                                         const Options& options) {
   if (options.tolerance > 0) {
     if (options.formulation == Formulation::index3) {
-      throw InputError("no error control on index 3", "tolerance",
+      throw InputError("no error control on index 3", "position_tol_rel",
                        "use projection, or a fixed step");
     }
     return std::make_unique<ControlledEsdirk>(system, options, table);

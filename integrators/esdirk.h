@@ -8,9 +8,9 @@
 
 namespace tress::integrators {
 
-/// Coefficients of an ESDIRK method: a Runge-Kutta method whose first stage is the known
-/// state, whose other stages are implicit with one diagonal entry a_ii = gamma, and whose
-/// last stage is the new state (b = the last row of a), so that its first stage is the
+/// Coefficients of an ESDIRK method. The first stage of this Runge-Kutta method is the
+/// known state; the other stages are implicit with one diagonal entry a_ii = gamma. The
+/// last stage is the new state (b = the last row of a), so that the first stage is the
 /// last one of the step before.
 struct EsdirkTable {
   static constexpr std::size_t most_stages = 6;
@@ -36,21 +36,23 @@ struct EsdirkTable {
 ///     q_i = q_bar + (h gamma)^2 a_i,            q_bar = q + h sum_{j<i} a_ij v_j
 ///                                                         + h gamma v_bar
 ///
-/// so that every stage hands the same weights (1, h gamma, (h gamma)^2) to Stage, and one
-/// matrix serves all of them (Refresh::every_step: one a step). So it is along bodies
-/// (ContactForm): X_i = X + h sum_{j<=i} a_ij U_j.
+/// so that every stage passes the same weights (1, h gamma, (h gamma)^2) to Stage, and
+/// one matrix serves all stages (Refresh::every_step: one per step). Positions along
+/// bodies (ContactForm) follow the same rule: X_i = X + h sum_{j<=i} a_ij U_j.
 ///
-/// A step in which a rigid contact stops points (ContactForm) is one of backward Euler:
-/// velocities jump, whose impulse the stages of a method of higher order would weigh with
-/// coefficients of either sign. Its difference is that to the free motion of the
-/// positions, which falls with the step, and none of velocities, which does not.
+/// A step in which a rigid contact stops points (ContactForm) is a backward Euler step.
+/// Velocities jump there, and the stages of a higher-order method would weight the
+/// impulse with coefficients of either sign. The error estimate is the difference of
+/// positions to the free motion, which falls with the step. It excludes velocities, whose
+/// difference does not fall.
 class EsdirkStages {
  public:
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
                Stage::Ending ending);
 
-  /// From (q, v) at t with its acceleration a and multipliers over h. Points that come
-  /// upon a rigid surface at less than `gently` (m/s) make no jump.
+  /// Steps from (q, v) at t, with acceleration a and multipliers lambda, over h. Points
+  /// that reach a rigid surface at less than `gently` (m/s) do not cause a backward Euler
+  /// step.
   Status step(double t, double h, In q, In v, In a, In lambda, double gently,
               Effort effort = Effort::whole) noexcept;
 

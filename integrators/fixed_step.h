@@ -37,7 +37,7 @@ class FixedStep : public Integrator {
 
   /// q_ = q, v_ = v.
   void take(In q, In v);
-  /// As above, between steps, by somebody who has used the system meanwhile.
+  /// Sets q_ = q, v_ = v between steps, after another caller has used the system.
   Status replace(In q, In v);
 
   std::vector<double> vector_n() const { return std::vector<double>(q_.size()); }
@@ -52,7 +52,8 @@ class FixedStep : public Integrator {
  private:
   /// Ends the run with `what` at time t as failure().
   Status end(Status status, double t, const std::string& what);
-  /// As above for a failed step; adds its number and what was not finite in it.
+  /// Ends the run after a failed step; the message adds the number of the step and what
+  /// was not finite.
   Status fail(Status status, double t, const std::string& what);
   Status finish_step(double t);
 

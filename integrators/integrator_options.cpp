@@ -94,10 +94,9 @@ const Field fields[] = {
       .min = 0,
       .max = largest},
      number<&Options::max_step>},
-    {{.name = "tolerance",
-      .help =
-          "error of a point over the length that the step is controlled for, 0: fixed "
-          "step; methods with rtol take it as rtol and a hundredth as atol",
+    {{.name = "position_tol_rel",
+      .help = "error of a point over the length for which the step is controlled, 0: "
+              "fixed step. Methods with rtol take it as rtol, and a hundredth as atol",
       .number = defaults.tolerance,
       .min = 0,
       .max = 1},

@@ -10,11 +10,12 @@
 namespace tress::integrators {
 namespace {
 
-/// One residual, one factorisation and one solve per step, like semi_implicit_euler, but
-/// order 2, with any tangent (a W-method). As stable as implicit_midpoint on linear
-/// systems with the exact tangent; otherwise the step must resolve the terms that the
-/// tangent omits and its changes, which the ErrorIndicator monitors. [Steihaug,
-/// Wolfbrandt 1979, Math. Comp. 33, 521; Hairer, Wanner: Solving ODEs II, IV.7]
+/// One residual, one factorisation and one solve per step, like linearly_implicit_euler,
+/// but order 2, with any tangent (a W-method). On linear systems with the exact Jacobian
+/// it is as stable as implicit_midpoint. Otherwise the step must resolve the terms that
+/// the tangent omits and the changes of the tangent, which the ErrorIndicator monitors.
+/// [Steihaug, Wolfbrandt 1979, Math. Comp. 33, 521; Hairer, Wanner: Solving ODEs II,
+/// IV.7]
 ///
 /// The midpoint rule's equations with a single Newton step from
 ///
@@ -22,17 +23,17 @@ namespace {
 ///
 /// the line through the accelerations at the last two midpoints. The error of a* is
 /// O(h^2), and a tangent with wrong or missing dr/dv leaves O(h) times that: order 2
-/// needs neither an exact tangent nor iteration. The first two steps iterate.
+/// needs neither an exact Jacobian nor iteration. The first two steps iterate.
 ///
-/// Error indicator: with even steps a - a* is the second difference of the accelerations
-/// at midpoints, h^2 a'' + O(h^3), and the velocity's local error is
+/// Error indicator: with equal steps a - a* is the second difference of the accelerations
+/// at midpoints, h^2 a'' + O(h^3). The local error of the velocity is
 ///
 ///     integral of a over the step - h a(midpoint) = h^3/24 a'' + O(h^5),
 ///
 /// which moves q by h times that during a step: h^2/24 |a - a*|. So it falls as h^4 if
 /// the step resolves the motion, and it includes the error of the single Newton step. At
-/// the stability limit a changes its sign from step to step, |a - a*| = 4 |a|, and the
-/// indicator is h^2 |a|/6, a third of the entire effect of a step's acceleration on q.
+/// the stability limit a changes its sign from step to step and |a - a*| = 4 |a|. The
+/// indicator is then h^2 |a|/6, a third of the effect of a step's acceleration on q.
 class LinearlyImplicitMidpoint final : public FixedStep, public ErrorIndicator {
  public:
   LinearlyImplicitMidpoint(System& system, const Options& options)

@@ -1,7 +1,7 @@
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
 #include "integrators/formulation/relaxation.h"
-#include "integrators/semi_implicit_step.h"
+#include "integrators/linearly_implicit_step.h"
 
 namespace tress::integrators {
 namespace {
@@ -22,15 +22,15 @@ constexpr Parameter own_predictor_corrector[] = {
      .max = 1},
 };
 
-/// Two semi-implicit half steps without constraints, and between them a correction of the
-/// positions, one constraint after the other, until all hold: the method used in film
-/// production to keep hair from stretching. Order 1; without constraints its
-/// amplification has determinant (1 + z^2/4)^-2: it damps half as much as
-/// semi_implicit_euler. [Kim 2010, in: Realistic Hair Simulation, SIGGRAPH course, five
-/// steps; Provot 1995; Bridson et al. 2002]
+/// Two linearly implicit half steps without constraints. Between them the positions are
+/// corrected, one constraint after the other, until all constraints are satisfied. Film
+/// production uses this method to keep hair from stretching. Order 1. Without constraints
+/// its amplification has determinant (1 + z^2/4)^-2: it damps half as much as
+/// linearly_implicit_euler. [Kim 2010, in: Realistic Hair Simulation, SIGGRAPH course,
+/// five steps; Provot 1995; Bridson et al. 2002]
 ///
-/// The five steps, with a(q, v) the acceleration of an unconstrained semi-implicit half
-/// step from (q, v):
+/// The five steps, with a(q, v) the acceleration of an unconstrained linearly implicit
+/// half step from (q, v):
 ///
 ///     1  v_m = v_n + h/2 a(q_n, v_n)          the first implicit filter
 ///     2  q*  = q_n + h v_m
@@ -38,8 +38,8 @@ constexpr Parameter own_predictor_corrector[] = {
 ///     4  v_m += (q_{n+1} - q*)/h              the impulse
 ///     5  v_{n+1} = v_m + h/2 a(q_{n+1}, v_m)  the second implicit filter
 ///
-/// On x'' = -omega^2 x, with z = h omega and s = 1/(1 + z^2/4), the step has trace
-/// 3 s^2 - 1 and determinant s^2: stable for every z.
+/// On x'' = -omega^2 x, with z = h omega and s = 1/(1 + z^2/4), the step has trace 3 s^2
+/// - 1 and determinant s^2: stable for every z.
 class PredictorCorrector final : public FixedStep {
  public:
   PredictorCorrector(System& system, const Options& options)
@@ -82,7 +82,7 @@ class PredictorCorrector final : public FixedStep {
   }
 
   bool impulse_, second_filter_;
-  SemiImplicitStep filter_;
+  LinearlyImplicitStep filter_;
   Relaxation relaxation_;
   std::vector<double> predicted_;
 };

@@ -12,9 +12,9 @@ namespace {
 /// One step, with G_n the constraint gradient at q_n and [M, -G_n^T; G_n, 0] factored:
 ///     w = v_n + h/2 M^-1 (f_n + G_n^T lambda),  q_{n+1} = q_n + h w,  g(q_{n+1}) = 0
 ///     v_{n+1} = w + h/2 M^-1 (f_{n+1} + G_{n+1}^T mu),  G_{n+1} v_{n+1} + g_t = 0
-/// The acceleration that satisfies g'' = 0 serves as the guess for both multipliers, so
-/// the corrections that remain are O(h^3) and O(h^2). f_{n+1} is evaluated at the
-/// predicted velocity.
+/// The acceleration that satisfies g'' = 0 serves as the guess for both multipliers. The
+/// remaining corrections are O(h^3) and O(h^2). f_{n+1} is evaluated at the predicted
+/// velocity.
 class Rattle final : public FixedStep {
  public:
   Rattle(System& system, const Options& options)

@@ -7,13 +7,12 @@
 
 namespace tress {
 
-/// Solver for band matrices that are usually symmetric positive definite: L D L^T
-/// without pivoting or scaling, which such matrices do not need (the errors of every
-/// entry stay small compared with the roots of its diagonal entries, whatever the
-/// units) [Higham 2002, Accuracy and Stability of Numerical Algorithms, section 10.1].
-/// n k^2/2 multiply-adds for half-bandwidth k, a sixth of BandedSolver's time. A matrix
-/// that turns out unsymmetric, or has a pivot that is not positive, is solved by
-/// BandedSolver.
+/// Solver for band matrices that are usually symmetric positive definite: L D L^T without
+/// pivoting or scaling. Such matrices need neither: the errors of every entry stay small
+/// compared with the roots of its diagonal entries, whatever the units [Higham 2002,
+/// Accuracy and Stability of Numerical Algorithms, section 10.1]. Takes n k^2/2
+/// multiply-adds for half-bandwidth k, a sixth of BandedSolver's time. BandedSolver
+/// solves a matrix that turns out unsymmetric or has a pivot that is not positive.
 class DefiniteBand final : public LinearSolver {
  public:
   explicit DefiniteBand(const Pattern& pattern);
@@ -34,7 +33,8 @@ class DefiniteBand final : public LinearSolver {
     std::size_t row, column;   // in the band
   };
 
-  bool gather(In values) noexcept;  // false: not symmetric
+  /// Copies the values into the band; returns false if they are not symmetric.
+  bool gather(In values) noexcept;
   template <std::size_t known>
   bool eliminate() noexcept;
   bool eliminate() noexcept;  // false: not positive definite

@@ -10,18 +10,18 @@ namespace tress {
 
 /// Base of all direct solvers: scaling, singularity test, condition estimate.
 ///
-/// The factored matrix is R A C: rows and columns are divided by the square roots of
-/// their largest magnitudes, three times, then columns by their largest [Ruiz 2001,
-/// RAL-TR-2001-034]. The first part keeps symmetry, so mixed units and masses (D A D)
-/// cancel. Every column of R A C has size one, so pivots need no further scaling: at or
-/// below `singular_pivot` the matrix counts as singular. O(nonzeros) on top of the
-/// factorisation.
+/// The factored matrix is R A C. Rows and columns are divided by the square roots of
+/// their largest magnitudes, three times, then columns by their largest magnitude [Ruiz
+/// 2001, RAL-TR-2001-034]. The first part keeps symmetry, so mixed units and masses (D A
+/// D) cancel. Every column of R A C has size one, so pivots need no further scaling. With
+/// a pivot at or below `singular_pivot` the matrix counts as singular. Scaling costs
+/// O(nonzeros) on top of the factorisation.
 ///
 /// condition() estimates |R A C| |(R A C)^-1|, computed on request by two solves (the
 /// power method on the inverse from a scattered start). It is a lower bound of the
-/// product of the 1-norm and the inverse's 2-norm; the first solve alone reaches
-/// |inverse| / sqrt(n) in the mean, so only the order of magnitude is guaranteed.
-/// klu_condest is not used: it takes up to ten solves and measures A unscaled.
+/// product of the 1-norm and the inverse's 2-norm. The first solve alone reaches
+/// |inverse| / sqrt(n) in the mean, so only the order of magnitude is guaranteed. KLU's
+/// own klu_condest is not used: it takes up to ten solves and measures A unscaled.
 class DirectSolver : public LinearSolver {
  public:
   /// Rounding leaves the last pivot of a singular matrix at a small multiple of the

@@ -22,13 +22,13 @@ struct KktReport {
 ///     [S  -G^T] [x]   [b]        x (n) coordinates, y (m) multipliers,
 ///     [H   0  ] [y] = [c]        S (n x n) any; G, H (m x n) on one pattern.
 ///
-/// Unknowns and rows are scaled with D from the diagonal of S (x = D x~) and constraints
-/// to unit length in that metric, so neither units nor a mass of 1e-8 kg are mistaken for
+/// Unknowns and rows are scaled with D from the diagonal of S (x = D x~), constraints to
+/// unit length in that metric. Neither units nor a mass of 1e-8 kg are then mistaken for
 /// rank deficiency. Cost: one sparse factorisation, two solves for the condition.
 ///
-/// Redundant constraints (G of deficient rank) are solved in the least-squares sense:
-/// with A = H S^-1 G^T, the y of least norm among those that minimise |A y - (c - H S^-1
-/// b)|. The parts of c in null(H^T) and of y in null(G^T) are removed; the rest is solved
+/// Redundant constraints (G of deficient rank) are solved in the least-squares sense.
+/// With A = H S^-1 G^T, y has the least norm among those that minimise |A y - (c - H S^-1
+/// b)|. The parts of c in null(H^T) and of y in null(G^T) are removed. The rest is solved
 /// with delta added to the (2,2) block and refined against the unmodified matrix. Each
 /// such factorisation allocates and repeats the QR of rank.h, since null spaces move with
 /// G.

@@ -16,10 +16,12 @@ namespace {
 /// us), dense takes 1.6 times as long at 32.
 constexpr int most_dense_unknowns = 16;
 
-/// Banded wins where the band is well filled. KLU's time over banded's, by half-bandwidth
-/// per mean entries of a column: rods of 3 to 6 unknowns a node 1.0 to 2.7 (0.6 to 0.8);
-/// nets 2 to 4 nodes wide 1.2 (0.8 to 1.1), square nets of point masses 0.9 (5) to 0.7
-/// (13); stars of 3 strands 1.0 (0.9), of 6 strands 0.9 (2.1), of 12 strands 0.5 (4.5).
+/// Ratio of half-bandwidth to mean entries of a column up to which banded elimination is
+/// used. KLU's time over banded's, with the ratio in parentheses:
+/// - rods of 3 to 6 unknowns per node: 1.0 to 2.7 (0.6 to 0.8);
+/// - nets 2 to 4 nodes wide: 1.2 (0.8 to 1.1);
+/// - square nets of point masses: 0.9 (5) to 0.7 (13);
+/// - stars: 1.0 (0.9) with 3 strands, 0.9 (2.1) with 6, 0.5 (4.5) with 12.
 constexpr double band_per_entry = 1.5;
 
 bool prefers_band(const Pattern& pattern, const BandOrdering& ordering) {

@@ -26,7 +26,7 @@ class LinearSolver {
 /// leaves a narrow band, KLU otherwise.
 std::unique_ptr<LinearSolver> make_linear_solver(LinearKind kind, const Pattern& pattern);
 
-/// As above, for matrices that are usually symmetric positive definite: a band is
+/// Creates a solver for matrices that are usually symmetric positive definite: a band is
 /// eliminated without pivoting where possible (DefiniteBand).
 std::unique_ptr<LinearSolver> make_definite_solver(LinearKind kind,
                                                    const Pattern& pattern);

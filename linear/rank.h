@@ -7,8 +7,9 @@
 
 namespace tress {
 
-/// Combinations of constraint gradients that vanish: the null space of G^T (n x m), from
-/// a rank-revealing QR of the scaled matrix R G^T E whose columns have about unit length,
+/// Combinations of constraint gradients that vanish: the null space N of G^T (n x m). A
+/// rank-revealing QR of the scaled matrix R G^T E, whose columns have about unit length,
+/// gives
 ///
 ///     R G^T E P = Q [R11 R12; 0 0],      N = E P [-R11^-1 R12; I].
 ///

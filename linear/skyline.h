@@ -7,10 +7,10 @@
 
 namespace tress {
 
-/// Symmetric matrix whose row i is zero before column first[i], held as the rows of its
-/// lower triangle from there to the diagonal; its factor L of A = L L^T has the same
-/// profile. n k^2/2 multiply-adds for half-bandwidth k. [George 1981] A. George, J. Liu,
-/// Computer Solution of Large Sparse Positive Definite Systems, ch. 4.
+/// Symmetric matrix whose row i is zero before column first[i]. Rows of the lower
+/// triangle are stored from there to the diagonal. The factor L of A = L L^T has the same
+/// profile. Takes n k^2/2 multiply-adds for half-bandwidth k. [George 1981] A. George, J.
+/// Liu, Computer Solution of Large Sparse Positive Definite Systems, ch. 4.
 class Skyline {
  public:
   /// first[i] <= i.

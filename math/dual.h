@@ -86,7 +86,7 @@ struct Dual {
   }
 };
 
-/// What may be multiplied with numbers of type T without derivatives of its own.
+/// Type that may be multiplied with numbers of type T and has no derivatives of its own.
 template <class T>
 struct ConstantOf {
   using Type = T;

@@ -57,11 +57,11 @@ T taylor_sum(const T& x) {
   return y;
 }
 
-/// Taylor series give b = B/s^3, its derivatives and A3/s^8; the others follow without
+/// Taylor series give b = B/s^3, its derivatives and A3/s^8. The others follow without
 /// cancellation from the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
 ///     S = s - w^2 B,  s A = 3 B + w^2 B1,  s A1 = 5 B1 + w^2 B2,  s A2 = 7 B2 + w^2 B3
-/// Never a function of its own: another source might be compiled with other products
-/// fused, and one of them would stand for all.
+/// This function is always inlined: other sources may be compiled with other products
+/// fused, and the linker would keep one version for all.
 template <int terms, class T, class X>
 [[gnu::always_inline]] inline HelixFunctions<T> series(const T& s, const X& x2) {
   const T ss = s * s;
@@ -87,12 +87,13 @@ template <int terms, class T, class X>
 /// Closed forms for one s; accurate for ws >= 3, approximately.
 HelixFunctions<double> closed_forms(double s, double x2) noexcept;
 
-/// The same with the sine and cosine of half = ws/2. S and A from the half angle, free of
-/// cancellation; then successive derivatives of w^2 A = 1 - cos ws and w^2 B = s - S,
-/// with S'(w)/w = B - s A:
+/// Computes the functions from the sine and cosine of half = ws/2. S and A follow from
+/// the half angle, free of cancellation. The others are successive derivatives of w^2 A =
+/// 1 - cos ws and w^2 B = s - S, with S'(w)/w = B - s A:
+///
 ///     w^2 A1 = s S - 2 A,  w^2 A2 = s S1 - 4 A1,  w^2 A3 = s S2 - 6 A2
 ///     w^2 B1 = -S1 - 2 B,  w^2 B2 = -S2 - 4 B1,   w^2 B3 = -S3 - 6 B2
-/// S1 = B - s A, S2 = B1 - s A1, S3 = B2 - s A2
+///     S1 = B - s A, S2 = B1 - s A1, S3 = B2 - s A2
 inline HelixFunctions<double> closed_forms(double s, double x2, double half, double sine,
                                            double cosine) noexcept {
   const double over = 1 / x2;
@@ -134,16 +135,17 @@ HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
 
 }  // namespace helix
 
-/// T = double or Pack. x2 = |kappa|^2 is one number per element, or one per lane; longest
-/// is the largest |s| of the element, so that all its points, and all elements of a pack,
-/// take the same branch.
+/// Computes the functions for T = double or Pack. x2 = |kappa|^2 is one number per
+/// element, or one per lane. `longest` is the largest |s| of the element, so that all its
+/// points, and all elements of a pack, take the same branch.
 ///
 /// Error bounds for given x2, eps = 2^-52: 8 eps relative for ws <= 2. Beyond, where the
-/// functions have zeros, relative to the size of their oscillation s^p/(ws)^m, m = 1, 2,
-/// 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller): 15 eps up to ws = 4.5,
-/// then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to ws = 50. Cost: one of
-/// four paths, chosen by w longest: branch-free power series up to 0.17, 1.5 and 4.5 (a
-/// full turn is 6.3), lane by lane beyond.
+/// functions have zeros, errors are relative to the size of their oscillation s^p/(ws)^m,
+/// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller). The bound is
+/// 15 eps up to ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to
+/// ws = 50. Cost: one of four paths, chosen by w longest. They are branch-free power
+/// series up to 0.17, 1.5 and 4.5 (a full turn is 6.3), and evaluation lane by lane
+/// beyond.
 template <class T, class X>
 HelixFunctions<T> helix_functions(const T& s, const X& x2, const X& longest) noexcept {
   const double x = largest(x2 * (longest * longest));

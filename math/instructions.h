@@ -2,8 +2,8 @@
 
 namespace tress {
 
-/// Of a kernel into which all is inlined that it calls. Not where every access is checked
-/// by a sanitizer: with the checks inlined, too, a kernel takes the compiler minutes.
+/// Inlines into a kernel all functions that it calls. Not with sanitizers that check
+/// every access: with the checks inlined as well, a kernel takes minutes to compile.
 #ifdef __SANITIZE_ADDRESS__
 #define TRESS_FLATTEN
 #else

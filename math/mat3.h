@@ -22,7 +22,7 @@ struct Mat3Of {
   friend constexpr Vec3<T> operator*(const Mat3Of& a, const Vec3<T>& x) {
     return {dot(a.r0, x), dot(a.r1, x), dot(a.r2, x)};
   }
-  /// x^T a
+  /// Returns the product x^T a.
   friend constexpr Vec3<T> operator*(const Vec3<T>& x, const Mat3Of& a) {
     return x.x * a.r0 + x.y * a.r1 + x.z * a.r2;
   }

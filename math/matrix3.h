@@ -64,7 +64,7 @@ Matrix3<T> cross_matrix(const Vec3<T>& p) {
   return {{{o, -p.z, p.y}, {p.z, o, -p.x}, {-p.y, p.x, o}}};
 }
 
-/// By cofactors.
+/// Returns the inverse by cofactors.
 template <class T>
 Matrix3<T> inverse(const Matrix3<T>& m) {
   const Vec3<T> x = cross(m.row[1], m.row[2]), y = cross(m.row[2], m.row[0]),
@@ -119,7 +119,7 @@ Symmetric3<T> upper(const Matrix3<T>& a) {
   return {a.row[0].x, a.row[1].y, a.row[2].z, a.row[0].y, a.row[0].z, a.row[1].z};
 }
 
-/// By cofactors: of graded definite matrices, too.
+/// Returns the inverse by cofactors; accurate also for graded definite matrices.
 template <class T>
 Symmetric3<T> inverse(const Symmetric3<T>& h) {
   const T first = h.yy * h.zz - h.yz * h.yz;

@@ -42,7 +42,7 @@ std::unique_ptr<System> together(std::span<const Strand> strands,
                                  const Parameters& parameters,
                                  std::vector<Effects> effects) {
   const ReducedOptions options = reduced_options(parameters);
-  const bool can = options.tangent == ReducedTangent::stiff &&
+  const bool can = options.jacobian == ReducedJacobian::elastic &&
                    options.method == TreeMethod::recursive &&
                    !strands.front().free_root &&
                    std::ranges::none_of(effects, hold_contacts);
@@ -60,11 +60,11 @@ std::vector<ModelEntry> built_in_models() {
       slider_crank_entry(),
       beam_entry(),
       ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), on_described_strand<make_super_helix>, make_super_helix, together<super_helix_batch>},
-      ModelEntry{"super_helix_tree", "the same, branching: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
+      ModelEntry{"super_helix_tree", "super_helix with branches: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"super_clothoid", "inextensible rod of n clothoids; 6n, 4n or 2n curvatures and twists", "Casati 2013", super_clothoid_parameters(), on_described_strand<make_super_clothoid>, make_super_clothoid, together<super_clothoid_batch>, Roots::clamped_or_free, 4},
-      ModelEntry{"super_clothoid_tree", "the same, branching: the trees of super_helix_tree", "Casati 2013", super_clothoid_tree_parameters(), make_super_clothoid_tree, nullptr, nullptr, Roots::clamped_or_free, 4},
+      ModelEntry{"super_clothoid_tree", "super_clothoid with branches: the trees of super_helix_tree", "Casati 2013", super_clothoid_tree_parameters(), make_super_clothoid_tree, nullptr, nullptr, Roots::clamped_or_free, 4},
       ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), on_described_strand<make_articulated_chain>, make_articulated_chain, together<articulated_chain_batch>},
-      ModelEntry{"force_transport", "the same, what lies beyond a joint moving rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), on_described_strand<make_force_transport>, make_force_transport, together<force_transport_batch>, Roots::clamped},
+      ModelEntry{"force_transport", "articulated_chain whose part beyond a joint moves rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), on_described_strand<make_force_transport>, make_force_transport, together<force_transport_batch>, Roots::clamped},
       der_entry(),
       corde_entry(),
       xpbd_cosserat_entry(),

@@ -13,7 +13,7 @@ namespace tress::models {
 /// Names and values of setup_parameters().
 using ModelSettings = std::vector<std::pair<std::string, std::string>>;
 
-/// Those of tress, then those of plug-ins.
+/// Returns the models of tress, then those of plug-ins.
 std::span<const ModelEntry> model_catalogue();
 std::span<const ModelEntry> added_models();  // those of plug-ins
 
@@ -21,8 +21,9 @@ std::span<const ModelEntry> added_models();  // those of plug-ins
 /// on an id that another model has, and on an entry that cannot be used.
 void add_model(const ModelEntry& model, const std::string& where);
 
-/// What ModelEntry::make reads: the model's own options, and for a model of a strand
-/// before them strand_parameters(), with the values of `motion` that it takes.
+/// Returns the parameters that ModelEntry::make reads: the model's own options. For a
+/// model of a strand strand_parameters() come first, with the values of `motion` that it
+/// takes.
 std::span<const Parameter> setup_parameters(const ModelEntry& model);
 
 /// Throws InputError naming the nearest id if there is no such model.

@@ -39,7 +39,7 @@ struct ModelEntry {
 
 using OnStrand = std::unique_ptr<System>(const Strand&, const Parameters&, Effects);
 
-/// On the strand that strand_parameters() describe.
+/// Makes a system on the strand that strand_parameters() describe.
 template <OnStrand* make>
 std::unique_ptr<System> on_described_strand(const Parameters& parameters) {
   return make(strand(parameters), parameters, strand_effects(parameters));

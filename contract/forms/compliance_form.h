@@ -8,10 +8,11 @@
 
 namespace tress {
 
-/// Elastic energy and friction as sums over blocks k of few constraints C_k(t, x), x the
-/// coordinates that the block touches, and everything else as an acceleration: the form
-/// that position-based methods need [Macklin, Mueller & Chentanez 2016, XPBD, eqs. 4 and
-/// 26]. With W = M^-1 diagonal and constant, alpha the compliances and c the friction,
+/// Elastic energy and friction as sums over blocks k, with all other forces as an
+/// acceleration. Block k has few constraints C_k(t, x), where x are the coordinates that
+/// it touches. Position-based methods need this form [Macklin, Mueller & Chentanez 2016,
+/// XPBD, eqs. 4 and 26]. With W = M^-1 diagonal and constant, alpha the compliances and c
+/// the friction,
 ///
 ///     E = sum_k C_k^T alpha^-1 C_k/2,    a = rest - W sum_k G_k^T s_k,
 ///     s = alpha^-1 C + c C',    G = dC/dq,    C' = G v + C_t.
@@ -60,9 +61,10 @@ class ComplianceForm {
   /// Ordered along the body; fixed for life. Empty: no coordinates are quaternions, or
   /// there is no closed form for them.
   virtual const std::vector<Orientation>& orientations();
-  /// Moves the orientation k in x, the values of its coordinates, towards the one of norm
-  /// 1 at which energy and friction, at the rates (x - origin)/h, are balanced with the
-  /// others held and no inertia: in closed form, repeated calls converge.
+  /// Moves orientation k in x, given by its coordinates' values, towards its equilibrium
+  /// in closed form. In equilibrium energy and friction balance at the rates (x -
+  /// origin)/h, with the others held, without inertia and with norm 1. Repeated calls
+  /// converge.
   virtual void orient(double /*t*/, double /*h*/, std::size_t /*k*/, In /*origin*/,
                       InOut /*x*/) noexcept {}
 };

@@ -7,10 +7,10 @@
 
 namespace tress {
 
-/// The laws of rigid contact linear about a state, for methods that solve for a state and
-/// the forces of contact at once [Josephy 1979]: the velocities of contacts respond
-/// linearly to their forces, which obey the laws exactly. Vectors have three entries per
-/// contact: along its normal, and two tangents.
+/// Laws of rigid contact, linear about a state, for methods that solve for the state and
+/// the contact forces at once [Josephy 1979]. Contact velocities respond linearly to the
+/// contact forces, which obey the laws exactly. Vectors have three entries per contact:
+/// along the normal, and along two tangents.
 class Complementarity {
  public:
   virtual ~Complementarity() = default;
@@ -18,13 +18,16 @@ class Complementarity {
   /// first is the one that all below is linear about. Their forces are constants from
   /// here to let_go(), those that they held at first. Their number.
   virtual std::size_t take(double t, In q, In v, In q_next, In v_next) noexcept = 0;
-  virtual void forces(Out f) const noexcept = 0;  // N
-  /// None that pulls.
+  /// Writes the contact forces, N.
+  virtual void forces(Out f) const noexcept = 0;
+  /// Sets the contact forces, N. Normal components must be >= 0.
   virtual void set_forces(In f) noexcept = 0;
-  /// What the laws are about, m/s: gaps over the time that closes them, or the excess
-  /// over the speed of a rebound, and velocities along the surface.
+  /// Computes the quantities that the laws restrict, m/s. Normal entry: the gap over the
+  /// time that closes it, or the excess over the rebound speed. Tangential entries: the
+  /// velocity along the surface.
   virtual void velocities(double t, In q, In v, Out u) noexcept = 0;
-  /// By how much a change of v changes the contacts' velocities.
+  /// Computes the change of the contact velocities du (m/s) due to a change dv of the
+  /// rates.
   virtual void responses(In dv, Out du) noexcept = 0;
   /// Forces that obey the laws where contacts have the velocities u + W (f - f_given); W
   /// by columns. By how much they violate them, m/s.
@@ -33,22 +36,20 @@ class Complementarity {
   virtual void let_go(bool found) noexcept = 0;
 };
 
-/// Contact forces that obey the laws of Signorini and Coulomb without regularisation.
-/// Each is given by a multiplier, a penalty and the state, so that the equations are
-/// functions of the state as ever; the multipliers at which the law holds are found by
-/// solving the equations and improving the multipliers in turn (augmented Lagrangian).
-/// The law is that of the state at which the equations are solved: methods use it at
-/// states that are ends of steps or stages.
+/// Contact forces that obey the laws of Signorini and Coulomb without regularisation. A
+/// multiplier, a penalty and the state determine each force, so the equations remain
+/// functions of the state. Solving the equations and improving the multipliers alternate
+/// until the laws are satisfied (augmented Lagrangian). The laws refer to the state at
+/// which the equations are solved: methods use them at ends of steps or stages.
 ///
-/// Friction acts against the slide U = X', where X are the places of points in the frames
-/// of the bodies. A method integrates X as it integrates q: its stage has X = x0 + tau U
-/// with x0 of its own formula, so that what sticks stays where it is, however the body
-/// turns.
+/// Friction acts against the slide U = X', where X are the positions of points in the
+/// frames of the bodies. A method integrates X as it integrates q: its stage has X = x0 +
+/// tau U with its own x0. A sticking point stays in place however the body turns.
 class ContactForm {
  public:
   virtual ~ContactForm() = default;
-  /// Before the equations of a state that lies `tau` (s) ahead are solved: q = q0 + tau
-  /// v, where q0 and v0 are the state from which the motion goes on, and X = x0 + tau U.
+  /// Prepares the equations of a state that lies `tau` (s) ahead: q = q0 + tau v and X =
+  /// x0 + tau U. The motion continues from the state (q0, v0).
   virtual void begin(double t, double tau, In q0, In v0, In x0) noexcept = 0;
   /// After they are solved, at the solution: takes the forces found as the multipliers.
   /// The largest speed (m/s) by which the solution violates the law.
@@ -73,7 +74,7 @@ class ContactForm {
   virtual void set_multipliers(In values) = 0;
   /// Returns the number of coordinates X; fixed for life.
   virtual std::size_t tracked() const = 0;
-  /// X, m.
+  /// Computes the coordinates X, m.
   virtual void places(double t, In q, In v, Out x) noexcept = 0;
   /// U of the last solution where it has closed contacts, that of v elsewhere; m/s.
   virtual void slides(double t, In q, In v, Out u) noexcept = 0;

@@ -6,7 +6,7 @@
 
 namespace tress {
 
-/// What a system remembers of the steps behind it: reference frames, contact sets.
+/// State of a system that depends on past steps: reference frames, contact sets.
 class History {
  public:
   virtual ~History() = default;

@@ -15,10 +15,12 @@ class MaterialPoints {
   virtual int count() const = 0;
   /// The point that point i is attached to, always an earlier one; -1: none.
   virtual int before(int i) const { return i - 1; }
-  virtual void positions(double t, In q, Out x) = 0;         // (3 count) m
-  virtual void velocities(double t, In q, In v, Out u) = 0;  // (3 count) m/s
-  /// du/dv, (3 count x n) by rows. False: not known in closed form; it can be had from
-  /// mean() or velocities().
+  /// Computes the positions of all points, (3 count), m.
+  virtual void positions(double t, In q, Out x) = 0;
+  /// Computes the velocities of all points, (3 count), m/s.
+  virtual void velocities(double t, In q, In v, Out u) = 0;
+  /// Computes du/dv, (3 count x n) by rows. False: not known in closed form; use mean()
+  /// or velocities().
   virtual bool jacobian(double /*t*/, In /*q*/, Out /*j*/) { return false; }
   /// b += J^T f, J = du/dv, of forces f (3 numbers each, N) on ascending points. False:
   /// as jacobian().
@@ -26,9 +28,10 @@ class MaterialPoints {
                          In /*f*/, InOut /*b*/) {
     return false;
   }
-  /// J S^-1 J^T of ascending points, with S as the last linearize() left it, at this t
-  /// and q: 3x3 blocks by rows, those of the force on the first point, of the second ...
-  /// False: to be had from jacobian() or mean() and System::solve().
+  /// Computes J S^-1 J^T of ascending points at (t, q), where S is that of the last
+  /// linearize(). The 3x3 blocks are stored by rows: the response to the force on the
+  /// first point comes first, then the second. False: not available; use jacobian() or
+  /// mean() and System::solve().
   virtual bool responses(double /*t*/, In /*q*/, std::span<const int> /*points*/,
                          Out /*blocks*/) {
     return false;

@@ -16,7 +16,7 @@ def scenes(root):
 
 
 def tress_help(root):
-    done = subprocess.run([root / "tress", "help"], text=True, capture_output=True, check=True)
+    done = subprocess.run([root / "tress", "help", "all"], text=True, capture_output=True, check=True)
     return f"```text\n{done.stdout.rstrip()}\n```"
 
 

@@ -32,7 +32,7 @@ struct Falling {
   explicit Falling(std::string_view model) {
     const simulation::Scene scene = simulation::parse_scene(
         fmt::format("title = \"falling\"\nduration_s = 1\n[model]\nid = \"{}\"\n"
-                    "[integrator]\nid = \"semi_implicit_euler\"\ndt_s = {}\n"
+                    "[integrator]\nid = \"linearly_implicit_euler\"\ndt_s = {}\n"
                     "[strand]\nlength_m = 0.2\nelements = {}\n[effects.gravity]\n",
                     model, h, elements),
         "falling.toml");
@@ -90,9 +90,8 @@ ContactProblem::Contact thrown(std::mt19937& random) {
   return contact;
 }
 
-/// Contacts of one strand with a plane, to the tolerance that is the default, from
-/// nothing or from the forces of a step before, since when velocities have changed by 1
-/// %.
+/// Contacts of one strand with a plane, to the default tolerance. The start is zero, or
+/// the forces of a step before, since when velocities have changed by 1 %.
 class OnPlane {
  public:
   OnPlane(std::string_view model, int contacts, bool warm)
@@ -186,9 +185,9 @@ duration_s = 1
 [model]
 id = "super_helix"
 modes = "bend_twist"
-tangent = "stiff"
+jacobian = "elastic"
 [integrator]
-id = "semi_implicit_euler"
+id = "linearly_implicit_euler"
 dt_s = {}
 [material]
 name = "hair.asian"

@@ -28,7 +28,7 @@ using Make = std::unique_ptr<Head> (*)(const simulation::HeadOptions&, const Hea
 
 std::unique_ptr<Head> head(
     std::size_t strands, HeadPack pack, double drag, Make make = simulation::helix_head,
-    simulation::HeadMethod method = simulation::HeadMethod::semi_implicit_euler) {
+    simulation::HeadMethod method = simulation::HeadMethod::linearly_implicit_euler) {
   simulation::HeadOptions options;
   options.method = method;
   options.elements = elements;
@@ -260,8 +260,8 @@ bool iterations_met() {
   return met;
 }
 
-/// As many strands side by side as registers have over one at a time, which takes the
-/// same iterations.
+/// Returns whether strands in all lanes of a register reach their speed-up over one at a
+/// time, which takes the same iterations.
 bool lanes_met() {
   constexpr std::size_t strands = 64;
   const HeadPack wide = models::widest_pack(HeadNumber::float64);

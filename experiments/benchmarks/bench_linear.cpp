@@ -70,7 +70,7 @@ Status solve(Equations& e) {
   std::ranges::copy(e.c_kept, e.c.begin());
   return e.dynamics.solve(e.r, e.c);
 }
-/// All of semi-implicit Euler's step, or one iteration of a Newton method.
+/// All of linearly implicit Euler's step, or one iteration of a Newton method.
 Status implicit_step(Equations& e) {
   Status s = factor(e);
   if (s == Status::ok) s = residual(e);

@@ -29,7 +29,7 @@ constexpr double most = 1.1;  // System over batch
 struct Model {
   std::string_view id;
   std::unique_ptr<Head> (*batch)(const simulation::HeadOptions&, const models::HeadPack&);
-  std::string_view approximate;  // tangent of the batch with semi_implicit_euler
+  std::string_view approximate;  // Jacobian of the batch with linearly_implicit_euler
 };
 struct Method {
   std::string_view id;
@@ -38,9 +38,9 @@ struct Method {
 };
 
 constexpr Model strand_models[] = {{"mass_spring", simulation::spring_head, "filtered"},
-                                   {"der", simulation::der_head, "stiff"}};
+                                   {"der", simulation::der_head, "elastic"}};
 constexpr Method methods[] = {
-    {"semi_implicit_euler", HeadMethod::semi_implicit_euler, false},
+    {"linearly_implicit_euler", HeadMethod::linearly_implicit_euler, false},
     {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint, true}};
 
 const Vec gravity{0, 0, -earth_gravity};
@@ -84,7 +84,7 @@ std::function<void()> batch_steps(const Model& model, const Method& method) {
 std::function<void()> system_steps(const Model& model, const Method& method) {
   const models::ModelEntry& entry = models::find_model(model.id);
   Parameters parameters(entry.parameters, "benchmark");
-  if (!method.exact) parameters.set("tangent", model.approximate);
+  if (!method.exact) parameters.set("jacobian", model.approximate);
   const std::shared_ptr<System> system = entry.on_strand(
       reference_hair(0), parameters, {std::make_shared<models::Gravity>(gravity)});
   Options options;

@@ -26,7 +26,7 @@ constexpr Weights backward_euler{1, h, h* h};
 constexpr std::array linear_sizes = {5, 20, 80, 320};
 constexpr std::array dense_sizes = {5, 20, 80};
 constexpr std::string_view solvers[] = {"recursive", "composite", "sparse"};
-constexpr std::string_view tangents[] = {"stiff", "exact"};
+constexpr std::string_view jacobians[] = {"elastic", "exact"};
 constexpr std::string_view all_modes[] = {"bend_twist", "bend", "bend_planar"};
 
 std::span<const int> sizes_of(std::string_view solver) {
@@ -35,7 +35,7 @@ std::span<const int> sizes_of(std::string_view solver) {
 }
 
 struct Choice {
-  std::string_view solver, tangent, modes;
+  std::string_view solver, jacobian, modes;
 };
 
 /// A hair released horizontally.
@@ -43,7 +43,7 @@ ModelSettings released(const Choice& choice, int elements) {
   ModelSettings settings = find_strand_scene("release").settings;
   settings.emplace_back("elements", std::to_string(elements));
   settings.emplace_back("solver", choice.solver);
-  settings.emplace_back("tangent", choice.tangent);
+  settings.emplace_back("jacobian", choice.jacobian);
   settings.emplace_back("modes", choice.modes);
   return settings;
 }
@@ -162,7 +162,7 @@ void register_parts(std::string_view modes) {
   using P = Parts<Kernel, dofs>;
   const auto add = [modes](const std::string& name, std::string_view solver,
                            Status (P::*call)()) {
-    const Choice choice{solver, "stiff", modes};
+    const Choice choice{solver, "elastic", modes};
     register_sizes(name, solver,
                    [choice, call, family = family_of(choice)](benchmark::State& state,
                                                               int elements) {
@@ -229,7 +229,7 @@ void register_systems() {
   const auto add = [](std::string_view name, const Choice& choice,
                       Status (*call)(Moving&)) {
     register_sizes(
-        fmt::format("{}/{}/{}/{}", name, choice.solver, choice.tangent, choice.modes),
+        fmt::format("{}/{}/{}/{}", name, choice.solver, choice.jacobian, choice.modes),
         choice.solver,
         [call, family = family_of(choice)](benchmark::State& state, int elements) {
           system_benchmark(state, family->at(elements), call);
@@ -239,9 +239,9 @@ void register_systems() {
     add("residual", {"recursive", "exact", modes}, residual);
   }
   for (const std::string_view solver : solvers) {
-    for (const std::string_view tangent : tangents) {
-      add("linearize", {solver, tangent, "bend_twist"}, linearize);
-      add("solve", {solver, tangent, "bend_twist"}, solve);
+    for (const std::string_view jacobian : jacobians) {
+      add("linearize", {solver, jacobian, "bend_twist"}, linearize);
+      add("solve", {solver, jacobian, "bend_twist"}, solve);
     }
   }
 }
@@ -249,7 +249,7 @@ void register_systems() {
 void register_steps() {
   const auto add = [](std::string_view integrator, const Choice& choice) {
     register_sizes(
-        fmt::format("step/{}/{}/{}/{}", integrator, choice.solver, choice.tangent,
+        fmt::format("step/{}/{}/{}/{}", integrator, choice.solver, choice.jacobian,
                     choice.modes),
         choice.solver,
         [integrator, family = family_of(choice)](benchmark::State& state, int elements) {
@@ -257,9 +257,9 @@ void register_steps() {
         });
   };
   for (const std::string_view solver : solvers) {
-    for (const std::string_view tangent : tangents) {
+    for (const std::string_view jacobian : jacobians) {
       for (const std::string_view modes : all_modes) {
-        add("semi_implicit_euler", {solver, tangent, modes});
+        add("linearly_implicit_euler", {solver, jacobian, modes});
       }
     }
     add("backward_euler", {solver, "exact", "bend_twist"});
@@ -272,7 +272,7 @@ using MakeBatch = decltype(super_helix_batch);
 
 /// Four strands at rest.
 Moving batch_of(MakeBatch* make, int elements) {
-  const Parameters p = parameters_of({"recursive", "stiff", "bend_twist"}, elements);
+  const Parameters p = parameters_of({"recursive", "elastic", "bend_twist"}, elements);
   const std::vector<Strand> strands(4, strand(p));
   Moving batch;
   batch.system = make(strands, reduced_options(p),
@@ -285,10 +285,10 @@ void register_batches() {
   constexpr std::array sizes = {5, 10, 20};
   const auto add = [&](const std::string& name, MakeBatch* make) {
     auto* registered = benchmark::RegisterBenchmark(
-        ("step/semi_implicit_euler/four/" + name).c_str(),
+        ("step/linearly_implicit_euler/four/" + name).c_str(),
         [make](benchmark::State& state) {
           const auto elements = static_cast<int>(state.range(0));
-          step_benchmark(state, batch_of(make, elements), "semi_implicit_euler");
+          step_benchmark(state, batch_of(make, elements), "linearly_implicit_euler");
           state.SetComplexityN(elements);
           count_per_element(state, 4 * elements);
         });

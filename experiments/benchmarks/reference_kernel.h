@@ -3,15 +3,15 @@
 #include <cmath>
 #include <cstddef>
 
-/// The measuring stick of heads of hair: times that depend on the machine are published
-/// as multiples of this kernel's, measured in the same process. It does one thing, as
-/// fast as we know: one step of semi_implicit_euler of four straight or curled
-/// super-helices side by side, under gravity, roots at rest, elements short enough for
-/// series of 8 terms. It shares no code with the library, so that a change there does not
-/// move the stick; do not improve it.
+/// Reference kernel for the timing of batches: times that depend on the machine are
+/// published as multiples of this kernel's, measured in the same process. It takes one
+/// step of linearly_implicit_euler of four straight or curled super-helices in SIMD
+/// lanes, under gravity, with roots at rest, as fast as we know. Elements are short
+/// enough for series of 8 terms. It shares no code with the library, so that a change
+/// there does not change the reference; do not improve it.
 ///
 /// The recursion is [Featherstone 1983] over spatial accelerations relative to the
-/// velocity-dependent ones of each element's tip; all nine numbers of a matrix stay in
+/// velocity-dependent ones of each element's tip. All nine numbers of a matrix stay in
 /// registers.
 namespace tress::experiments::benchmarks::reference {
 

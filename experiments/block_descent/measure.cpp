@@ -23,10 +23,10 @@ constexpr double fine_step = 2.5e-4;  // s, of the cantilever's reference
 constexpr double long_run = 0.2;      // s, of wall time
 constexpr double apart = 10;          // lengths from the direct step: unstable
 
-/// The rod of the published example [Hsu et al. 2025, their code's cantilever]: EI = 4 N
-/// m^2, EA = k GA = 100 N, 1 kg/m, 1 m of 10 edges, clamped horizontally and damped. EA
-/// is that of a section of 2 mm, so that sections have no rotary inertia to speak of,
-/// softened.
+/// Rod of the published example [Hsu et al. 2025, their code's cantilever]: EI = 4 N m^2,
+/// EA = k GA = 100 N, 1 kg/m, 1 m of 10 edges, clamped horizontally and damped. EA is
+/// that of a softened section of 2 mm, so that the rotary inertia of sections is
+/// negligible.
 const ModelSettings cantilever{{"length_m", "1"},
                                {"radius_m", "0.002"},
                                {"youngs_modulus_pa", "3.183098861837907e11"},
@@ -35,7 +35,7 @@ const ModelSettings cantilever{{"length_m", "1"},
                                {"stretch_factor", "2.5e-5"},
                                {"shear_factor", "5e-5"},
                                {"gravity_m_s2", "9.8"},
-                               {"mass_damping_1_s", "3"},
+                               {"mass_damping_per_s", "3"},
                                {"root_tangent", "x"},
                                {"motion", "fixed"}};
 
@@ -204,7 +204,7 @@ Row identity(const Work& work) {
       .set("stretch_over_bending", stretch_over_bending(work.parameters));
   for (const Parameter& option : find_integrator(trial.integrator).parameters) {
     for (const char* column :
-         {"sweeps", "block", "chebyshev", "penalty_1_s2", "primal_sweeps"}) {
+         {"sweeps", "block", "chebyshev", "penalty_per_s2", "primal_sweeps"}) {
       if (option.name != column) continue;
       row.set(column, integrators::text_of(work.options, column));
     }

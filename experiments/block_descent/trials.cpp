@@ -95,7 +95,7 @@ std::vector<Trial> descent_trials(const CommandLine& line) {
              .model = "mass_spring",
              .integrator = "vbd_augmented",
              .model_settings = {},
-             .options = {{"penalty_1_s2", number_text(scaled / (dt * dt))},
+             .options = {{"penalty_per_s2", number_text(scaled / (dt * dt))},
                          {"primal_sweeps", primal},
                          {"sweeps", std::to_string(tried_sweeps)}},
              .dt = dt});

@@ -62,21 +62,21 @@ std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model
 std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 
 /// Fits internal friction gamma, air drag nu and Young's modulus E to damped
-/// oscillations, as [Bertails et al. 2006, section 4.2 and first seed, figure 1.8] fit
-/// gamma to the span of a curly clump that oscillates vertically. Least squares over all
-/// records in the fitted values of x = (ln E, ln gamma, ln nu),
+/// oscillations. [Bertails et al. 2006, section 4.2 and first seed, figure 1.8] fit gamma
+/// in this way to the span of a curly clump that oscillates vertically. Least squares
+/// over all records in the fitted values of x = (ln E, ln gamma, ln nu),
 ///
 ///     min_x sum_k ((y_k - c_record - s_k(x))/sigma_k)^2,
 ///
 /// with s the simulated signal and c the constant of a displacement, the weighted mean of
-/// y - s: it is removed from residuals and their derivatives, so that statistics are
-/// those of a fit with c unknown. Standard errors count relative to each other; their
-/// common scale is estimated from the residuals. Intervals are exp(x_j +- t sqrt(C_jj
-/// s^2)), with C = (J^T J)^-1, s^2 the sum of squares over the degrees of freedom and t
+/// y - s. c is removed from residuals and their derivatives, so that statistics are those
+/// of a fit with c unknown. Standard errors count relative to each other; their common
+/// scale is estimated from the residuals. Intervals are exp(x_j +- t sqrt(C_jj s^2)),
+/// with C = (J^T J)^-1. s^2 is the sum of squares over the degrees of freedom and t
 /// Student's quantile.
 ///
 /// A mode k of a strand of mass per length m decays at (nu/m + gamma c_k)/2, with c_k =
-/// omega_k^2/(EI) for a straight weightless strand: one mode determines only the sum, two
+/// omega_k^2/(EI) for a straight weightless strand. One mode determines only the sum, two
 /// modes or strands of two lengths (omega ~ 1/L^2) determine both. E follows from the
 /// frequency; an envelope has none, and its records determine gamma and nu only. Status:
 ///

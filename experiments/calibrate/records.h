@@ -38,12 +38,12 @@ struct Records {
   std::size_t points() const;
 };
 
-/// CSV with the columns t_s, amplitude_m and, where known, sigma_m. Every other column is
-/// a parameter of strand models (length_m, say); a change of any of these, or of the
-/// column `record` (a free label), begins another record. Throws InputError with
-/// file:line:column on another header, non-finite numbers, times that do not ascend or
-/// are negative, sigma_m or an envelope that are not positive, and records of fewer than
-/// 5 points.
+/// Reads a CSV with the columns t_s, amplitude_m and, where known, sigma_m. Every other
+/// column is a parameter of strand models (length_m, say). A change of any of these, or
+/// of the column `record` (a free label), begins another record. Throws InputError with
+/// file:line:column on another header, non-finite numbers, and times that do not ascend
+/// or are negative. Also throws on sigma_m or an envelope that are not positive, and on
+/// records of fewer than 5 points.
 Records read_records(const std::string& file, Observed observed);
 /// Reads records from a text; `file` is its name in messages.
 Records parse_records(std::string_view text, const std::string& file, Observed observed);

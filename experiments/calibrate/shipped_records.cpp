@@ -18,8 +18,8 @@ constexpr double step = 5e-4;  // s
 constexpr int z = 2;
 
 std::vector<ShippedRecords> make_list() {
-  const ModelSettings curl{{"natural_curvature_1_m", "100"},
-                           {"natural_twist_1_m", "30"},
+  const ModelSettings curl{{"natural_curvature_per_m", "100"},
+                           {"natural_twist_per_m", "30"},
                            {"motion", "drop_pull"},
                            {"root_tangent", "down"},
                            {"frequency_hz", "5"}};

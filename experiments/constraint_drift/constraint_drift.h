@@ -25,13 +25,13 @@ struct DriftStudy {
   std::string variant = {};  // of a strand model
 };
 
-/// The table of constraint_drift:
+/// Returns the table of constraint_drift:
 ///
-/// formulation: four constrained systems by every integrator in every form it supports.
-/// grid: a bead on a circle by explicit methods over Baumgarte's gains.
-/// recovery: the same bead, displaced off its circle, pulled back by feedback of various
-///   damping.
-/// strands: lengths of a shaken hair by every strand model and the usual methods.
+/// - formulation: four constrained systems by every integrator in every form it supports.
+/// - grid: a bead on a circle by explicit methods over Baumgarte's gains.
+/// - recovery: the same bead, displaced off its circle, pulled back by feedback of
+///   various damping.
+/// - strands: lengths of a shaken hair by every strand model and the usual methods.
 std::vector<DriftStudy> drift_studies(const CommandLine& line, const Settings& user);
 
 /// The study `limit`: the largest Baumgarte gains before the feedback itself diverges,
@@ -40,10 +40,10 @@ std::vector<DriftStudy> drift_studies(const CommandLine& line, const Settings& u
 /// useful, on a bead that swings gently at the bottom of a circle.
 std::vector<Case> feedback_limits(const CommandLine& line, const Settings& user);
 
-/// The claims about the table of constraint_drift: feedback helps symplectic Euler,
-/// projection and RATTLE are at rounding level, index 2 is near its tolerance, parametric
-/// forms do not drift, critical damping is fastest without overshoot, limits of the gains
-/// are as predicted, lengths of shaken strands are corrected.
+/// Checks the claims about the table of constraint_drift. Feedback helps symplectic
+/// Euler, projection and RATTLE are at rounding level, and index 2 is near its tolerance.
+/// Parametric forms do not drift, and critical damping is fastest without overshoot.
+/// Limits of the gains are as predicted. Lengths of shaken strands are corrected.
 void check_drift_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::constraint_drift

@@ -156,9 +156,9 @@ void add_recovery(const Settings& user, std::vector<DriftStudy>& studies) {
 }
 
 /// The common methods for a strand of stiff springs or rigid links.
-constexpr std::string_view usual[] = {"semi_implicit_euler", "backward_euler",
-                                      "generalized_alpha",   "rattle",
-                                      "predictor_corrector", "xpbd"};
+constexpr std::string_view usual[] = {"linearly_implicit_euler", "backward_euler",
+                                      "generalized_alpha",       "rattle",
+                                      "predictor_corrector",     "xpbd"};
 
 /// Lengths of a shaken strand by every model that provides them, at half a frame per step
 /// and at a short step.

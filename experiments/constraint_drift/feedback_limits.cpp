@@ -85,7 +85,7 @@ std::vector<Case> feedback_limits(const CommandLine& line, const Settings& user)
   const int per_decade = line.full ? 12 : 6;  // from 0.001 to 1000
   for (const std::string_view id :
        {"explicit_euler", "symplectic_euler", "velocity_verlet", "rk4",
-        "semi_implicit_euler", "backward_euler", "bdf2", "implicit_midpoint"}) {
+        "linearly_implicit_euler", "backward_euler", "bdf2", "implicit_midpoint"}) {
     if (!wanted(line.integrators, id)) continue;
     for (int i = 0; i <= 6 * per_decade; ++i) {
       const double zeta = 0.001 * std::pow(10, static_cast<double>(i) / per_decade);

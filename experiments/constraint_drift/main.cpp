@@ -158,10 +158,11 @@ std::vector<Case> cases(const CommandLine& line) {
   return all;
 }
 
-/// Divergence beyond a limit is expected in the studies of gains; the chain and the
-/// redundant truss are chosen to break methods; IDA on index 3, or with multipliers in
-/// its error test, is shown with its known failures; a shaken strand is too demanding for
-/// some steps. Any other failure on the bead is an error.
+/// Returns whether a failure is an expected finding. Divergence beyond a limit is
+/// expected in the studies of gains. The chain and the redundant truss are chosen to
+/// break methods. IDA on index 3, or with multipliers in its error test, is shown with
+/// its known failures. A shaken strand is too demanding for some steps. Any other failure
+/// on the bead is an error.
 bool finding(const Row& row) {
   return row.status() == "diverged" || row.text("system") == "chain of 10" ||
          row.text("study") == "strands" || row.text("system") == "truss" ||

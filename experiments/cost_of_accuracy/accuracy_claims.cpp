@@ -29,8 +29,9 @@ bool meets(const Row& row, const Row& winner) {
          judged + row.number("reference_gap") <= winner.number("target_error_rel");
 }
 
-/// Of every model and target, over the scenes where both sides have a run and the search
-/// came to its end: one that is cut may have tried an option on one side only.
+/// Checks every model and target, over the scenes where both sides have a run and the
+/// search came to its end. An incomplete search may have tried an option on one side
+/// only.
 void check_control(const std::vector<Row>& rows, Verdicts& verdicts) {
   struct Factors {
     double logarithms = 0, largest = 0;

@@ -18,7 +18,7 @@ std::string what(const Row& row) {
   const auto add = [&options](std::string_view text) {
     options += fmt::format("{}{}", options.empty() ? "" : ", ", text);
   };
-  for (const std::string_view key : {"modes", "tangent", "solver"}) {
+  for (const std::string_view key : {"modes", "jacobian", "solver"}) {
     if (row.has(key) && row.text(key) != first_word(model, key)) {
       add(fmt::format("{}={}", key, row.text(key)));
     }
@@ -28,9 +28,10 @@ std::string what(const Row& row) {
   const std::string counts = row.text("extrapolated") == "true"
                                  ? fmt::format("{} and {}", elements, coarser(elements))
                                  : fmt::format("{}", elements);
-  std::string steps = row.has("tolerance")
-                          ? fmt::format("tolerance {:.2g}", row.number("tolerance"))
-                          : fmt::format("dt {:.5g} ms", 1e3 * row.number("dt_s"));
+  std::string steps =
+      row.has("position_tol_rel")
+          ? fmt::format("tolerance {:.2g}", row.number("position_tol_rel"))
+          : fmt::format("dt {:.5g} ms", 1e3 * row.number("dt_s"));
   if (row.has("mean_step_s")) {
     steps +=
         fmt::format(" (adaptive, mean step {:.3g} ms)", 1e3 * row.number("mean_step_s"));

@@ -66,54 +66,55 @@ constexpr double believed_in_advice = 4;
 /// not even 1 % could be resolved.
 constexpr double parted = 0.01 / believed;
 
-/// All rows of one scene, each beginning with the cells of `identity`:
+/// Returns all rows of one scene, each beginning with the cells of `identity`:
 ///
 ///     winner     the cheapest run that meets a target
 ///     runner_up  the cheapest of another model or integrator
 ///     without    the cheapest with one choice of the winner replaced: another model with
 ///                its best options; on the same model another integrator; the winner
 ///                with another value of one option, with twice as many elements, and with
-///                half the step. Elements and step are tuned anew.
-///     by_step    of a model of StudyPlan::control, the cheapest of the methods that know
+///                half the step. Elements and step are tuned again.
+///     by_step    of a model of StudyPlan::control, the cheapest of the methods with
+///     fixed
 ///                steps only
 ///     by_tolerance  of the same model, the cheapest of the methods with error control,
-///                by tolerance or fixed steps, extrapolated in elements or not; its
+///                adaptive or with fixed steps, extrapolated in elements or not; its
 ///                cost_factor is over by_step
 ///     budget     the most accurate run within the given time per frame
 ///     front      runs that no other beats in both error and time
 ///     as_given   the scene as its file has it
 ///
-/// A run meets a target when it does so wherever the rod is within the gap of the two
-/// sides, error + gap <= target, and its neighbours do so for 1.5 times the target (see
-/// Neighbour). If none meets it, the winner row has the nearest run and the status
-/// not_met, of advice no_answer.
+/// A run meets a target if error + gap <= target, with gap the distance of the two sides
+/// of the reference. Its neighbours must do so for 1.5 times the target (see Neighbour).
+/// If none meets it, the winner row has the nearest run and the status not_met, of advice
+/// no_answer.
 std::vector<Row> study_scene(const std::string& file, const StudyPlan& plan,
                              const Row& identity, const Deadline& deadline);
 
-/// The cheapest run of every model by every usual integrator, one row of kind `method`
-/// each: complements the search for the overall best (study_scene) with the cost of each
-/// model and the errors of that run in lengths, momentum and energy. Counted work
+/// Returns the cheapest run of every model by every usual integrator, one row of kind
+/// `method` each. Complements the search for the overall best (study_scene) with the cost
+/// of each model and the errors of that run in lengths, momentum and energy. Counted work
 /// decides, so that the table is the same on every machine (cheapest_run).
 ///
-/// For scenes of one strand; options of the scene's own model apply to every model with
-/// these options. Models that cannot represent the scene are left out. Throws
-/// InputError where the scene has another number of strands.
+/// For scenes of one strand. Options of the scene's own model apply to every model with
+/// these options. Models that cannot represent the scene are left out. Throws InputError
+/// where the scene has another number of strands.
 std::vector<Case> method_cases(const CommandLine& line, const std::string& file);
 
 /// The midpoint rule conserves the angular momentum of a thrown body better than its tip.
 void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-/// The claims about every scene of the table: its winners keep their error against a
-/// once more refined reference; their neighbours confirm that they are not accidental;
-/// and no run listed with a winner, for the same target or in the front, beats it.
+/// Checks the claims about every scene of the table. Its winners keep their error against
+/// a once more refined reference. Their neighbours confirm that they are not accidental.
+/// No run listed with a winner, for the same target or in the front, beats it.
 void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-/// Practical advice from the rows of one scene for one target (or one budget): the
-/// configuration to take with the time for which that is valid, its worst neighbour,
-/// the next best, and what to avoid, one line each, and one more if the search was
-/// stopped early. If nothing meets the target, or nothing did so far, the first line
-/// states this and the second has the best run known. If nothing is known the only line
-/// gives the reason.
+/// Returns practical advice from the rows of one scene for one target (or one budget),
+/// one line each. Lines are the configuration to take with the time for which that is
+/// valid, its worst neighbour, the next best, and what to avoid. One more line follows if
+/// the search was stopped early. If nothing meets the target, or nothing did so far, the
+/// first line states this and the second has the best run known. If nothing is known the
+/// only line gives the reason.
 std::vector<std::string> advice(const std::vector<Row>& rows);
 
 /// The cheapest run for each target, and the best within the budget, a line each.

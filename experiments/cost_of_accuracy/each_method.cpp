@@ -24,7 +24,7 @@ constexpr double target = 0.01;
 constexpr int ladder[] = {3, 5, 7, 10, 14, 20, 28, 40, 56};
 constexpr double coarsest = 1 / 60.0, finest = 1e-4;  // s
 constexpr double quick_work = 5e6, usual_work = 1e9;  // per search of a row
-constexpr std::string_view usual[] = {"semi_implicit_euler",
+constexpr std::string_view usual[] = {"linearly_implicit_euler",
                                       "implicit_midpoint",
                                       "generalized_alpha",
                                       "predictor_corrector",

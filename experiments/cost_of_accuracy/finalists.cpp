@@ -247,7 +247,7 @@ void Finalists::replace_choices(const Trial& winner, double target, BestRuns& be
   replace("tolerance", &Method::by_tolerance, &Method::extrapolated);
   replace("extrapolated", &Method::extrapolated, &Method::by_tolerance);
   replace("refresh", &Method::refresh, &Method::by_tolerance);
-  replace("cuts", &Method::cut_at_rest, &Method::by_tolerance, &Method::extrapolated);
+  replace("mesh", &Method::cut_at_rest, &Method::by_tolerance, &Method::extrapolated);
   best.without.emplace_back("elements", twice_the_elements(winner, target));
   best.without.emplace_back("dt_s", half_the_step(winner, target));
 }

@@ -29,10 +29,9 @@ constexpr Parameter own_settings[] = {
                  "shaken_friction.toml,scenes/accuracy/side_wind.toml,"
                  "scenes/accuracy/swing.toml,scenes/accuracy/whip.toml"},
     {.name = "each_method",
-     .help =
-         "scene files of one strand, by every model and usual integrator the cheapest "
-         "run within 0.01 of the length, with what it loses; left out where scenes are "
-         "given",
+     .help = "scene files of one strand: the cheapest run within 0.01 of the length, "
+             "with its errors, by every model and usual integrator. Left out where "
+             "scenes are given",
      .text = true,
      .fallback = "scenes/accuracy/release.toml,scenes/accuracy/flight.toml"},
     {.name = "advise",
@@ -75,9 +74,10 @@ constexpr Parameter own_settings[] = {
      .whole = true},
     {.name = "control",
      .help = "models, as in super_helix,der, on which methods with error control are "
-             "compared with those that know steps only: as long a search again for each",
+             "compared with those with fixed steps only. Each model adds a search of the "
+             "same length",
      .text = true},
-    {.name = "cuts",
+    {.name = "mesh",
      .help = "given: the elements of each scene; both: also elements that share the "
              "bending of a strand at rest",
      .choices = "given|both"},
@@ -89,8 +89,8 @@ constexpr Parameter own_settings[] = {
      .min = 0,
      .max = 1e6},
     {.name = "exhaustive",
-     .help = "after the search every method is tried with all elements of the ladder and "
-             "1 to 64 steps a frame, half an octave apart: did the search miss a run?",
+     .help = "test of the search: every method is tried with all elements of the ladder "
+             "and 1 to 64 steps a frame, half an octave apart",
      .choices = "no|yes"},
     {.name = "reference_elements",
      .help =
@@ -134,7 +134,7 @@ void narrow(MethodChoice& methods) {
                       "der",         "mass_spring",    "dynamic_spline"};
   }
   if (methods.integrators.empty()) {
-    methods.integrators = {"semi_implicit_euler",
+    methods.integrators = {"linearly_implicit_euler",
                            "implicit_midpoint",
                            "linearly_implicit_midpoint",
                            "bdf2",
@@ -142,7 +142,7 @@ void narrow(MethodChoice& methods) {
                            "esdirk43"};
   }
   methods.refreshes = {Refresh::every_step};
-  methods.options = {"modes", "tangent=stiff", "torsion"};
+  methods.options = {"modes", "jacobian=elastic", "torsion"};
   // A file holds one run.
   methods.extrapolated = false;
 }
@@ -179,20 +179,20 @@ StudyPlan plan_of(const CommandLine& line, const Settings& settings) {
     for (const std::string& id : plan.control) static_cast<void>(find_model(id));
   }
   plan.methods.integrators = line.integrators;
-  plan.methods.cuts_at_rest = own.word("cuts") == "both";
+  plan.methods.cuts_at_rest = own.word("mesh") == "both";
   if (line.quick) {
     if (line.models.empty()) {
       plan.methods.models = {"super_helix", "articulated_chain", "der", "mass_spring",
                              "dynamic_spline"};
     }
     if (line.integrators.empty()) {
-      plan.methods.integrators = {"semi_implicit_euler", "implicit_midpoint",
+      plan.methods.integrators = {"linearly_implicit_euler", "implicit_midpoint",
                                   "linearly_implicit_midpoint", "tr_bdf2", "esdirk43"};
     }
     plan.methods.refreshes = {Refresh::every_step};
     plan.methods.fixed_steps = false;
     // Without torsion mass_spring does not preserve the direction of curls.
-    plan.methods.options = {"modes=bend", "tangent=stiff", "torsion"};
+    plan.methods.options = {"modes=bend", "jacobian=elastic", "torsion"};
   }
   if (plan.advise) narrow(plan.methods);
   if (!line.elements.empty()) plan.elements = line.elements;

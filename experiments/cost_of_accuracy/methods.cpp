@@ -33,7 +33,7 @@ std::vector<ModelSettings> option_sets(const ModelEntry& model,
   std::vector<ModelSettings> pairs{{}}, single;
   for (const Parameter& p : model_table_parameters(model)) {
     if (p.choices.empty() || p.name == "id") continue;
-    const bool paired = p.name == "modes" || p.name == "tangent";
+    const bool paired = p.name == "modes" || p.name == "jacobian";
     const std::vector<ModelSettings> before = pairs;
     for (const ModelSettings& one : others(p)) {
       if (!paired) single.push_back(one);
@@ -61,11 +61,11 @@ std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& o
   }
 }
 
-/// What the tangent `less_implicit` leaves out makes Newton's iteration diverge beyond a
+/// What the Jacobian `elastic_local` leaves out makes Newton's iteration diverge beyond a
 /// length of step that the elements set. A tolerance then decides nothing: a curl took up
-/// to 22 500 steps in half a second at tolerances for which other tangents take 31.
+/// to 22 500 steps in half a second at tolerances for which other Jacobians take 31.
 bool may_control(const Method& method) {
-  return method.word("tangent") != "less_implicit";
+  return method.word("jacobian") != "elastic_local";
 }
 
 /// The method with its preferred formulation for the system, if it has one, in all ways

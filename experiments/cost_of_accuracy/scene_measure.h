@@ -23,22 +23,22 @@ struct ChangedTips {
   std::vector<double> up, down;
 };
 
-/// The reference plus the effect of the change on one fine run, `cut` of super_helix by
-/// implicit_midpoint:
+/// Computes the reference plus the effect of the change on one fine run, `cut` of
+/// super_helix by implicit_midpoint:
 ///
 ///     x(changed) = x + (fine(changed) - fine).
 ///
 /// The error e of the fine run cancels except for its own change with the data, a few
-/// times data_change e: with e = 1 % of the length less than 1e-3 of the length. The
-/// change itself need not be small. Three runs; stored next to the reference as
+/// times data_change e. With e = 1 % of the length that is less than 1e-3 of the length.
+/// The change itself need not be small. Three runs; stored next to the reference as
 /// <name>.changed.
 ChangedTips kept_changed_tips(const Scene& given, const Comparison& comparison,
                               const SceneReference& reference, const ReferenceCut& cut,
                               const std::string& folder, const std::string& name);
 
 /// Repeated times of one run: the least (s), since other load on the machine only adds to
-/// it, and its repeatability: the least of the even-numbered times against that of the
-/// odd ones, less 1.
+/// it, and its repeatability. Repeatability is the least of the even-numbered times over
+/// that of the odd ones, less 1.
 struct WallTime {
   double least_s = 0, scatter = 0;
 };
@@ -48,9 +48,9 @@ WallTime wall_time(const std::vector<double>& seconds);
 /// of ThreadTimer, the least of several runs.
 ///
 /// A run is abandoned by its count of Newton iterations, so that the result does not
-/// depend on the machine, an adaptive run also by its steps of a frame, `longest_run`
-/// over its elements; as soon as its error over the whole horizon must exceed
-/// `useless`; and only in an emergency after `most_s`.
+/// depend on the machine. An adaptive run is also abandoned by its steps of a frame,
+/// `longest_run` over its elements. A run ends early if its error over the whole horizon
+/// must exceed `useless`, and only in an emergency after `most_s`.
 class SceneMeasure {
  public:
   SceneMeasure(const Scene& given, const Comparison& comparison,

@@ -170,7 +170,7 @@ void save_reference(const std::string& folder, const std::string& name,
                               {"version", reference_version},
                               {"gap", reference.tips.gap},
                               {"frames", reference.frames},
-                              {"frames_1_s", comparison.rate},
+                              {"frames_per_s", comparison.rate},
                               {"length_m", comparison.length},
                               {"finest_elements", cut.elements},
                               {"finest_dt_s", 1 / (comparison.rate * cut.substeps)}};

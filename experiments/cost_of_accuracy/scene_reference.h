@@ -48,9 +48,9 @@ struct ReferenceCut {
 SceneReference scene_reference(const Scene& given, const Comparison& comparison,
                                const ReferenceCut& cut);
 
-/// The reference up to the last frame at which the two sides are at most `gap` apart, rms
-/// from the start: undamped strands are chaotic, and no answer is known beyond it. At
-/// least one frame.
+/// Returns the reference up to the last frame at which the two sides are at most `gap`
+/// apart, rms from the start. Undamped strands are chaotic, and no answer is known beyond
+/// it. At least one frame.
 SceneReference agreed(const SceneReference& reference, const Comparison& comparison,
                       double gap);
 

@@ -28,14 +28,14 @@ struct SearchPlan {
   double slack;
 };
 
-/// Where cost grows as elements x substeps and error falls in both, the cheapest run on
-/// the ladders costs at most r = (ratio of elements) x (ratio of substeps) times the
-/// method's best between them. The method of the overall best run is then within r of the
-/// cheapest run on the ladders: with this slack it is never dropped. `noise`: factor by
-/// which one run may take longer than usual.
+/// Returns the slack with which the cheapest method is never dropped. Where cost grows as
+/// elements x substeps and error falls in both, the cheapest run on the ladders costs at
+/// most r times the method's best between them. r = (ratio of elements) x (ratio of
+/// substeps). The method of the overall best run is then within r of the cheapest run on
+/// the ladders. `noise`: factor by which one run may take longer than usual.
 double ladder_slack(const SearchPlan& plan, double noise);
 
-/// The cheapest run for each target error, in stages:
+/// Search for the cheapest run for each target error, in stages:
 ///
 ///   probe    every method once in the middle of the ladders; those with the smallest
 ///            error x time go first, so that later ones can be compared with them

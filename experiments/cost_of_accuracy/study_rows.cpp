@@ -48,7 +48,7 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   const Method& method = study.methods[run.method];
   const Accuracy chosen = accuracy(method, run.substeps, study.comparison.rate);
   if (method.by_tolerance) {
-    row.set("tolerance", chosen.tolerance);
+    row.set("position_tol_rel", chosen.tolerance);
     if (run.steps > 0) row.set("mean_step_s", study.comparison.horizon() / run.steps);
   } else {
     row.set("dt_s", chosen.step);
@@ -195,7 +195,7 @@ void add_given(const Study& study, double most_s, std::vector<Row>& rows) {
   set_method(method, row);
   row.set("elements", given.strands.front().segments.size());
   if (method.by_tolerance) {
-    row.set("tolerance", given.options.tolerance);
+    row.set("position_tol_rel", given.options.tolerance);
   } else {
     row.set("dt_s", given.options.step);
   }

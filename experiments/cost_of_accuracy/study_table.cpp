@@ -14,10 +14,10 @@ namespace {
 constexpr Column table_columns[] = {
     {"scene", "name of the scene"},
     {"kind",
-     "winner, runner_up (another model or integrator), without (one choice "
-     "replaced), by_step and by_tolerance (of one model, the cheapest without and "
-     "with error control), budget, front (Pareto), as_given (by the scene file); "
-     "method: the cheapest of one model with one integrator"},
+     "winner, runner_up (another model or integrator), without (one choice replaced), "
+     "budget, front (Pareto), as_given (by the scene file). by_step and by_tolerance: of "
+     "one model, the cheapest without and with error control. method: the cheapest of "
+     "one model with one integrator"},
     {"choice",
      "replaced choice, in kind without; elements: twice, dt_s: half (or the "
      "tolerance that halves the steps)"},
@@ -28,19 +28,20 @@ constexpr Column table_columns[] = {
     {"integrator", "method"},
     {"formulation", "constraint formulation"},
     {"modes", "unknowns of an element, where there is a choice"},
-    {"tangent", "terms of the Newton matrix, where there is a choice"},
+    {"jacobian", "terms of the Newton matrix, where there is a choice"},
     {"solver", "linear solver, where there is a choice"},
     {"options", "other options of the model that are not the default"},
     {"refresh", "when the Newton matrix is rebuilt, if not in every iteration"},
     {"elements", "number of elements"},
-    {"cuts",
+    {"mesh",
      "mesh: rest (elements share the bending at rest); else the mesh of the "
      "scene file"},
     {"extrapolated",
      "whether the tip is extrapolated from these elements and half of them "
      "(Richardson)"},
     {"dt_s", "time step; empty: adaptive"},
-    {"tolerance", "requested tolerance over the length, of a run that chooses its steps"},
+    {"position_tol_rel",
+     "requested tolerance over the length, of a run that chooses its steps"},
     {"mean_step_s", "mean step of that run"},
     {"error_rel",
      "tip against the continuous rod: rms over frames and strands, over the length"},
@@ -96,7 +97,7 @@ constexpr Column table_columns[] = {
     {"search", "whole, or how far it came with its work", true},
 };
 
-constexpr std::string_view own_columns[] = {"modes", "tangent", "solver"};
+constexpr std::string_view own_columns[] = {"modes", "jacobian", "solver"};
 
 }  // namespace
 
@@ -115,7 +116,7 @@ void set_method(const Method& method, Row& row) {
     options.refresh = method.refresh;
     row.set("refresh", integrators::text_of(options, "refresh"));
   }
-  if (method.cut_at_rest) row.set("cuts", "rest");
+  if (method.cut_at_rest) row.set("mesh", "rest");
   if (method.extrapolated) row.set("extrapolated", true);
   for (const std::string_view choice : own_columns) {
     if (!method.word(choice).empty()) row.set(choice, method.word(choice));
@@ -149,11 +150,11 @@ Configuration configuration(const Row& row) {
     integrators::apply(options, "refresh", row.text("refresh"), "refresh");
     made.method.refresh = options.refresh;
   }
-  made.method.cut_at_rest = row.text("cuts") == "rest";
+  made.method.cut_at_rest = row.text("mesh") == "rest";
   made.method.extrapolated = row.text("extrapolated") == "true";
-  made.method.by_tolerance = row.has("tolerance");
+  made.method.by_tolerance = row.has("position_tol_rel");
   made.accuracy = made.method.by_tolerance
-                      ? Accuracy{.tolerance = row.number("tolerance")}
+                      ? Accuracy{.tolerance = row.number("position_tol_rel")}
                       : Accuracy{.step = row.number("dt_s")};
   return made;
 }

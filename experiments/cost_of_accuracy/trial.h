@@ -20,12 +20,12 @@ inline constexpr double resolution = 1.1;
 /// The error of a run that fails, and the time of one that never meets a target.
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
-/// A run may be accidentally accurate: at the edge of stability, or where spatial and
-/// temporal errors cancel. It counts for a target only if its neighbours are within
-/// neighbour_allowance times that target: 1 and 2 elements more, the step or the
-/// tolerance times 0.7 and 1.4, and the run itself with the scene's data changed a
-/// little up and down. In this order: those with more elements are runs that may win
-/// themselves, and are not judged for a run that fails otherwise.
+/// Neighbours of a run, which show whether it is accidentally accurate: at the edge of
+/// stability, or where spatial and temporal errors cancel. A run counts for a target only
+/// if its neighbours are within neighbour_allowance times that target. These are 1 and 2
+/// elements more, the step or the tolerance times 0.7 and 1.4, and the run itself with
+/// the scene's data changed a little up and down. In this order: those with more elements
+/// are runs that may win themselves, and are not judged for a run that fails otherwise.
 enum class Neighbour {
   shorter_steps,
   longer_steps,
@@ -72,9 +72,9 @@ const Trial* cheapest(const std::vector<Trial>& runs, double target,
 /// indistinguishable: the cheapest of those.
 const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double floor);
 
-/// Runs that no other beats in both judged error and time, from the dearest, most
-/// accurate one on, without those that reduce the error by less than a tenth relative to
-/// a cheaper one. Errors below `floor` count as `floor`.
+/// Returns the runs that no other beats in both judged error and time, from the most
+/// expensive, most accurate one on. Runs that reduce the error by less than a tenth
+/// relative to a cheaper one are left out. Errors below `floor` count as `floor`.
 std::vector<Trial> pareto_front(std::vector<Trial> runs, double floor);
 
 }  // namespace tress::experiments::cost_of_accuracy

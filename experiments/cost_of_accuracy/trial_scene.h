@@ -43,8 +43,9 @@ double frame_work(const Method& method, int elements, int substeps);
 /// Returns the number of elements of the coarser part of an extrapolated run.
 inline int coarser(int elements) { return (elements + 1) / 2; }
 
-/// c of the limit x_n + c (x_n - x_m) of an error C/n^p, p the model's order, for n
-/// elements and m = coarser(n) [Richardson 1911]: 1/3 for p = 2 and n = 2 m.
+/// Returns c of the limit x_n + c (x_n - x_m) of an error C/n^p [Richardson 1911]. The
+/// model's order is p, the number of elements n and m = coarser(n). c is 1/3 for p = 2
+/// and n = 2 m.
 double extrapolation(const Method& method, int elements);
 
 /// Whether the error of a run may be extrapolated in elements.
@@ -72,14 +73,14 @@ std::string physics(Scene scene);
 /// hundredth of the smallest target error.
 inline constexpr double newton_tolerance = 1e-6;
 
-/// Every strand model with its options and every integrator that can drive it on this
-/// scene: with fixed steps, those with error control also adaptive, unless a tangent
-/// decides about their steps. Adaptive runs are also extrapolated. Other adaptive
-/// methods are left out: they control an error of the unknowns and not of the strand.
-/// Options that lose digits (models::loses_digits) are left out as well.
+/// Choice of methods: every strand model with its options and every integrator that can
+/// drive it on this scene. Methods with error control run with fixed steps and adaptive,
+/// unless a Jacobian decides about their steps. Adaptive runs are also extrapolated.
+/// Other adaptive methods are left out: they control an error of the unknowns and not of
+/// the strand. Options that lose digits (models::loses_digits) are left out as well.
 struct MethodChoice {
   std::vector<std::string> models, integrators;  // empty: all
-  /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `tangent` in
+  /// Varied options of models, "key" or "key=word"; empty: all. `modes` and `jacobian` in
   /// all pairs, others one at a time.
   std::vector<std::string> options;
   /// Integrators with error control also with fixed steps.

@@ -14,8 +14,8 @@ constexpr double t_end = 1;                                      // s
 constexpr double usual_steps[] = {1. / 60, 1. / 240, 1. / 960};  // s
 constexpr std::string_view usual_models[] = {"super_helix", "der"};
 constexpr std::string_view usual_methods[] = {
-    "semi_implicit_euler", "backward_euler", "bdf2",
-    "generalized_alpha",   "tr_bdf2",        "implicit_midpoint"};
+    "linearly_implicit_euler", "backward_euler", "bdf2",
+    "generalized_alpha",       "tr_bdf2",        "implicit_midpoint"};
 
 constexpr Column columns[] = {
     {"model", "catalogue id"},

@@ -11,27 +11,26 @@ namespace tress::experiments::divided_heads {
 /// Elements of a hair.
 inline constexpr int elements = 10;
 
-/// The border that a region of the scalp has in common with others, over the side of
-/// the whole: the largest of `ranks` regions, a power of two, made by halving a square
+/// Returns the border that a region of the scalp shares with others, over the side of the
+/// whole. The region is the largest of `ranks`, a power of two, made by halving a square
 /// and its parts across their longer sides.
 double border(double ranks);
 
-/// Wall time of a step of n hairs, as dense on the scalp whatever their number, on R
-/// ranks (processes of one thread),
+/// Wall time of a step of n hairs, of constant density on the scalp, on R ranks
+/// (processes of one thread),
 ///
 ///     T(n, R) = (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
 ///
-/// where e is the number of elements; k what one costs by itself, which depends on how
-/// many hairs there are on the machine, for its cores share what memory is near; c what
-/// it costs by its hair's contacts, of which hairs near the edge of the scalp have fewer,
-/// a/sqrt(n) of all.
-/// Ghosts lie within a depth w of a region's border: with hairs' roots a distance d apart
-/// on average,
+/// where e is the number of elements. k is the cost of one element by itself, which
+/// depends on the number of hairs on the machine, since its cores share the near memory.
+/// c is its cost by its hair's contacts. Hairs near the edge of the scalp have fewer,
+/// a/sqrt(n) of all. Ghosts lie within a depth w of a region's border: with hairs' roots
+/// a distance d apart on average,
 ///
 ///     G = border(R) (w/d) sqrt(n),  but at most all hairs of other ranks;
 ///
-/// b is what an element of one costs, to be sent, received, held and listed; l the
-/// latency of what all ranks agree on in a step.
+/// b is the cost of an element of a ghost, to be sent, received, held and listed. l is
+/// the latency of the values on which all ranks agree in a step.
 struct CostModel {
   /// Cost of a machine's kernel with this number of hairs, ascending: linear in the
   /// logarithm of the number between entries, constant beyond.
@@ -67,11 +66,11 @@ struct Measurement {
   double ghosts = 0;  // of the rank that has most
 };
 
-/// The model of hairs that do not touch and of those that do, each of its numbers the
-/// mean of what single measurements say, but for contacts and edge, which are a line
-/// through those of one rank alone; kernel of those whose hairs do not touch; latency of
-/// two ranks whose hairs do not touch; depth and ghost of two whose hairs do. Empty if
-/// measurements for one of these are missing.
+/// Models of hairs that do not touch and of those that do. Each of their numbers is the
+/// mean of single measurements, but for contacts and edge, which are a line through those
+/// of one rank alone. The kernel is from measurements whose hairs do not touch, the
+/// latency from two ranks whose hairs do not touch, and depth and ghost from two whose
+/// hairs do. Empty if measurements for one of these are missing.
 struct CostModels {
   CostModel apart, touching;
 };

@@ -39,15 +39,15 @@ constexpr Column columns[] = {
     {"cost_per_step_s", "wall time of a step, mean of a run; median of runs", true},
     {"ghosts_per_strand",
      "strands of other ranks that may touch a rank's own, over these"},
-    {"claim_per_element_s",
+    {"ghost_search_per_element_s",
      "time per step to find the strands of other ranks that may touch own ones, "
      "per own element",
      true},
-    {"exchange_per_element_s",
+    {"halo_exchange_per_element_s",
      "time per step to send and receive these strands, waiting included, per own "
      "element",
      true},
-    {"meet_per_element_s",
+    {"ghost_contact_per_element_s",
      "time per step to list the contacts with strands of other ranks, per own "
      "element",
      true},
@@ -60,7 +60,7 @@ constexpr Column columns[] = {
     {"model_ghosts_per_strand", "ghosts_per_strand predicted by the model"},
     {"efficiency",
      "share of a rank's time spent on its own hairs, predicted by the model", true},
-    {"state", "checksum of all states at the end: equal bits, equal checksum"},
+    {"state_hash", "checksum of all states at the end: equal bits, equal checksum"},
 };
 
 #ifdef TRESS_HAS_MPI
@@ -95,7 +95,7 @@ std::vector<nlohmann::json> run(const std::filesystem::path& folder,
                                          "--bind-to",  "none",
                                          "-n",         std::to_string(setting.ranks),
                                          simulate,     folder / (head + ".toml"),
-                                         "--as",       "head",
+                                         "--as",       "batch",
                                          "--frames",   "none",
                                          "--progress", "none",
                                          "--out",      out(i)};
@@ -127,7 +127,7 @@ void fill(Row& row, const nlohmann::json& outcome) {
   row.set("cores", static_cast<int>(std::thread::hardware_concurrency()));
   row.set("cost_per_step_s", step_of(outcome));
   row.set("memory_mb", number("peak_memory_mb"));
-  row.set("state", outcome.at("state").get<std::string>());
+  row.set("state_hash", outcome.at("state_hash").get<std::string>());
   if (!outcome.contains("ghosts_per_step")) return;
   row.set("ghosts_per_strand", number("ghosts_per_step") / own);
   for (const std::string part : {"claim", "exchange", "meet"}) {
@@ -223,10 +223,10 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (!row.ok() || row.text("kind") != "measured") continue;
     const auto [first, added] = states.emplace(
         std::string(row.text("effects")) + ' ' + std::string(row.text("strands")),
-        std::string(row.text("state")));
+        std::string(row.text("state_hash")));
     if (!added) {
       ++compared;
-      different += first->second != row.text("state") ? 1 : 0;
+      different += first->second != row.text("state_hash") ? 1 : 0;
     }
     if (row.number("ranks") > 2) continue;
     if (row.has("model_off_rel")) {
@@ -235,8 +235,8 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (row.has("held_out_off_rel")) {
       held_out = std::max(held_out, std::abs(row.number("held_out_off_rel")));
     }
-    if (row.has("exchange_per_element_s")) {
-      exchange = std::max(exchange, row.number("exchange_per_element_s"));
+    if (row.has("halo_exchange_per_element_s")) {
+      exchange = std::max(exchange, row.number("halo_exchange_per_element_s"));
     }
   }
   const std::string bits = "any number of ranks gives the same bits";
@@ -250,10 +250,11 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   verdicts.figure("two ranks: largest time to exchange, by own elements, s", exchange);
 }
 
-constexpr Unused unused[] = {{"models", "hairs are super-helices"},
-                             {"integrators", "steps are those of semi_implicit_euler"},
-                             {"elements", "hairs have ten"},
-                             not_random};
+constexpr Unused unused[] = {
+    {"models", "hairs are super-helices"},
+    {"integrators", "steps are those of linearly_implicit_euler"},
+    {"elements", "hairs have ten"},
+    not_random};
 
 }  // namespace
 }  // namespace tress::experiments::divided_heads

@@ -23,9 +23,9 @@ double cap_angle(int strands) {
 
 std::string scene(bool touch, int strands) {
   return fmt::format(
-      "title = \"a head that processes divide\"\nduration_s = {}\nframes_1_s = 5\n"
-      "[model]\nid = \"super_helix\"\ntangent = \"stiff\"\n[integrator]\n"
-      "id = \"semi_implicit_euler\"\ndt_s = 0.0025\n[material]\nname = "
+      "title = \"a head that processes divide\"\nduration_s = {}\nframes_per_s = 5\n"
+      "[model]\nid = \"super_helix\"\njacobian = \"elastic\"\n[integrator]\n"
+      "id = \"linearly_implicit_euler\"\ndt_s = 0.0025\n[material]\nname = "
       "\"hair.caucasian\"\n"
       "[groom]\ncount = {}\nelements = {}\nlength_m = 0.03\n"
       "half_axes_m = [{}, {}, {}]\ncap_axis = [0, 0, 1]\ncap_angle_rad = {}\n"

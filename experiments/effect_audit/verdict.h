@@ -8,8 +8,8 @@
 
 namespace tress::experiments::effect_audit {
 
-/// Changes by an effect, all over the length: the distance of the tips without it, by
-/// how much that distance changes in a refined scene, and the discretisation error of
+/// Changes by an effect, all over the length. They are the distance of the tips without
+/// it, the change of that distance in a refined scene, and the discretisation error of
 /// the scene.
 struct Change {
   double change, change_error, discretisation;
@@ -19,10 +19,9 @@ struct Change {
 /// accuracy.
 ///
 /// An effect is kept when its change exceeds both the accuracy and the discretisation
-/// error, and dropped when its change is below the accuracy, each by more than the
-/// change's own error. The discretisation error is no bound to drop below: where it
-/// exceeds the accuracy, an effect between the two matters more than the target
-/// accuracy.
+/// error. It is dropped when its change is below the accuracy. Both margins must exceed
+/// the change's own error. The discretisation error is no bound to drop below: where it
+/// exceeds the accuracy, an effect between the two matters more than the target accuracy.
 inline std::string verdict(const Change& of, double accuracy) {
   if (of.change - of.change_error > std::max(accuracy, of.discretisation)) return "keep";
   if (of.change + of.change_error < accuracy) return "drop";

@@ -18,10 +18,11 @@ namespace tress::experiments::family {
 enum class Family { hair, rods };
 std::string_view name(Family family);
 
-/// The excitation of a rod. By `level` in [0, 1]: shake by 1 to 5 cm, as the head of a
-/// person who walks or runs; a head that turns by 0.2 to 0.83 rad, 10 cm behind the root;
-/// none (released horizontally); a sideways wind of 0.5 to 10 m/s at its peak
-/// (logarithmic), a sine in time.
+/// Excitation of a rod. By `level` in [0, 1]:
+/// - shake by 1 to 5 cm, as the head of a person who walks or runs;
+/// - a head that turns by 0.2 to 0.83 rad, 10 cm behind the root;
+/// - none (released horizontally);
+/// - a sideways wind of 0.5 to 10 m/s at its peak (logarithmic), a sine in time.
 enum class Drive { shake, turning_head, release, wind };
 inline constexpr int drives = 4;
 std::string_view name(Drive drive);
@@ -52,8 +53,9 @@ struct Rod {
   double gravito_bending() const;
   /// Angle by which the natural shape turns from root to tip (rad).
   double winding() const;
-  /// Typical speed of the rod relative to the air (m/s): of the wind at its peak, of the
-  /// root (with a head, of the middle of the rod), or of a fall by half the length.
+  /// Returns the typical speed of the rod relative to the air (m/s). It is that of the
+  /// wind at its peak, of the root (with a head, of the middle of the rod), or of a fall
+  /// by half the length.
   double air_speed() const;
 
   /// Sets the columns that describe the rod.
@@ -139,8 +141,8 @@ Row no_answer(Row row, const Claim& claim, std::string_view status,
               std::string_view reason);
 
 /// Answers `claim` of a run that is within its tolerance up to the last of `agreed` out
-/// of `samples` times at which its references agree: it holds, or it has no answer where
-/// they agree on less than half of the time.
+/// of `samples` times at which its references agree. The claim holds, or is inconclusive
+/// where they agree on less than half of the time.
 Row within_tolerance(Row row, const Claim& claim, double error, int agreed, int samples);
 
 extern const Study stable_steps, twist, bdf_order, equal_accuracy, tolerance, sweeps,
@@ -168,11 +170,12 @@ struct Stump {
 Stump best_stump(std::span<const double> x, const std::vector<bool>& holds,
                  std::size_t least);
 
-/// One row per claim, family, model, integrator and range of the gravito-bending number
-/// over the rods that answered it: their number, the share for which it holds, and
-/// quantiles of the value; rods without an answer are counted by reason. The row over all
-/// numbers also has the parameter with the strongest rank correlation with the value, and
-/// the one that best predicts by one threshold whether the claim holds.
+/// Returns one row per claim, family, model, integrator and range of the gravito-bending
+/// number over the rods that answered it. Its columns are their number, the share for
+/// which the claim holds, and quantiles of the value. Rods without an answer are counted
+/// by reason. The row over all numbers also has the parameter with the strongest rank
+/// correlation with the value, and the one that best predicts by one threshold whether
+/// the claim holds.
 std::vector<Row> summarize(std::span<const Row> rows);
 
 std::span<const Column> summary_columns();

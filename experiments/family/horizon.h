@@ -15,9 +15,9 @@ struct Side {
   Options options;
 };
 
-/// The tips of two independent computations, at t_end k / samples, k = 1, 2, ..., up to
-/// the horizon. A strand without friction is chaotic once it whips: any error, that of
-/// rounding too, grows as exp(t), and beyond the time at which two converged methods part
+/// Tips of two independent computations, at t_end k / samples, k = 1, 2, ..., up to the
+/// horizon. A strand without friction is chaotic once its motion is fast: any error, that
+/// of rounding too, grows as exp(t). Beyond the time at which two converged methods part
 /// there is no solution to compare with, only invariants.
 struct Horizon {
   std::vector<double> tip, other;  // (3 samples) m
@@ -32,17 +32,17 @@ struct Horizon {
 Horizon horizon(const Side& one, const Side& other, double t_end, int samples,
                 double length, double apart);
 
-/// Returns the growth of a deviation to that of the tip: over the instants s of the
-/// first `until` samples, and t = 0, the largest ratio of the tip's deviation from
-/// there on (root mean square over all of them, over `length`) to that of the strand at
-/// s (integrators' PointNorm: the largest |dx|/L or |du| sqrt(L/g)/L of a point). Of a
-/// few deviations of the first velocities at random, of size `apart`: a lower bound,
-/// for what grows most comes to the fore by itself only as time goes on [Benettin et
+/// Returns the growth of a deviation to that of the tip, a lower bound. It is the largest
+/// ratio of the tip's deviation from an instant s on to that of the strand at s. Instants
+/// s are t = 0 and the first `until` samples. The tip's is the root mean square over all
+/// later samples, over `length`. The strand's is PointNorm: the largest |dx|/L or |du|
+/// sqrt(L/g)/L of a point. The deviations are a few random ones of the first velocities,
+/// of size `apart`: the fastest growing one comes to dominate only with time [Benettin et
 /// al. 1980, Meccanica 15, 9]. 0: a run ends before.
 double growth(const Side& side, double t_end, int samples, int until, double apart);
 
-/// Growth of the deviation of a body that nothing holds back or drives apart: positions
-/// move on with the speed, whose unit is `length` in the time of a fall over it.
+/// Returns the growth of the deviation of a body without forces: positions grow with the
+/// speed, whose unit is `length` in the time of a fall over it.
 double free_growth(double t_end, double length);
 
 }  // namespace tress::experiments::family

@@ -39,7 +39,7 @@ constexpr Parameter settings[] = {
      .help = "part of the study to run",
      .choices = "all|stable_steps|twist|bdf_order|equal_accuracy|tolerance|sweeps|"
                 "tolerances"},
-    {.name = "tolerance",
+    {.name = "position_tol_rel",
      .help = "tolerance of the study of that name, relative to the length",
      .number = 1e-3,
      .min = 1e-8,
@@ -59,7 +59,7 @@ std::vector<Column> columns_of_table() {
       {"family", "hair, or rods of other materials"},
       {"hair", "number of the rod in its family"},
       {"model", "model of the row, where one model is tested"},
-      {"tolerance", "requested tolerance over the length"},
+      {"position_tol_rel", "requested tolerance over the length"},
       {"most_calls", "limit of model evaluations in an adaptive run"},
       {"integrator", "method of the row, where one method is tested"}};
   for (const Column& column : rod_columns()) all.push_back(column);
@@ -142,7 +142,7 @@ void add_cases(const CommandLine& line, const Parameters& own, const Study& stud
   Row identity;
   identity.set("study", study.id);
   if (study.models.empty()) return add(identity);
-  identity.set("tolerance", own.number("tolerance"));
+  identity.set("position_tol_rel", own.number("position_tol_rel"));
   identity.set("most_calls", calls_of(line, own));
   const auto models = line.quick ? study.models.first(study.quick.models) : study.models;
   for (const std::string_view model : models) {

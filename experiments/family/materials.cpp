@@ -97,9 +97,10 @@ constexpr Material materials[] = {
 };
 static_assert(std::size(materials) == 15);
 
-/// Internal friction whose loss factor is `loss` at the lowest frequency of the rod, that
-/// of a cantilever, 1.875^2 sqrt(EI/(rho A L^4)), with that of a rigid rod that hangs,
-/// sqrt(3 g/(2 L)), as the root of the sum of squares.
+/// Returns the internal friction whose loss factor is `loss` at the lowest frequency of
+/// the rod. The frequency is the root of the sum of squares of two. They are that of a
+/// cantilever, 1.875^2 sqrt(EI/(rho A L^4)), and that of a hanging rigid rod, sqrt(3 g/(2
+/// L)).
 double friction_of(const Rod& rod, double loss) {
   const double bending = rod.bending_stiffness();
   const double cantilever =

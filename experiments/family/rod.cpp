@@ -108,7 +108,7 @@ void Rod::describe(Row& row) const {
   row.set("length_m", length).set("radius_m", radius);
   row.set("youngs_modulus_pa", youngs_modulus).set("shear_modulus_pa", shear_modulus);
   row.set("density_kg_m3", density).set("ellipticity", ellipticity);
-  row.set("natural_curvature_1_m", natural_curvature);
+  row.set("natural_curvature_per_m", natural_curvature);
   row.set("internal_friction_kg_m3_s", internal_friction);
   row.set("damping_time_s", internal_friction / bending_stiffness());
   row.set("drag_kg_m_s", drag);
@@ -125,7 +125,7 @@ std::vector<Column> rod_columns() {
           {"shear_modulus_pa", "shear modulus G"},
           {"density_kg_m3", "density"},
           {"ellipticity", "half-axis along e1 over half-axis along e2"},
-          {"natural_curvature_1_m",
+          {"natural_curvature_per_m",
            "curvature at rest; twist at rest is 0.3 times the curvature for hair, 0 "
            "for other rods"},
           {"internal_friction_kg_m3_s", "friction of bending and twisting"},
@@ -158,8 +158,8 @@ Parameters parameters_of(const Rod& rod, std::string_view model, int elements) {
   p.set("density_kg_m3", text(rod.density));
   p.set("gravity_m_s2", text(earth_gravity));
   p.set("ellipticity", text(rod.ellipticity));
-  p.set("natural_curvature_1_m", text(rod.natural_curvature));
-  p.set("natural_twist_1_m", text(rod.natural_twist));
+  p.set("natural_curvature_per_m", text(rod.natural_curvature));
+  p.set("natural_twist_per_m", text(rod.natural_twist));
   p.set("internal_friction_kg_m3_s", text(rod.internal_friction));
   if (rod.drive != Drive::wind) p.set("drag_kg_m_s", text(rod.drag));
   p.set("root_tangent", "x");

@@ -1,4 +1,4 @@
-// Largest stable step of backward_euler with the exact tangent, rod by rod.
+// Largest stable step of backward_euler with the exact Jacobian, rod by rod.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,9 +15,10 @@ namespace {
 
 constexpr Claim claims[] = {
     {"exact_step_100ms",
-     "backward_euler with the exact tangent is stable at every step tried up to 100 ms",
+     "backward_euler with the exact Jacobian is stable at every step tried up to 100 ms",
      "largest stable step of super_helix with twist (s); 1e-4: none from 1 ms on"},
-    {"exact_step_100ms_bend", "the same without twist (modes = bend)",
+    {"exact_step_100ms_bend",
+     "backward_euler without twist (modes = bend) is stable at every step up to 100 ms",
      "largest stable step of super_helix without twist (s); 1e-4: none from 1 ms on"},
     {"super_helix_step_longer", "super_helix is stable at steps at least as long as der",
      "largest stable step of super_helix over that of der"}};
@@ -30,9 +31,10 @@ constexpr std::array ladder{1e-3, 0.01 / 3, 0.01, 0.1 / 3, 0.1};
 constexpr double shorter = 1e-3 / 3;
 constexpr double nothing_stable = 1e-4;  // s, value of "none of these" in ratios
 
-/// As strand_speed_bound, where air moves at w or less relative to the clamp: with drag
-/// c = nu/(rho A) per mass, u u' <= c (w - u) u <= c w^2/4, which adds c w^2 t/2 to u^2,
-/// the square of the root mean square speed. The tip's speed is at most sqrt(30) of that.
+/// Returns the bound of strand_speed_bound, where air moves at w or less relative to the
+/// clamp. Drag c = nu/(rho A) per mass gives u u' <= c (w - u) u <= c w^2/4. That adds c
+/// w^2 t/2 to u^2, the square of the root mean square speed. The tip's speed is at most
+/// sqrt(30) of that.
 double speed_bound(const Rod& rod, const Parameters& p) {
   const double c = rod.drag / rod.mass_per_length();
   const double w = rod.drive == Drive::wind ? wind_speed(rod) : root_speed(rod);

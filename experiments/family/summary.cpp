@@ -39,11 +39,17 @@ constexpr Column columns[] = {
 // Minimum on either side of a threshold: fewer rods are separated by chance.
 constexpr std::size_t least_hairs = 4;
 
-constexpr std::string_view numbers_of_a_rod[] = {
-    "gravito_bending", "winding_rad",          "damping_time_s",
-    "drag_kg_m_s",     "ellipticity",          "length_m",
-    "radius_m",        "youngs_modulus_pa",    "drive_level",
-    "frequency_hz",    "natural_curvature_1_m"};
+constexpr std::string_view numbers_of_a_rod[] = {"gravito_bending",
+                                                 "winding_rad",
+                                                 "damping_time_s",
+                                                 "drag_kg_m_s",
+                                                 "ellipticity",
+                                                 "length_m",
+                                                 "radius_m",
+                                                 "youngs_modulus_pa",
+                                                 "drive_level",
+                                                 "frequency_hz",
+                                                 "natural_curvature_per_m"};
 
 /// Ranks of the values in ascending order; ties share their mean.
 std::vector<double> ranks_of(std::span<const double> x) {

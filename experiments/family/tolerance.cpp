@@ -23,17 +23,17 @@ namespace tress::experiments::family {
 namespace {
 
 constexpr Claim claims[] = {
-    {"tolerance_met", "the error of a run by tolerance stays within the tolerance",
+    {"tolerance_met", "the error of an adaptive run stays within the tolerance",
      "tip error in time over the length; 1: no solution"},
     {"tolerance_cheaper_at_error",
-     "a run by tolerance needs no more work than the best fixed step that is as accurate",
-     "work of the best fixed step as accurate over that of the run by tolerance; 0.2: or "
+     "an adaptive run needs no more work than the best fixed step that is as accurate",
+     "work of the best fixed step as accurate over that of the adaptive run; 0.2: or "
      "only a fixed step is a solution, 5: no fixed step is as accurate"},
     {"tolerance_cheaper_as_asked",
-     "a run by tolerance needs no more work than the best fixed step within the "
+     "an adaptive run needs no more work than the best fixed step within the "
      "tolerance",
-     "work of the best fixed step within the tolerance over that of the run by "
-     "tolerance; 0.2: or only a fixed step is within it, 5: only the run by tolerance"}};
+     "work of the best fixed step within the tolerance over that of the adaptive "
+     "run; 0.2: or only a fixed step is within it, 5: only the adaptive run"}};
 
 // Models with a material frame. mass_spring and inextensible_strand have none: a section
 // that is not round and twist at rest mean nothing to them.
@@ -122,9 +122,9 @@ double finest_step(const Subject& subject) {
   return dt;
 }
 
-/// Where no run comes to the end, or no two agree there, or the search for a step would
-/// take too long: as far as the reference and a method of another family agree within a
-/// tenth of the tolerance, and their calls last.
+/// Returns the horizon where no run comes to the end, no two agree there, or the search
+/// for a step would take too long. It ends where the reference and a method of another
+/// family no longer agree within a tenth of the tolerance, or their calls are used up.
 Horizon horizon_of(const Subject& subject) {
   const auto one = subject.system(), other = subject.system();
   const double most_work = reference_calls * subject.most_calls * work_of_call(*one);
@@ -152,8 +152,9 @@ struct Rung {
   double dt, error, work;
 };
 
-/// Every method's steps, halved until one is as accurate as the best outcome and as
-/// asked, or as dear as another that is, or `most` times as dear as the cheapest outcome.
+/// Tries every method's steps, halved until one is as accurate as the best outcome and as
+/// the target. Halving also ends when one is as expensive as another that meets these, or
+/// `most` times as expensive as the cheapest outcome.
 std::vector<Rung> ladder(const Subject& subject, const std::vector<Outcome>& outcomes,
                          In reference) {
   double least_error = subject.tolerance;
@@ -308,8 +309,8 @@ class Judge {
   std::optional<double> growth_;
 };
 
-/// The tips up to a horizon; empty if the run does not come so far, or ends: but for its
-/// calls beyond where two methods part, for there is nothing more to find.
+/// Returns the tips up to a horizon; empty if the run does not reach it or fails. Running
+/// out of calls beyond the time where two methods part is no failure.
 std::vector<double> tips_until(const Horizon& known, const TipRun& run) {
   const bool sound =
       run.status == Status::ok || (known.parted && run.limit == Limit::work);
@@ -362,7 +363,7 @@ std::vector<Row> judged(const Subject& subject, const Row& row,
 }
 
 std::vector<Row> run(const Rod& rod, const Row& row) {
-  const Subject subject{rod, row.text("model"), row.number("tolerance"),
+  const Subject subject{rod, row.text("model"), row.number("position_tol_rel"),
                         row.number("most_calls")};
   Row with = Row(row).set("elements", subject.elements);
   auto outcomes = outcomes_of(subject);

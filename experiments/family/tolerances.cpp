@@ -78,7 +78,7 @@ struct Subject {
 
 Row compared(Row row, std::size_t at, const Outcome& before, const Outcome& now) {
   const double looser = tolerances[at], asked = tolerances[at + 1];
-  row.set("tolerance", asked).set("warned", now.warned);
+  row.set("position_tol_rel", asked).set("warned", now.warned);
   if (!now.failure.empty()) row.set("failure", now.failure);
   if (!std::isfinite(before.error) || !std::isfinite(now.error)) {
     return no_answer(row, claims[at], "not_met", "a run has no solution");
@@ -104,9 +104,9 @@ std::vector<Row> run(const Rod& rod, const Row& row) {
     if (known) before = subject.outcome(integrator, tolerances[0], reference.tip);
     for (std::size_t i = 0; i < std::size(claims); ++i) {
       if (!known) {
-        rows.push_back(no_answer(Row(of_method).set("tolerance", tolerances[i + 1]),
-                                 claims[i], "no_reference",
-                                 "esdirk43 at 1e-6 and 1e-7 do not agree within 1e-5"));
+        rows.push_back(no_answer(
+            Row(of_method).set("position_tol_rel", tolerances[i + 1]), claims[i],
+            "no_reference", "esdirk43 at 1e-6 and 1e-7 do not agree within 1e-5"));
         continue;
       }
       const Outcome now = subject.outcome(integrator, tolerances[i + 1], reference.tip);

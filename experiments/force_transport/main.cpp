@@ -29,7 +29,7 @@ constexpr Column columns[] = {
     {"integrator", "method"},
     {"elements", "number of elements"},
     {"youngs_modulus_pa", "Young's modulus"},
-    {"mass_damping_1_s", "damping in proportion to mass"},
+    {"mass_damping_per_s", "damping in proportion to mass"},
     {"dt_s", "fixed step"},
     {"t_s", "time since the release"},
     {"tip_x_m", "position of the tip at t_s, along the clamp"},
@@ -45,7 +45,7 @@ constexpr Column columns[] = {
     {"chord_rel", "least distance of tip and root until then, over the length"},
     {"slowest_rad_s", "slowest small oscillation in the plane about the straight strand"},
     {"slowest_ratio", "slowest_rad_s over articulated_chain's"},
-    {"growth_1_s", "rate at which small oscillations grow, 0: none does"},
+    {"growth_per_s", "rate at which small oscillations grow, 0: none does"},
     {"complex_modes", "number of modes whose omega^2 is not real"},
     {"energy_growth", "largest energy over that of a random small start, weightless"},
     {"energy_gain_rel", "largest mechanical energy above the start's, over m g L"},
@@ -184,7 +184,7 @@ void modes(const Work& work, Row& row) {
   const auto system = work.make();
   const State rest = initial_state(*system);
   const LinearModes found = linear_modes(*system, rest.q);
-  row.set("slowest_rad_s", found.slowest_rad_s).set("growth_1_s", found.growth_1_s);
+  row.set("slowest_rad_s", found.slowest_rad_s).set("growth_per_s", found.growth_per_s);
   row.set("complex_modes", found.complex_modes);
 }
 
@@ -243,15 +243,16 @@ std::string text(double x) {
 Parameters parameters(const Setup& setup, Parameters p, int elements) {
   p.set("elements", std::to_string(elements));
   p.set("youngs_modulus_pa", text(setup.modulus > 0 ? setup.modulus : master_modulus(p)));
-  p.set("mass_damping_1_s", text(setup.damping));
+  p.set("mass_damping_per_s", text(setup.damping));
   if (setup.scene == "curly") {
-    p.set("natural_curvature_1_m", "100");
-    p.set("natural_twist_1_m", "30");
+    p.set("natural_curvature_per_m", "100");
+    p.set("natural_twist_per_m", "30");
   }
   if (setup.scene == "weightless") p.set("gravity_m_s2", "0");
   if (setup.scene == "hanging") p.set("root_tangent", "down");
   if (planar(setup)) p.set("modes", "bend_planar");
-  if (setup.integrator == "semi_implicit_euler") set_known(p, {{"tangent", "stiff"}});
+  if (setup.integrator == "linearly_implicit_euler")
+    set_known(p, {{"jacobian", "elastic"}});
   return p;
 }
 
@@ -267,7 +268,7 @@ std::vector<Case> cases(const CommandLine& line) {
     Row identity;
     identity.set("comparison", setup.comparison).set("scene", setup.scene);
     identity.set("model", id).set("integrator", setup.integrator);
-    identity.set("elements", elements).set("mass_damping_1_s", setup.damping);
+    identity.set("elements", elements).set("mass_damping_per_s", setup.damping);
     identity.set("youngs_modulus_pa", p.number("youngs_modulus_pa"));
     if (setup.t_end > 0) identity.set("dt_s", setup.step).set("t_s", setup.t_end);
     const Work work{&model, setup.integrator, p, setup.step, setup.t_end};
@@ -302,11 +303,11 @@ std::vector<Case> cases(const CommandLine& line) {
         {"stiffness", "straight", stiffness, modulus, "implicit_midpoint", fine_step, 1});
   }
   for (const double damping : {0.0, 5.0}) {
-    add_models({"step", "straight", dynamics, seed_hair, "semi_implicit_euler", seed_step,
-                2, damping});
+    add_models({"step", "straight", dynamics, seed_hair, "linearly_implicit_euler",
+                seed_step, 2, damping});
   }
   add_models(
-      {"cost", "straight", cost, seed_hair, "semi_implicit_euler", seed_step, 0.3});
+      {"cost", "straight", cost, seed_hair, "linearly_implicit_euler", seed_step, 0.3});
   return all;
 }
 

@@ -59,7 +59,7 @@ void compare_with_corde(std::vector<Row>& rows) {
     if (!row.ok()) continue;
     const auto other = found(row, theirs,
                              {"comparison", "scene", "elements", "youngs_modulus_pa",
-                              "mass_damping_1_s", "t_s"});
+                              "mass_damping_per_s", "t_s"});
     if (other != rows.end()) {
       if (row.has("tip_x_m"))
         row.set("corde_difference_rel", apart(row, *other) / length);
@@ -73,7 +73,7 @@ void compare_with_corde(std::vector<Row>& rows) {
     }
     const auto counterpart = found(row, chain,
                                    {"comparison", "scene", "elements",
-                                    "youngs_modulus_pa", "mass_damping_1_s", "t_s"});
+                                    "youngs_modulus_pa", "mass_damping_per_s", "t_s"});
     if (row.has("slowest_rad_s") && counterpart != rows.end()) {
       row.set("slowest_ratio",
               row.number("slowest_rad_s") / counterpart->number("slowest_rad_s"));
@@ -139,7 +139,7 @@ void check_transport_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   verdict("weightless: those of articulated_chain keep it to 1 %", transient(chain),
           [](double growth) { return growth < 1.01; });
   const auto growth = [&rows](std::string_view model) {
-    return value(rows, "growth_1_s",
+    return value(rows, "growth_per_s",
                  like("modes", model, 10)
                      .set("scene", "hanging")
                      .set("youngs_modulus_pa", seed_hair));

@@ -41,23 +41,23 @@ const Known* limit_of(std::string_view hard) {
   return found == std::end(limits) ? nullptr : &*found;
 }
 
-/// Of super_helix with its exact tangent.
+/// Of super_helix with its exact Jacobian.
 const Row* claimed(const std::vector<Row>& rows, std::string_view hard,
                    std::string_view integrator, const Pace& pace) {
   Row wanted;
   pace.identify(wanted);
   const auto found = std::ranges::find_if(rows, [&](const Row& row) {
     return row.text("case") == hard && row.text("model") == "super_helix" &&
-           row.text("variant") == "tangent=exact" &&
+           row.text("variant") == "jacobian=exact" &&
            row.text("integrator") == integrator &&
            row.text("dt_s") == wanted.text("dt_s") &&
-           row.text("tolerance") == wanted.text("tolerance");
+           row.text("position_tol_rel") == wanted.text("position_tol_rel");
   });
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// Whether a tolerance answers for the error: not where the reference has other
-/// elements, for the error is then one of space, nor over a number of steps whose
+/// Returns whether a tolerance controls the error. It does not where the reference has
+/// other elements, for the error is then one of space, nor over a number of steps whose
 /// errors add up.
 bool of_the_tolerance(const Row& row) {
   const auto cases = hard_case_catalogue();
@@ -77,7 +77,7 @@ bool silently_wrong(const Row& row) {
 void check_by_tolerance(const std::vector<Row>& rows, Verdicts& verdicts) {
   std::ptrdiff_t passing = 0, silent = 0;
   for (const Row& row : rows) {
-    if (!row.has("tolerance") || row.text("passed") != "true") continue;
+    if (!row.has("position_tol_rel") || row.text("passed") != "true") continue;
     ++passing;
     if (silently_wrong(row)) ++silent;
   }
@@ -91,7 +91,7 @@ void check_by_tolerance(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
   for (const std::string_view hard : {"long_curl", "cone"}) {
     const std::string claim = std::string(hard) +
-                              ": super_helix, exact tangent, tr_bdf2 is accurate at a "
+                              ": super_helix, exact Jacobian, tr_bdf2 is accurate at a "
                               "tolerance of 1e-3";
     const Row* row = claimed(rows, hard, "tr_bdf2", {longest_step, 1e-3});
     const bool unknown = row == nullptr ||
@@ -122,7 +122,7 @@ const Row* counterpart(const std::vector<Row>& rows, const Row& of,
   const auto found = std::ranges::find_if(rows, [&](const Row& row) {
     if (row.text("case") != hard) return false;
     return std::ranges::all_of(
-        std::array{"model", "variant", "integrator", "dt_s", "tolerance"},
+        std::array{"model", "variant", "integrator", "dt_s", "position_tol_rel"},
         [&](std::string_view column) { return row.text(column) == of.text(column); });
   });
   return found == rows.end() ? nullptr : &*found;
@@ -165,7 +165,7 @@ void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts) {
   verdicts.check("every cell has an outcome", missing == 0, static_cast<double>(missing));
   for (const HardCase& hard : hard_case_catalogue()) {
     std::string claim = std::string(hard.name) +
-                        ": super_helix, exact tangent, backward_euler passes at 1/30 s";
+                        ": super_helix, exact Jacobian, backward_euler passes at 1/30 s";
     const Row* row = claimed(rows, hard.name, "backward_euler", {1.0 / 30});
     if (row == nullptr) {
       verdicts.not_judged(std::move(claim));

@@ -90,7 +90,7 @@ HardCase by_impulses(HardCase given, std::string_view name, ModelSettings law) {
   given.name = name;
   given.why =
       "the same law by impulses at the end of the step, of which the strand's own step "
-      "knows nothing: one linear solve is enough for it, and for semi-implicit Euler";
+      "knows nothing: one linear solve is enough for it, and for linearly implicit Euler";
   given.impulses = std::move(law);
   return given;
 }
@@ -112,8 +112,8 @@ std::vector<HardCase> contact_cases() {
                               {"root_tangent", "x"},
                               {"elements", "20"},
                               {"gravity_m_s2", "0"},
-                              {"natural_curvature_1_m", "200"},
-                              {"natural_twist_1_m", "10"},
+                              {"natural_curvature_per_m", "200"},
+                              {"natural_twist_per_m", "10"},
                               {"internal_friction_kg_m3_s", "1e-10"}},
                  .t_end = 0.15,
                  .horizon = 0.08,
@@ -139,7 +139,7 @@ std::vector<HardCase> contact_cases() {
                               {"gravity_m_s2", "0"},
                               {"amplitude_m", "0.025"},
                               {"frequency_hz", "2"},
-                              {"natural_curvature_1_m", "0.8"}},
+                              {"natural_curvature_per_m", "0.8"}},
                  .horizon = 0.2,
                  .bounds = driven_bounds,
                  .gauge = penetration_gauge,

@@ -22,10 +22,10 @@ void stop_at_samples(double horizon, std::vector<double>& stops) {
   stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
 }
 
-/// These two factor a dense matrix if their tangent is exact.
+/// These two factor a dense matrix if their Jacobian is exact.
 bool dense(const Situation& s, std::string_view model) {
   return (model == "kirchhoff_nodal" || model == "force_transport") &&
-         s.parameters.word("tangent") == "exact";
+         s.parameters.word("jacobian") == "exact";
 }
 
 double work(const Stats& stats, double unknowns, bool dense) {
@@ -81,7 +81,7 @@ Options Pace::applied(Options options) const {
 
 void Pace::identify(Row& row) const {
   row.set("dt_s", step);
-  if (tolerance > 0) row.set("tolerance", tolerance);
+  if (tolerance > 0) row.set("position_tol_rel", tolerance);
 }
 
 Course course(const Attempt& attempt) {

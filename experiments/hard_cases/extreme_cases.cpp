@@ -132,8 +132,8 @@ std::vector<HardCase> extreme_cases() {
                             "a coil of 18 turns by three elements: the shape winds six "
                             "times within one",
                             {{"elements", "3"},
-                             {"natural_curvature_1_m", "1100"},
-                             {"natural_twist_1_m", "260"}});
+                             {"natural_curvature_per_m", "1100"},
+                             {"natural_twist_per_m", "260"}});
   coiled.criterion =
       "energy as for all that falls; accurate: the tip against a rod of 12 "
       "elements a segment, over the height of the coil";
@@ -167,8 +167,8 @@ std::vector<HardCase> extreme_cases() {
                           "fall in a step",
                           {{"elements", "100"},
                            {"length_m", "2"},
-                           {"natural_curvature_1_m", "100"},
-                           {"natural_twist_1_m", "30"},
+                           {"natural_curvature_per_m", "100"},
+                           {"natural_twist_per_m", "30"},
                            {"root_tangent", "down"}});
   curl.t_end = 0.2;
   curl.horizon = 0.15;

@@ -6,17 +6,17 @@
 /// The measures of the cases. Each reads the situation's system, which must outlive it.
 namespace tress::experiments::hard_cases {
 
-/// Depth (m) of a strand's surface in a Body that a correct simulator may have: the
-/// radius, since contact keeps the axis outside, and 0.07 of the last element's length,
-/// by which the tip is beyond the last point where bodies can hold a strand that hits
-/// them head-on (the last of four Gauss points).
+/// Returns the depth (m) of a strand's surface in a Body that a correct simulator may
+/// have. It is the radius, since contact keeps the axis outside, and 0.07 of the last
+/// element's length. The tip is that far beyond the last of four Gauss points, where
+/// bodies can hold a strand that hits them head-on.
 double allowed_depth(const Strand& strand);
 
 /// Largest depth of a material point in a Body among the effects, over allowed_depth().
 std::unique_ptr<Gauge> penetration_gauge(const Situation& situation);
 
 /// Largest overlap of parts of the strand farther apart along it than `separation`, over
-/// half of the distance at which they begin to touch: at 1 the axis of one part lies on
+/// half of the distance at which they begin to touch. At 1 the axis of one part lies on
 /// the surface of the other, each as thick as half that distance.
 class OverlapGauge final : public Gauge {
  public:
@@ -34,9 +34,10 @@ class OverlapGauge final : public Gauge {
 /// Largest relative change of an element's length.
 std::unique_ptr<Gauge> stretch_gauge(const Situation& situation);
 
-/// Growth of the energy and of the angular momentum of a free strand about its centre of
-/// mass, relative to the start, the larger one; error: the largest change of that angular
-/// momentum, and of the linear one times the length, over the initial angular momentum.
+/// Makes a gauge of the growth of the energy and of the angular momentum of a free strand
+/// about its centre of mass, relative to the start, the larger one. Its error is the
+/// largest change of that angular momentum, and of the linear one times the length, over
+/// the initial angular momentum.
 std::unique_ptr<Gauge> momentum_gauge(const Situation& situation);
 
 /// Largest depth of the tip below its root, over `allowed` (m).

@@ -16,7 +16,7 @@ constexpr Parameter settings_of_rows[] = {
      .text = true,
      .fallback = "all"},
     {.name = "dt_s", .help = "rows of one step (s), 0: all", .number = 0, .min = 0},
-    {.name = "tolerance",
+    {.name = "position_tol_rel",
      .help = "rows of one tolerance (error over the length), 0: all",
      .number = 0,
      .min = 0,
@@ -61,7 +61,7 @@ constexpr Parameter settings_of_rows[] = {
 constexpr double film = 1.0 / 30, substep = 1.0 / 300, fine = 1e-3;  // s
 constexpr double usual_tolerance = 1e-3;
 
-constexpr std::string_view usual[] = {"semi_implicit_euler",
+constexpr std::string_view usual[] = {"linearly_implicit_euler",
                                       "backward_euler",
                                       "implicit_midpoint",
                                       "bdf2",
@@ -149,7 +149,7 @@ std::vector<Pace> tried_paces(const CommandLine& line, std::string_view integrat
 }
 
 bool selected(const Parameters& own, const Pace& pace) {
-  const double step = own.number("dt_s"), tolerance = own.number("tolerance");
+  const double step = own.number("dt_s"), tolerance = own.number("position_tol_rel");
   return (step == 0 || step == pace.step) &&
          (tolerance == 0 || tolerance == pace.tolerance);
 }
@@ -157,11 +157,11 @@ bool selected(const Parameters& own, const Pace& pace) {
 std::vector<std::string_view> tried_tangents(const CommandLine& line,
                                              const ModelEntry& model,
                                              std::string_view integrator) {
-  const std::string_view whole = first_word(model, "tangent");
+  const std::string_view whole = first_word(model, "jacobian");
   const std::string_view seed = usual_tangent(model);
   if (whole == seed) return {whole};
   if (line.full) return {whole, seed};
-  if (integrator != "semi_implicit_euler") return {whole};
+  if (integrator != "linearly_implicit_euler") return {whole};
   if (line.quick) return {seed};
   return {seed, whole};
 }
@@ -186,13 +186,13 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
     for (const Subject& subject : subjects_of(line, hard)) {
       const std::size_t reference = grid.references++;
       for (const std::string_view integrator : tried_integrators(line)) {
-        for (const std::string_view tangent :
+        for (const std::string_view jacobian :
              tried_tangents(line, *subject.model, integrator)) {
           Subject own = subject;
-          if (!tangent.empty()) {
-            own.settings.emplace_back("tangent", tangent);
+          if (!jacobian.empty()) {
+            own.settings.emplace_back("jacobian", jacobian);
             own.words +=
-                (own.words.empty() ? "tangent=" : " tangent=") + std::string(tangent);
+                (own.words.empty() ? "jacobian=" : " jacobian=") + std::string(jacobian);
           }
           for (const Pace& pace : paces_of(line, selection, hard, integrator)) {
             Attempt attempt{&hard,      own,  settings.parameters(*own.model),

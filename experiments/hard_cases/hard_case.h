@@ -19,7 +19,7 @@ namespace tress::experiments::hard_cases {
 struct Subject {
   const ModelEntry* model;
   ModelSettings settings;
-  std::string words;  // "stretch=inextensible tangent=stiff"; empty: default options
+  std::string words;  // "stretch=inextensible jacobian=elastic"; empty: default options
 };
 
 /// A case instantiated for one model.

@@ -20,7 +20,7 @@ namespace tress::experiments::hard_cases {
 /// One row: an attempt, and the reference it is compared with.
 struct Cell {
   Attempt attempt;
-  Subject compared;       // owner of the reference: the subject with its exact tangent
+  Subject compared;       // owner of the reference: the subject with its exact Jacobian
   std::size_t reference;  // index among the references of all cells
 
   Row identity() const;
@@ -41,22 +41,22 @@ std::vector<Pace> tried_paces(const CommandLine& line, std::string_view integrat
 inline constexpr double longest_step = 1.0 / 30;
 /// Whether --set dt_s and tolerance leave these rows.
 bool selected(const Parameters& own, const Pace& pace);
-/// Returns the tangents tried for this model and integrator; one empty string: the
+/// Returns the Jacobians tried for this model and integrator; one empty string: the
 /// model has no such option.
 std::vector<std::string_view> tried_tangents(const CommandLine& line,
                                              const ModelEntry& model,
                                              std::string_view integrator);
 
-/// Every case on every strand model, and the particle systems that it names, by every
-/// integrator and at every step that the command line selects; impossible combinations
-/// are cells too.
+/// Returns every case on every strand model, and the particle systems that it names, by
+/// every integrator and at every step that the command line selects. Impossible
+/// combinations are cells too.
 ///
-/// --quick: semi_implicit_euler, backward_euler and implicit_midpoint at 1/300 and
+/// --quick: linearly_implicit_euler, backward_euler and implicit_midpoint at 1/300 and
 /// 1/30 s, bdf2 at 1 ms and tr_bdf2 at a tolerance of 1e-3, models with default options.
 /// Otherwise more integrators, models with every way of keeping lengths, all three steps,
-/// and tolerances of 1e-2 and 1e-4 too; --full: every fixed-step integrator, those with
-/// error control by step too, and both tangents. semi_implicit_euler has the stiff
-/// tangent where available.
+/// and tolerances of 1e-2 and 1e-4 too. --full: every fixed-step integrator, those with
+/// error control by step too, and both Jacobians. linearly_implicit_euler has the stiff
+/// Jacobian where available.
 Grid hard_grid(const CommandLine& line, const Settings& settings);
 
 /// With the violated criterion, or the one nearest to its limit; it has a name and a
@@ -75,18 +75,19 @@ struct SceneSurvival : Survival {
 SceneSurvival survive(const Scene& scene, const Pace& pace, const SceneCriteria& criteria,
                       double t_end, const WorkLimit& limit);
 
-/// Rows for scene files: every strand model and integrator that the command line selects,
-/// at the scene's step or tolerance and at the standard ones; for a scene without strands
-/// its own model. The scene's model keeps the scene's options, others have their
-/// defaults, with the tangents of hard_grid(). Of many strands that do not touch each
-/// other, typical ones are run. Throws InputError on settings that a scene defines
-/// itself.
+/// Returns rows for scene files: every strand model and integrator that the command line
+/// selects, at the scene's step or tolerance and at the standard ones. A scene without
+/// strands runs with its own model. The scene's model keeps the scene's options, others
+/// have their defaults, with the Jacobians of hard_grid(). Of many strands that do not
+/// touch each other, typical ones are run. Throws InputError on settings that a scene
+/// defines itself.
 std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings);
 
-/// The claims about the table of hard_cases: every cell has an outcome, and super_helix
-/// with backward_euler and the exact tangent passes every case at 1/30 s that it does
-/// not refuse, except for known limits. Adaptive: what passes is not wrong, and tr_bdf2
-/// is accurate at 1e-3 in the two cases where backward_euler finds no solution.
+/// Checks the claims about the table of hard_cases. Every cell has an outcome.
+/// super_helix with backward_euler and the exact Jacobian passes every case at 1/30 s
+/// that it does not refuse, except for known limits. Adaptive runs that pass are
+/// accurate, and tr_bdf2 is accurate at 1e-3 in the two cases where backward_euler finds
+/// no solution.
 void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::hard_cases

@@ -17,10 +17,11 @@ namespace {
 constexpr Column columns[] = {
     {"case", "name of the situation, or of the scene"},
     {"model", "catalogue id"},
-    {"variant", "model's choices: tangent, length formulation, structure"},
+    {"variant", "model's choices: Jacobian, length formulation, structure"},
     {"integrator", "method"},
     {"dt_s", "time step, or the longest one with a tolerance"},
-    {"tolerance", "requested tolerance over the length; empty: all steps are dt_s"},
+    {"position_tol_rel",
+     "requested tolerance over the length; empty: all steps are dt_s"},
     {"formulation", "constraint formulation, where there are constraints"},
     {"outcome", "refused, not finished, unstable, stable, stable and accurate"},
     {"measure_name",
@@ -114,8 +115,9 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
     for (const Row& row : rows) {
       if (row.text("outcome") != name(outcome) || ++count > most) continue;
       const std::string steps =
-          row.has("tolerance") ? fmt::format("tolerance {:.2g}", row.number("tolerance"))
-                               : fmt::format("dt {:.3g} ms", 1e3 * row.number("dt_s"));
+          row.has("position_tol_rel")
+              ? fmt::format("tolerance {:.2g}", row.number("position_tol_rel"))
+              : fmt::format("dt {:.3g} ms", 1e3 * row.number("dt_s"));
       named.push_back(
           fmt::format("{} {} {}", row.text("model"), row.text("integrator"), steps));
     }

@@ -30,8 +30,9 @@ void press_down(const Strand& strand, Effects& effects) {
                                                 .ramp = 0.1}));
 }
 
-/// The pull P does work of at most P 2 L: u = sqrt(4 P L/m) is the strand's root mean
-/// square speed, and sqrt(30) u that of its tip (strand_speed_bound).
+/// Returns bounds for the pull P, which does work of at most P 2 L. The strand's root
+/// mean square speed is u = sqrt(4 P L/m), and sqrt(30) u that of its tip
+/// (strand_speed_bound).
 StabilityBounds pressed_bounds(const Situation& s, double) {
   const double pull = overload * euler_load(s.strand);
   return {.reach = 1.001 * s.length,
@@ -97,7 +98,7 @@ std::vector<HardCase> motion_cases() {
                               {"root_tangent", "up"},
                               {"gravity_m_s2", "0"},
                               {"initial", "bent"},
-                              {"initial_curvature_1_m", "0.1"}},
+                              {"initial_curvature_per_m", "0.1"}},
                  .t_end = 0.4,
                  .reference_step = 1.25e-4,
                  .bounds = pressed_bounds,

@@ -14,20 +14,20 @@
 namespace tress::experiments::hard_cases {
 namespace {
 
-/// The tangents to try.
-std::vector<std::string_view> tangents(const CommandLine& line, const Scene& scene,
-                                       const ModelEntry& model,
-                                       std::string_view integrator) {
+/// The Jacobians to try.
+std::vector<std::string_view> jacobians(const CommandLine& line, const Scene& scene,
+                                        const ModelEntry& model,
+                                        std::string_view integrator) {
   if (&model != scene.model) return tried_tangents(line, model, integrator);
-  const std::set<std::string_view> all = scene_tangents(scene, integrator);
+  const std::set<std::string_view> all = scene_jacobians(scene, integrator);
   return {all.begin(), all.end()};
 }
 
-Scene with_model(const Scene& scene, const ModelEntry& model, std::string_view tangent) {
+Scene with_model(const Scene& scene, const ModelEntry& model, std::string_view jacobian) {
   Scene changed = scene;
   if (&model != scene.model)
     changed = with_method(std::move(changed), {&model, {}, {}, {}});
-  if (!tangent.empty()) changed.model_options.set("tangent", tangent);
+  if (!jacobian.empty()) changed.model_options.set("jacobian", jacobian);
   return changed;
 }
 
@@ -167,9 +167,10 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
     const Scene scene = thinned(given, strands);
     for (const ModelEntry* model : models_of(line, scene)) {
       for (const std::string_view integrator : tried_integrators(line)) {
-        for (const std::string_view tangent : tangents(line, scene, *model, integrator)) {
+        for (const std::string_view jacobian :
+             jacobians(line, scene, *model, integrator)) {
           for (const Pace& pace : paces_of(line, own, scene, integrator)) {
-            Work work{with_model(scene, *model, tangent),
+            Work work{with_model(scene, *model, jacobian),
                       pace,
                       criteria,
                       own.number("horizon_s"),
@@ -178,7 +179,8 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
             work.scene.options = pace.applied(settings.options(scene.options));
             Row row;
             row.set("case", scene.name).set("model", model->id);
-            row.set("variant", tangent.empty() ? "" : fmt::format("tangent={}", tangent));
+            row.set("variant",
+                    jacobian.empty() ? "" : fmt::format("jacobian={}", jacobian));
             row.set("integrator", integrator);
             pace.identify(row);
             all.push_back(

@@ -32,7 +32,7 @@ std::string run(const Row& row) {
       "{}, {} elements, steps of {:.3g} ms, {}-bit precision: 95 % of hairs within "
       "{:.2g} % of their length (mean {:.2g} %, largest {:.2g} %) in {:.2g} ms a "
       "frame",
-      hairs(row), row.text("elements"), 1e3 * row.number("dt_s"), row.text("bits"),
+      hairs(row), row.text("elements"), 1e3 * row.number("dt_s"), row.text("precision"),
       1e2 * row.number("error_p95_rel"), 1e2 * row.number("error_mean_rel"),
       1e2 * row.number("error_max_rel"), row.number("ms_per_frame"));
 }

@@ -13,7 +13,7 @@ struct Part {
 
 constexpr Part shapes[] = {
     {"straight", "shape = \"straight\"\n"},
-    {"wavy", "shape = \"wavy\"\nwave_1_m = 40\nwavelength_m = 0.05\n"},
+    {"wavy", "shape = \"wavy\"\nwave_per_m = 40\nwavelength_m = 0.05\n"},
     {"curly", "shape = \"helix\"\ncurl_radius_m = 0.01\ncurl_pitch_m = 0.04\n"}};
 constexpr Part variations[] = {
     {"alike", "length_variation = 0\ncurl_variation = 0\nphase = \"down\"\n"},
@@ -47,8 +47,9 @@ std::string groom_text(std::string_view name, std::size_t hairs) {
         }
         return fmt::format(
             "title = \"{0} hair, {1}, {2}\"\nduration_s = 1\n[model]\n"
-            "id = \"super_helix\"\nmodes = \"bend_twist\"\ntangent = \"stiff\"\n"
-            "[integrator]\nid = \"semi_implicit_euler\"\ndt_s = 0.0033333333333333335\n"
+            "id = \"super_helix\"\nmodes = \"bend_twist\"\njacobian = \"elastic\"\n"
+            "[integrator]\nid = \"linearly_implicit_euler\"\ndt_s = "
+            "0.0033333333333333335\n"
             "[material]\nname = \"hair.caucasian\"\n[effects.gravity]\n"
             "[effects.linear_drag]\ndrag_kg_m_s = 5e-5\n"
             "[groom]\ncount = {3}\nelements = 10\nlength_m = 0.15\n"

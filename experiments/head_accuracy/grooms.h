@@ -8,9 +8,9 @@
 
 namespace tress::experiments::head_accuracy {
 
-/// Names of the family of grooms: straight, wavy or curly; `alike` or varied in length,
-/// curl and the direction that it bends in; released from straight, or shaken with the
-/// head.
+/// Returns the names of the family of grooms. Grooms are straight, wavy or curly; `alike`
+/// or varied in length, curl and bending direction; released from straight, or shaken
+/// with the head.
 std::vector<std::string> groom_names();
 
 /// Returns one of the grooms as a scene of `hairs` hairs. Throws InputError on other

@@ -26,10 +26,9 @@ constexpr Parameter own_settings[] = {
      .text = true,
      .fallback = "scenes/full_head.toml"},
     {.name = "grooms",
-     .help = "grooms of the study, as in "
-             "curly_varied_shaken,straight_alike_released: straight, wavy or curly, "
-             "equal or varied hairs, released or shaken; default: all, or none where "
-             "scenes are given",
+     .help = "grooms of the study, as in curly_varied_shaken,straight_alike_released: "
+             "straight, wavy or curly; equal or varied hairs; released or shaken. "
+             "Default: all, or none where scenes are given",
      .text = true,
      .fallback = "usual"},
     {.name = "accuracy",
@@ -196,7 +195,7 @@ void conclude(const CommandLine& line, const std::vector<Row>& rows) {
 /// A target that is out of reach is a valid result.
 bool finding(const Row& row) {
   return row.status() == "not_met" || row.status() == "below_reference" ||
-         (row.status() == "lost" && row.text("kind") != "cheapest");
+         (row.status() == "failed" && row.text("kind") != "cheapest");
 }
 
 constexpr Unused unused[] = {{"models", "the scene files set them"},

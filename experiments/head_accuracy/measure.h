@@ -48,11 +48,12 @@ struct HeadTrial {
 /// all its strands come from grooms. The scene is an outline's.
 Scene read_head_scene(const std::string& file);
 
-/// Runs a scene's head by any choice and compares every hair with a fine run of every
-/// hair: x(h, n) = 2 x(h) - x(2 h) lacks the error of semi_implicit_euler in first order
-/// of its step h, and x(h, n) + (x(h, n) - x(2 h, n/2))/3 that of n elements in second
-/// order. Guides and what follows them are those that `guides` and `elements` of the
-/// groom would give (choose_guides, hair_that_follows).
+/// Runs a scene's batch by any choice and compares every hair with a fine run of every
+/// hair. The combination x(h, n) = 2 x(h) - x(2 h) lacks the error of
+/// linearly_implicit_euler in first order of its step h. The combination x(h, n) + (x(h,
+/// n) - x(2 h, n/2))/3 lacks that of n elements in second order. Guides and followers are
+/// those that `guides` and `elements` of the groom would give (choose_guides,
+/// hair_that_follows).
 class HeadMeasure {
  public:
   /// Computes the reference and one of half its elements and twice its steps. Throws
@@ -63,8 +64,8 @@ class HeadMeasure {
   std::size_t all_hairs() const { return all_; }         // of the scene
   double horizon() const { return static_cast<double>(frames_) / comparison_.rate; }
   const Comparison& comparison() const { return comparison_; }
-  /// Returns the work of a step of an element over that of a straight one, as measured:
-  /// elements that wind farther take more quadrature points, and beyond 1.5 rad longer
+  /// Returns the work of a step of an element over that of a straight one, as measured.
+  /// Elements that wind farther take more quadrature points, and beyond 1.5 rad longer
   /// series.
   double element_work(int elements) const;
   /// Returns the change by the last extrapolation of the reference: a bound of its

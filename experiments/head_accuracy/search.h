@@ -18,9 +18,9 @@ double value(const Spread& spread, Over over);
 /// Factor by which the errors of a run's neighbours may exceed the target error.
 inline constexpr double neighbour_allowance = 1.5;
 
-/// Counted, so that the choice does not depend on the load of the machine: a step of an
-/// element is HeadMeasure::element_work in double precision and half that work in
-/// single precision. A point of a hair that follows is `point_work`, as measured.
+/// Counted work of a follower's point, as measured, so that the choice does not depend on
+/// the load of the machine. The unit is a step of an element: HeadMeasure::element_work
+/// in double precision and half that work in single precision.
 inline constexpr double point_work = 0.35;
 double frame_work(const Choice& choice, const HeadMeasure& measure);
 
@@ -39,12 +39,13 @@ struct Judged {
   double error = 0, neighbours = 0;
 };
 
-/// The cheapest head for a target. Errors come from two parts that are cheap to know: of
-/// interpolation, from guides as they are in the reference, for half of the hairs, a
-/// quarter and so on, or none that follow; of elements and steps, from a sample of hairs.
-/// The combinations whose parts allow for the target are run as they are, the cheapest
-/// first, until one meets it, with its neighbours; guides, elements and steps are then
-/// lowered one after the other for as long as that holds. Uses no clock but for budgets.
+/// Search for the cheapest batch for a target. Errors come from two parts that are cheap
+/// to compute. Those of interpolation come from guides as in the reference, for half of
+/// the hairs, a quarter and so on, or no followers. Those of elements and steps come from
+/// a sample of hairs. The combinations whose parts allow for the target are run, the
+/// cheapest first, until one meets it, with its neighbours. Guides, elements and steps
+/// are then lowered one after the other for as long as that holds. Uses no clock but for
+/// budgets.
 class HeadSearch {
  public:
   /// `done`: true once time is up.

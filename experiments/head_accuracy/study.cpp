@@ -28,7 +28,7 @@ constexpr Column columns[] = {
     {"guides", "hairs that are simulated; the others follow them"},
     {"elements", "number of elements of each hair"},
     {"dt_s", "step"},
-    {"bits", "floating-point precision of the simulation in bits"},
+    {"precision", "floating-point precision of the simulation in bits"},
     {"error_mean_rel",
      "mean error of the hairs: distance from the fine simulation of the same "
      "hair, rms over length and time, over its length"},
@@ -112,7 +112,7 @@ class Study {
     const Choice& choice = trial.choice;
     const bool every = choice.guides == measure_.hairs();
     row.set("guides", every ? measure_.all_hairs() : choice.guides);
-    row.set("elements", choice.elements).set("bits", choice.bits);
+    row.set("elements", choice.elements).set("precision", choice.bits);
     row.set("dt_s", 1 / (measure_.comparison().rate * choice.substeps));
     set(trial.all, "error", row);
     set(trial.interpolation, "interpolation", row);
@@ -130,7 +130,7 @@ class Study {
     const auto judged = search_.judged(choice);
     Row row = judged ? row_of(kind, judged->trial) : begin(kind);
     if (target > 0) row.set("target_error_rel", target);
-    if (!judged) row.failed("lost", "hairs have no solution");
+    if (!judged) row.failed("failed", "hairs have no solution");
     rows_.push_back(std::move(row));
   }
 
@@ -166,7 +166,7 @@ class Study {
     if (taken.bits != 64) {
       Choice longer = taken;
       longer.bits = 64;
-      add_run("bits", longer, target);
+      add_run("precision", longer, target);
     }
     if (taken.guides == measure_.hairs()) return;
     Choice every = taken;

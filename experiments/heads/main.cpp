@@ -23,8 +23,8 @@ constexpr Column columns[] = {
     {"dt_s", "step"},
     {"strands", "number of hairs on the head"},
     {"elements", "number of elements of each hair"},
-    {"bits", "floating-point precision in bits: 64 or 32"},
-    {"lanes", "hairs per SIMD pack"},
+    {"precision", "floating-point precision in bits: 64 or 32"},
+    {"simd_width", "hairs per SIMD pack"},
     {"threads", "threads that share the blocks of hairs"},
     {"effects",
      "effects in addition to gravity: none; drag; body, an ellipsoid under the "
@@ -40,13 +40,13 @@ constexpr Column columns[] = {
      "lanes computed over hairs iterated, in whole corrections; above 1: lanes "
      "without hairs"},
     {"retried_share", "share of the steps of hairs that needed damped corrections"},
-    {"lanes_of_retries", "share of all lanes used by these retries"},
+    {"retry_lane_share", "share of all lanes used by these retries"},
     {"in_parts_per_step", "iterations of shorter steps, where damped ones failed"},
-    {"lost", "hairs without a solution; the first one's step and reason on stderr"},
+    {"failed", "hairs without a solution; the first one's step and reason on stderr"},
     {"difference_rel",
      "largest distance of a point from the run in double precision, over the "
      "length; every 97th hair"},
-    {"state", "checksum of all states at the end: equal bits, equal checksum"},
+    {"state_hash", "checksum of all states at the end: equal bits, equal checksum"},
 };
 
 constexpr Parameter own_settings[] = {
@@ -159,8 +159,8 @@ std::vector<Case> cases(const CommandLine& line) {
     identity.set("integrator", std::string(work.kind.integrator)).set("dt_s", work.dt);
     identity.set("strands", static_cast<int>(work.strands));
     identity.set("elements", work.elements);
-    identity.set("bits", work.pack.number == HeadNumber::float64 ? 64 : 32);
-    identity.set("lanes", work.pack.lanes).set("threads", work.threads);
+    identity.set("precision", work.pack.number == HeadNumber::float64 ? 64 : 32);
+    identity.set("simd_width", work.pack.lanes).set("threads", work.threads);
     identity.set("effects",
                  std::string(names_of_acting[static_cast<std::size_t>(work.acting)]));
     all.push_back({identity, [work](Row& row, const auto&) { run_head(work, row); }});
@@ -203,7 +203,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (!row.ok()) continue;
     // Its single corrections gain energy on what is stiff, and have no more to try.
     if (row.text("integrator") != "linearly_implicit_midpoint") {
-      lost = std::max(lost, row.number("lost"));
+      lost = std::max(lost, row.number("failed"));
     }
     if (row.has("lanes_per_iteration") && row.number("threads") == 1) {
       double& most = waste[row.number("dt_s") > 1.0 / 120 ? 1 : 0];
@@ -211,20 +211,20 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     }
     // By methods that damp: rounding of others goes on. In long steps it decides between
     // several solutions.
-    if (row.number("bits") == 32 && row.number("dt_s") <= 1.0 / 120 &&
+    if (row.number("precision") == 32 && row.number("dt_s") <= 1.0 / 120 &&
         row.text("integrator").ends_with("_euler")) {
       narrow = std::max(narrow, row.number("difference_rel"));
     }
     for (const Row& other : rows) {
       if (!other.ok() || &other == &row) continue;
       bool same = true;
-      for (const char* column :
-           {"model", "integrator", "dt_s", "strands", "elements", "bits", "effects"}) {
+      for (const char* column : {"model", "integrator", "dt_s", "strands", "elements",
+                                 "precision", "effects"}) {
         same = same && row.text(column) == other.text(column);
       }
       if (!same) continue;
       ++compared;
-      if (row.text("state") != other.text("state")) ++different;
+      if (row.text("state_hash") != other.text("state_hash")) ++different;
     }
   }
   const std::string bits = "any number of lanes and threads gives the same bits";

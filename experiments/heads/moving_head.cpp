@@ -144,12 +144,12 @@ void run_head(const Work& work, Row& row) {
             share(done.iterations + done.again_iterations, done.steps));
     row.set("lanes_per_iteration", share(done.lanes, done.iterations));
     row.set("retried_share", share(done.retried, done.steps));
-    row.set("lanes_of_retries", share(done.again_lanes, done.lanes + done.again_lanes));
+    row.set("retry_lane_share", share(done.again_lanes, done.lanes + done.again_lanes));
     row.set("in_parts_per_step", share(done.in_parts, done.steps));
   }
   int lost = 0;
   for (std::size_t k = 0; k < work.strands; ++k) lost += all.lost(k) ? 1 : 0;
-  row.set("lost", lost);
+  row.set("failed", lost);
   if (const auto losses = all.losses(); !losses.empty()) {
     const models::HeadLoss& first = losses.front();
     fmt::print(stderr, "hair {} is lost in step {}, at {} s: {}\n", first.strand,
@@ -158,7 +158,7 @@ void run_head(const Work& work, Row& row) {
   // Few hairs alone lack the neighbours that the others have.
   if (work.acting != Acting::interaction)
     row.set("difference_rel", difference(work, taken, x));
-  row.set("state", fmt::format("{:016x}", all.hash()));
+  row.set("state_hash", fmt::format("{:016x}", all.hash()));
 }
 
 }  // namespace tress::experiments::heads

@@ -36,7 +36,7 @@ struct Named {
 
 /// M = dr/da, D = dr/dv, K = dr/dq, the step's M + h D + h^2 K of backward Euler, and
 /// with constraints G = dg/dq and C = d(G^T lambda)/dq. From the sparse form where the
-/// system has one, so with the tangent that the scene chooses; else of the residual
+/// system has one, so with the Jacobian that the scene chooses; else of the residual
 /// itself.
 std::vector<Named> matrices_of(Moment& moment, double h);
 

@@ -29,16 +29,16 @@ struct Cheapest {
   bool complete;                // false: the work ran out before all were tried
 };
 
-/// For one model and one integrator, when all combinations are to be compared and the
-/// answer must be the same on every machine. For the method that is robustly fastest on
-/// one machine's clock see cost_of_accuracy's Search.
-///
 /// Finds the run of least work whose error is at most the target: for every number of
-/// elements the longest step that meets it. A number of elements is abandoned when
-/// halving the step reduces an error near the target by less than a fifth (the remaining
-/// error is not temporal), or takes more work than the best run so far. Work decides
-/// rather than time, so that the answer is the same on every machine. `run` may stop at
-/// most_work: beyond it the run cannot be the best, or the search is over.
+/// elements the longest step that meets it. For one model and one integrator, when all
+/// combinations are compared and the answer must be the same on every machine. For the
+/// method that is robustly fastest on one machine's clock see cost_of_accuracy's Search.
+///
+/// A number of elements is abandoned when halving the step reduces an error near the
+/// target by less than a fifth: the remaining error is not temporal. It is also abandoned
+/// when halving takes more work than the best run so far. Work decides rather than time,
+/// so that the answer is the same on every machine. `run` may stop at most_work: beyond
+/// it the run cannot be the best, or the search is over.
 Cheapest cheapest_run(
     const CheapSearch& search,
     const std::function<CheapRun(int elements, double dt, double most_work)>& run);

@@ -22,7 +22,7 @@ Eigen::MatrixXd tangent_of_residual(System& system, const Instant& at, Weights w
 /// M = dr/da at (t, q): from the sparse form if the system has one, else as above.
 Eigen::MatrixXd dense_mass(System& system, double t, In q);
 
-/// K = dr/dq at v = a = 0: from the sparse form, which then must have the exact tangent,
+/// K = dr/dq at v = a = 0: from the sparse form, which then must have the exact Jacobian,
 /// else as above.
 Eigen::MatrixXd dense_stiffness(System& system, double t, In q);
 

@@ -71,7 +71,7 @@ LinearModes linear_modes(System& system, In q) {
     modes.slowest_rad_s = std::min(modes.slowest_rad_s, std::abs(s));
     if (std::abs(square.imag()) > real * std::abs(square)) ++modes.complex_modes;
     if (std::abs(s.real()) > real * std::abs(s)) {
-      modes.growth_1_s = std::max(modes.growth_1_s, std::abs(s.real()));
+      modes.growth_per_s = std::max(modes.growth_per_s, std::abs(s.real()));
     }
   }
   return modes;

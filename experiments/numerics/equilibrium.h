@@ -14,9 +14,10 @@ struct AtRest {
   std::vector<double> q;
 };
 
-/// Newton's iteration on r(q) = 0 at v = a = 0, from the initial state, with gravity
-/// raised in steps to the value in `parameters`; for models without constraints and with
-/// an exact tangent. Throws std::runtime_error when it does not converge.
+/// Computes the equilibrium r(q) = 0 at v = a = 0 by Newton's iteration from the initial
+/// state, with gravity raised in steps to the value in `parameters`. For models without
+/// constraints and with an exact Jacobian. Throws std::runtime_error when it does not
+/// converge.
 AtRest at_rest(const ModelEntry& model, const Parameters& parameters);
 
 /// Small undamped motions about an equilibrium q, x'' = -M^-1 K x with K = dr/dq: x ~
@@ -24,7 +25,7 @@ AtRest at_rest(const ModelEntry& model, const Parameters& parameters);
 /// symmetric positive definite; in general they may be arbitrary.
 struct LinearModes {
   double slowest_rad_s = 0;  // least |s|
-  double growth_1_s = 0;     // largest real part of s; 0: no growth
+  double growth_per_s = 0;   // largest real part of s; 0: no growth
   int complex_modes = 0;     // number of non-real eigenvalues
 };
 

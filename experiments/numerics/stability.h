@@ -64,10 +64,10 @@ class StabilityJudge {
   StabilityRun run_;
 };
 
-/// Steps of exactly `options.step` until `t_end` is reached or passed, so that the
-/// requested step is judged, not one that divides t_end; or by `options.tolerance` to
-/// t_end; stops when a bound is violated.
-/// Empty when Options::max_work is used up first. Throws as StabilityJudge.
+/// Runs steps of exactly `options.step` until `t_end` is reached or passed, so that the
+/// requested step is judged, not one that divides t_end. With `options.tolerance` it runs
+/// adaptively to t_end. Stops when a bound is violated. Empty when Options::max_work is
+/// used up first. Throws as StabilityJudge.
 std::optional<StabilityRun> judge_run(std::string_view integrator, System& system,
                                       const Options& options, const State& start,
                                       double t_end, const StabilityBounds& bounds);

@@ -27,9 +27,9 @@ TipSignal run_tip_signal(std::string_view integrator, System& system,
 std::vector<double> displacement(const TipSignal& signal, In times);
 
 /// Half the difference of successive turning points, midway between them. Turning points
-/// of ripples on a larger swing are skipped, as in rainflow counting (ASTM E1049): those
-/// between which the signal moves less than before and after, and, at the beginning, less
-/// than after.
+/// of ripples on a larger swing are skipped, as in rainflow counting (ASTM E1049). These
+/// are the ones between which the signal moves less than before and after, and, at the
+/// beginning, less than after.
 struct Swings {
   std::vector<double> t, half;  // s, m
 };

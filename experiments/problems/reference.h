@@ -17,9 +17,10 @@ struct ErrorNorms {
 /// `scale` has one entry per value (System::scale), or one for all.
 ErrorNorms error_norms(In value, In reference, In scale);
 
-/// Significant correct digits, -log10 of the largest componentwise relative error, as
-/// defined by the Test Set for IVP Solvers (Mazzia and Magherini, Bari, release 2.4);
-/// entries whose reference is zero are left out, as there. At most 16.
+/// Returns the significant correct digits, -log10 of the largest componentwise relative
+/// error. The definition is that of the Test Set for IVP Solvers (Mazzia and Magherini,
+/// Bari, release 2.4); entries whose reference is zero are left out, as there. At most
+/// 16.
 double scd(In value, In reference);
 
 /// Two independent references for one answer and their distance. An error is trusted when

@@ -46,11 +46,11 @@ Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry)
   return scene;
 }
 
-std::set<std::string_view> scene_tangents(const Scene& scene,
-                                          std::string_view integrator) {
-  if (first_word(*scene.model, "tangent").empty()) return {""};
-  std::set<std::string_view> all{scene.model_options.word("tangent")};
-  if (integrator == "semi_implicit_euler") all.insert(usual_tangent(*scene.model));
+std::set<std::string_view> scene_jacobians(const Scene& scene,
+                                           std::string_view integrator) {
+  if (first_word(*scene.model, "jacobian").empty()) return {""};
+  std::set<std::string_view> all{scene.model_options.word("jacobian")};
+  if (integrator == "linearly_implicit_euler") all.insert(usual_tangent(*scene.model));
   return all;
 }
 

@@ -21,17 +21,18 @@ struct SceneFile {
 /// does, on a scene whose model brings its own geometry, and on two files of one name.
 std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files);
 
-/// The scene simulated by this model and integrator. A model other than the scene's own
-/// has its default options; a formulation that the integrator cannot take on is replaced
-/// by the one it prefers; a tolerance is kept if it controls its error. Throws InputError
-/// where the model cannot do the scene or the integrator cannot drive the model.
+/// Returns the scene simulated by this model and integrator. A model other than the
+/// scene's own has its default options. A formulation that the integrator does not
+/// support is replaced by the one it prefers; a tolerance is kept if the integrator
+/// controls its error. Throws InputError where the model cannot do the scene or the
+/// integrator cannot drive the model.
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
 
-/// The tangents to try on the scene's own model: the scene's, and the usual one for the
+/// The Jacobians to try on the scene's own model: the scene's, and the usual one for the
 /// method that solves only once a step; {""} if the model has no choice. They are views
 /// into the scene and the catalogue.
-std::set<std::string_view> scene_tangents(const Scene& scene,
-                                          std::string_view integrator);
+std::set<std::string_view> scene_jacobians(const Scene& scene,
+                                           std::string_view integrator);
 
 /// Element count of the strand with the most elements.
 std::size_t most_elements(const Scene& scene);

@@ -34,7 +34,8 @@ bool has_word(const ModelEntry& model, std::string_view key, std::string_view wo
 }
 
 std::string_view usual_tangent(const ModelEntry& model) {
-  return has_word(model, "tangent", "stiff") ? "stiff" : first_word(model, "tangent");
+  return has_word(model, "jacobian", "elastic") ? "elastic"
+                                                : first_word(model, "jacobian");
 }
 
 void set_known(

@@ -19,7 +19,8 @@ std::string_view first_word(const ModelEntry& model, std::string_view key);
 
 bool has_word(const ModelEntry& model, std::string_view key, std::string_view word);
 
-/// Tangent of the semi-implicit step: the stiff one, or the default of models without it.
+/// Jacobian of the linearly implicit step: the stiff one, or the default of models
+/// without it.
 std::string_view usual_tangent(const ModelEntry& model);
 
 /// Sets those parameters that the model has.

@@ -52,11 +52,11 @@ using TipsOf =
     std::function<std::vector<double>(std::string_view model, std::string_view integrator,
                                       int elements, const Options& options)>;
 
-/// The continuous rod: one model with the finest mesh and half the elements, with
-/// implicit_midpoint, each at the finest step and twice that, extrapolated to zero step
-/// (order 2) and then to zero element length (order 2; remainders of higher order are
-/// already small). The other side is the same for the other model with
-/// generalized_alpha.
+/// Computes the tips of the continuous rod. One side is one model with the finest mesh
+/// and half the elements, with implicit_midpoint, each at the finest step and twice that.
+/// It is extrapolated to zero step (order 2) and then to zero element length (order 2;
+/// remainders of higher order are already small). The other side is the same for the
+/// other model with generalized_alpha.
 TipReference converged_rod(const TipsOf& tips, double length, const RodModels& models,
                            const Finest& finest = {});
 

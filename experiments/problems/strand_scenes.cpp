@@ -33,12 +33,12 @@ std::vector<StrandScene> make_scenes() {
                   {"root_tangent", "up"},
                   {"length_m", "0.12"},
                   {"initial", "bent"},
-                  {"initial_curvature_1_m", "0.5"}},
+                  {"initial_curvature_per_m", "0.5"}},
                  2,
                  any_step,
                  false});
   all.push_back({"shake",
-                 "as release, root shaken by 5 cm at 3 Hz",
+                 "release with the root shaken by 5 cm at 3 Hz",
                  {{"motion", "shake"},
                   {"root_tangent", "x"},
                   {"initial", "natural"},
@@ -48,7 +48,7 @@ std::vector<StrandScene> make_scenes() {
                  any_step,
                  true});
   all.push_back({"shake_rotate",
-                 "as shake, on a head that turns by 0.5 rad",
+                 "shake on a head that turns by 0.5 rad",
                  {{"motion", "shake_rotate"},
                   {"root_tangent", "x"},
                   {"initial", "natural"},
@@ -68,8 +68,8 @@ std::vector<StrandScene> make_scenes() {
                   {"initial", "natural"},
                   {"amplitude_m", "0.05"},
                   {"frequency_hz", "5"},
-                  {"natural_curvature_1_m", "100"},
-                  {"natural_twist_1_m", "30"}},
+                  {"natural_curvature_per_m", "100"},
+                  {"natural_twist_per_m", "30"}},
                  1,
                  0.1 / 3,
                  true});
@@ -98,7 +98,7 @@ std::vector<StrandScene> make_scenes() {
                   {"gravity_m_s2", "9.81"},
                   {"amplitude_m", "0.05"},
                   {"frequency_hz", "1"},
-                  {"mass_damping_1_s", "2"}},
+                  {"mass_damping_per_s", "2"}},
                  2,
                  any_step,
                  true});
@@ -192,8 +192,8 @@ StabilityBounds release_bounds(System& system, const State& start, double t_end)
   options.step = 1e-3;
   const double at_start = energetics.energy(0, start.q, start.v).total();
   double kinetic = 0, gain = 0;
-  const Simulation run = simulate("semi_implicit_euler", system, options, start, t_end,
-                                  [&](double t, In q, In v) {
+  const Simulation run = simulate("linearly_implicit_euler", system, options, start,
+                                  t_end, [&](double t, In q, In v) {
                                     const Energy energy = energetics.energy(t, q, v);
                                     kinetic = std::max(kinetic, energy.kinetic);
                                     gain = std::max(gain, energy.total() - at_start);

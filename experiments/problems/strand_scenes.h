@@ -25,18 +25,18 @@ std::span<const StrandScene> strand_scenes();
 /// Throws InputError naming the nearest scene if there is no such scene.
 const StrandScene& find_strand_scene(std::string_view name);
 
-/// The initial state with every rate perturbed by up to 1e-3 of its typical size (a
-/// millionth of the energy), so that symmetry hides no instability: a straight strand
-/// released in a plane never twists. Projected onto the constraints, if any.
+/// Returns the initial state with every rate perturbed by up to 1e-3 of its typical size
+/// (a millionth of the energy), so that symmetry hides no instability. A straight strand
+/// released in a plane never twists otherwise. Projected onto the constraints, if any.
 State perturbed_start(System& system);
 
-/// Bounds of a stable run of the scene, for `system` made with `parameters`.
+/// Returns bounds of a stable run of the scene, for `system` made with `parameters`.
 ///
 /// Passive: 1 % of the energy that the scene can convert to motion, which is that of the
 /// start above the strand hanging straight and unloaded, E(0) + m g L/2.
 ///
 /// Driven: the tip stays within 1.001 L of the root and below strand_speed_bound.
-/// Inextensible models cannot violate the first: it detects instabilities of models with
+/// Inextensible models cannot violate the first. It detects instabilities of models with
 /// stretch, and is ten times the strain rho a L/E that 100 g put on a hair of 10 cm.
 StabilityBounds stability_bounds(const StrandScene& scene, const Parameters& parameters,
                                  System& system);
@@ -46,12 +46,12 @@ StabilityBounds stability_bounds(const StrandScene& scene, const Parameters& par
 /// InputError when those are themselves unstable.
 StabilityBounds release_bounds(System& system, const State& start, double t_end);
 
-/// Upper bound on the speed (m/s) of the tip relative to the root until t_end, for any
-/// motion of the strand. In the frame of the clamp the clamp does no work. The working
-/// forces there are gravity and, per mass, at most f = |a| + (|alpha| + omega^2) L from
-/// the root's motion; a turning clamp changes the potential of gravity by at most |omega
-/// x g| L per mass and time. With u^2/2 the energy per mass above that of the strand
-/// hanging straight and unloaded, u u' <= u f + |omega x g| L, hence
+/// Returns an upper bound on the speed (m/s) of the tip relative to the root until t_end,
+/// for any motion of the strand. In the frame of the clamp the clamp does no work. The
+/// working forces there are gravity and, per mass, at most f = |a| + (|alpha| + omega^2)
+/// L from the root's motion. A turning clamp changes the potential of gravity by at most
+/// |omega x g| L per mass and time. With u^2/2 the energy per mass above that of the
+/// strand hanging straight and unloaded, u u' <= u f + |omega x g| L, hence
 ///
 ///     u <= sqrt(2 g L + 2 int |omega x g| L dt) + int f dt,
 ///

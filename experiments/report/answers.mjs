@@ -23,14 +23,14 @@ const percent = (part) =>
 const seconds = (s) => (typeof s === 'number' ? format_time(s) : '');
 
 function table(heads, body) {
-  if (body.length === 0) return '<p>No row: see the table beside this page.</p>';
+  if (body.length === 0) return '<p>No row: see the table next to this page.</p>';
   const line = (cells, tag) =>
     `<tr>${cells.map((c) => `<${tag}>${escape_html(c)}</${tag}>`).join('')}</tr>`;
   return `<table><thead>${line(heads, 'th')}</thead>
 <tbody>${body.map((cells) => line(cells, 'td')).join('\n')}</tbody></table>`;
 }
 
-const method = (row) => `${row.integrator}${row.tangent ? `, tangent ${row.tangent}` : ''}`;
+const method = (row) => `${row.integrator}${row.jacobian ? `, jacobian ${row.jacobian}` : ''}`;
 
 function stable_steps() {
   const rows = rows_of('stability_limit').filter((row) => row.study !== 'tolerance');
@@ -95,9 +95,9 @@ function effects() {
 }
 
 const configuration = (row) =>
-  [row.model, row.modes, row.tangent && `tangent ${row.tangent}`, row.options,
+  [row.model, row.modes, row.jacobian && `jacobian ${row.jacobian}`, row.options,
     row.elements && `${row.elements} elements`, row.integrator,
-    typeof row.tolerance === 'number' && `tolerance ${row.tolerance}`,
+    typeof row.position_tol_rel === 'number' && `tolerance ${row.position_tol_rel}`,
     typeof row.dt_s === 'number' && `dt ${seconds(row.dt_s)}`].filter(Boolean).join(', ');
 
 function accuracy() {
@@ -119,7 +119,7 @@ writeFileSync(join(folder, 'answers.html'), plain_page(`${name}: what the experi
 <p>The largest step of each method such that the scene as a whole keeps what physics allows, and no step
 needs shorter ones in its place.</p>
 ${stable_steps()}
-<p>By tolerance (error over the length): the loosest such that it and all tighter ones tried were stable.</p>
+<p>Adaptive runs (position_tol_rel: error over the length): the loosest such that it and all tighter ones tried were stable.</p>
 ${tolerances()}
 <h2>Which models survive it</h2>
 <p>Every model, at the scene's step and at those of the hard cases: each step has a solution, the guard of simulations

@@ -8,6 +8,7 @@
 
 #include "contract/input_error.h"
 #include "contract/parameters.h"
+#include "contract/renamed.h"
 #include "experiments/run/options_file.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/parse.h"
@@ -97,24 +98,6 @@ std::string default_text(const Parameter& p) {
   if (!p.choices.empty()) return std::string(p.choices);
   const bool one_number = !p.text && !p.rows && p.components == 1;
   return one_number ? fmt::format("{}", p.number) : p.default_text();
-}
-
-/// CLI11's messages name the offending argument but not the remedy.
-[[noreturn]] void refuse(const CLI::App& app, std::string_view name, int argc,
-                         const char* const* argv, const CLI::ParseError& error) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  const std::string help = fmt::format("{} --help shows the options", name);
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word =
-        std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
-    const bool option = word.starts_with("--") && word.size() > 2;
-    if (!option || std::find(known.begin(), known.end(), word) != known.end()) continue;
-    throw InputError(fmt::format("unknown option '{}'", word), "command line",
-                     suggestion(word, known, help));
-  }
-  throw InputError(error.what(), "command line", help);
 }
 
 ProgressMode parse_progress(std::string_view text) {
@@ -266,6 +249,33 @@ std::string parameter_lines(std::span<const Parameter> parameters) {
   return text;
 }
 
+void refuse_arguments(const CLI::App& app, std::string_view name, int argc,
+                      const char* const* argv, const CLI::ParseError& error) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  std::string help = fmt::format("{} --help shows the options", name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word =
+        std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
+    const bool option = word.starts_with("--") && word.size() > 2;
+    if (!option || std::ranges::count(known, word) > 0) continue;
+    throw InputError(fmt::format("unknown option '{}'", word), "command line",
+                     suggestion(word, known, help));
+  }
+  // A value that has been renamed is accepted by the option under its present name.
+  const std::string message = error.what();
+  for (int i = 1; i < argc; ++i) {
+    for (const auto& [before, now] : renamed_names) {
+      const bool offered = message.find(std::string(now)) != std::string::npos;
+      if (before == argv[i] && offered) {
+        help = fmt::format("'{}' is called '{}' now", before, now);
+      }
+    }
+  }
+  throw InputError(message, "command line", help);
+}
+
 CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
                                const char* const* argv, std::span<const OwnOption> own,
@@ -285,7 +295,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   } catch (const CLI::CallForVersion& version) {
     throw Answer(std::string(version.what()) + "\n");
   } catch (const CLI::ParseError& error) {
-    refuse(app, name, argc, argv, error);
+    refuse_arguments(app, name, argc, argv, error);
   }
   line.argv.assign(argv, argv + argc);
   interpret(app, raw, own, line);

@@ -12,6 +12,11 @@
 #include "contract/layers.h"
 #include "contract/parameters.h"
 
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
+
 namespace tress::experiments {
 
 enum class ProgressMode { automatic, none, json };
@@ -75,6 +80,11 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::span<const OwnOption> own = {},
                                std::span<const Unused> unused = {},
                                std::span<const Parameter> keys = {});
+
+/// Throws an InputError for a command line that `app` cannot parse. The message names the
+/// offending argument; the remedy is its present name, the nearest option or --help.
+[[noreturn]] void refuse_arguments(const CLI::App& app, std::string_view name, int argc,
+                                   const char* const* argv, const CLI::ParseError& error);
 
 /// "name   help [default]", a line for each.
 std::string parameter_lines(std::span<const Parameter> parameters);

@@ -77,10 +77,12 @@ struct Experiment {
   std::function<void(const CommandLine&, const std::vector<Row>&)> conclude = {};
 };
 
-/// The whole main(): options, --list, sweep, table, manifest; returns the exit code. 0:
-/// all rows ok, no claim broken; 1: internal error; 2: usage or input error; 3: some rows
-/// failed, or a judged claim is broken or changed (the table is complete); 130:
-/// interrupted (resumable).
+/// Runs the whole main(): options, --list, sweep, table, manifest. Returns the exit code:
+/// - 0: all rows ok, no claim broken.
+/// - 1: internal error.
+/// - 2: usage or input error.
+/// - 3: some rows failed, or a judged claim is broken or changed (the table is complete).
+/// - 130: interrupted (resumable).
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
 }  // namespace tress::experiments

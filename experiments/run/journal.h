@@ -23,7 +23,8 @@ class Journal {
   Journal(std::string file, const RunKey& key, Mode mode);
 
   const std::vector<Row>& rows() const { return rows_; }  // found on opening
-  void append(const Row& row);                            // written at once
+  /// Appends a row and writes it at once.
+  void append(const Row& row);
   void remove();
 
  private:

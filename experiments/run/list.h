@@ -9,9 +9,9 @@
 
 namespace tress::experiments {
 
-/// Output of --list: models with their parameters, integrators, the keys of the
-/// experiment and of the integrators, and which integrator drives which model under which
-/// constraint formulation, with the reason for every gap.
+/// Returns the output of --list: models with their parameters, integrators, and the keys
+/// of the experiment and of the integrators. It also lists which integrator drives which
+/// model under which constraint formulation, with the reason for every gap.
 std::string catalogue_text(std::span<const ModelEntry> models,
                            std::span<const IntegratorEntry> integrators,
                            std::span<const Parameter> experiment_settings);

@@ -16,8 +16,8 @@ namespace tress::experiments {
 class Manifest {
  public:
   /// Records machine and SUNDIALS before the work starts. Warns on standard error when
-  /// SUNDIALS is a slow build, the machine is busy, or the source tree has another commit
-  /// checked out than the one that this program was built from.
+  /// SUNDIALS is a slow build or the machine is busy. Also warns when the source tree has
+  /// another commit checked out than that of the program's build.
   Manifest(const Experiment& experiment, const CommandLine& line);
 
   /// A file that the work depends on, stored with its text and checksum.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "contract/input_error.h"
+#include "contract/renamed.h"
 #include "experiments/run/manifest.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/files.h"
@@ -145,14 +146,20 @@ void check_header(const CsvTable& table, std::span<const Column> columns,
   const std::vector<std::string> expected = header(columns);
   if (table.header == expected) return;
   std::string first = "fewer columns";
+  std::string remedy = "give a table of this experiment and version";
   for (std::size_t i = 0; i < table.header.size(); ++i) {
     if (i >= expected.size() || table.header[i] != expected[i]) {
       first = fmt::format("column {} is '{}'", i + 1, table.header[i]);
+      if (i < expected.size() && renamed(table.header[i], expected[i])) {
+        remedy =
+            fmt::format("it is called '{}' now: ./tress rename {} converts the table",
+                        expected[i], file);
+      }
       break;
     }
   }
   throw InputError("the table has other columns than this experiment writes: " + first,
-                   file + ":1", "give a table of this experiment and version");
+                   file + ":1", remedy);
 }
 
 Merged merge(std::span<const std::string> files, std::span<const Column> columns,

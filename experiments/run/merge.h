@@ -17,10 +17,13 @@ struct Merged {
 /// Joins tables of one experiment. Among rows with the same run_id an ok row wins over a
 /// failed one, otherwise the first wins; two ok rows that differ outside the timing
 /// columns are a conflict. Rows come in order of first appearance; those of parts
-/// (--shard) as one process would have written them. Throws InputError when a table's
-/// header is not the experiment's; when a part is missing or given twice, or was made by
-/// other code or, by its manifest, with other options than `settings`; and when some
-/// tables are parts and others are not.
+/// (--shard) as one process would have written them. Throws InputError in these cases:
+///
+/// - A table's header is not the experiment's.
+/// - A part is missing or given twice.
+/// - A part was made by other code or, by its manifest, with other options than
+///   `settings`.
+/// - Some tables are parts and others are not.
 Merged merge(std::span<const std::string> files, std::span<const Column> columns,
              std::string_view settings);
 

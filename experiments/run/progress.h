@@ -15,9 +15,9 @@ namespace tress::experiments {
 /// A program that works tells something at least that often.
 inline constexpr std::chrono::seconds between_lines{5};
 
-/// Progress of a sweep on standard error: a bar with the remaining time on a terminal,
-/// else a plain line every five seconds; with `json` one object per row, and every five
-/// seconds without one; nothing with `none`.
+/// Progress of a sweep on standard error. A terminal shows a bar with the remaining time,
+/// otherwise a plain line is printed every five seconds. `json` prints one object per
+/// row, and every five seconds without one; `none` prints nothing.
 class Progress {
  public:
   Progress(ProgressMode mode, std::string_view name, std::size_t rows);

@@ -11,9 +11,9 @@
 
 namespace tress::experiments {
 
-/// Assigns each `--set key=value` to its owner: the first of the experiment's own
-/// settings, the integrators' options and the parameters of the selected models (all
-/// models when none is selected) that has the key. The constructor checks everything.
+/// Assigns each `--set key=value` to its owner, the first that has the key. Owners are
+/// the experiment's own settings, the integrators' options, and the parameters of the
+/// selected models (all models when none is selected). The constructor checks everything.
 class Settings {
  public:
   /// Throws InputError on an unknown model, integrator or key (naming the nearest valid

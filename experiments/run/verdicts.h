@@ -16,10 +16,9 @@ struct KnownLimit {
   std::string_view reason;
 };
 
-/// The claims about a finished table: printed when it is written and stored in the
-/// manifest for the report. A claim refers to certain rows and is judged where they were
-/// run; a time, or a ratio of times, depends on the machine and is a figure, never a
-/// claim.
+/// Claims about a finished table: printed when it is written and stored in the manifest
+/// for the report. A claim refers to certain rows and is judged where they were run. A
+/// time, or a ratio of times, depends on the machine and is a figure, never a claim.
 class Verdicts {
  public:
   enum class State {

@@ -1,4 +1,4 @@
-// What does a step cost against the number of elements: by solver, by tangent, by modes,
+// What does a step cost against the number of elements: by solver, by Jacobian, by modes,
 // and on trees? Beside the published table of frames per second.
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ constexpr Column columns[] = {
     {"structure", "straight strand, kind of tree, or scene file"},
     {"model", "catalogue id"},
     {"solver", "linear solver of the model for S x = b; head: SIMD lanes"},
-    {"tangent", "terms of S (Jacobian approximation)"},
+    {"jacobian", "terms of S (Jacobian approximation)"},
     {"modes", "unknowns per element"},
     {"grows",
      "quantity that the series increases, for a scene file: elements or strands"},
@@ -39,13 +39,14 @@ constexpr Column columns[] = {
      "device that took the steps, for a scene file as a head: a GPU or cpu; why "
      "not a GPU"},
     {"cost_per_step_s",
-     "wall time of a semi-implicit step of the released strand, or of the scene", true},
+     "wall time of a linearly implicit step of the released strand, or of the scene",
+     true},
     {"cost_per_element_step_s", "wall time of a step over the number of elements", true},
     {"exponent", "p of cost ~ N^p of the series: N elements from 20 on, or strands",
      true},
     {"dt_max_s", "largest stable step up to a frame, 1/30 s; solvers share it"},
     {"fps", "frames of 1/30 s computed per second with that step", true},
-    {"seed_fps", "published frames per second, on hardware of 2008: compare ratios"},
+    {"published_fps", "published frames per second, on hardware of 2008: compare ratios"},
 };
 
 constexpr double frame = 1.0 / 30;  // s
@@ -61,18 +62,18 @@ Options step_of(double h, System& system) {
   Options options;
   options.step = h;
   options.formulation =
-      usable_formulations(find_integrator("semi_implicit_euler"), system).front();
+      usable_formulations(find_integrator("linearly_implicit_euler"), system).front();
   return options;
 }
 
 Moving moving(const ScalingCase& c, const Parameters& parameters) {
   Parameters cheapest = parameters;
   set_known(cheapest, {{"solver", first_word(*c.model, "solver")}});
-  if (has_word(*c.model, "tangent", "stiff")) cheapest.set("tangent", "stiff");
+  if (has_word(*c.model, "jacobian", "elastic")) cheapest.set("jacobian", "elastic");
   const auto system = c.model->make(cheapest);
   constexpr double t = 0.05;
-  Simulation run = simulate("semi_implicit_euler", *system, step_of(timed_step, *system),
-                            initial_state(*system), t);
+  Simulation run = simulate("linearly_implicit_euler", *system,
+                            step_of(timed_step, *system), initial_state(*system), t);
   return {t, std::move(run.state)};
 }
 
@@ -81,7 +82,7 @@ Moving moving(const ScalingCase& c, const Parameters& parameters) {
 double step_cost(System& system, const Moving& from, double time_s, int repeat) {
   constexpr double batch_s = 2e-3;
   const auto method =
-      make_integrator("semi_implicit_euler", system, step_of(timed_step, system));
+      make_integrator("linearly_implicit_euler", system, step_of(timed_step, system));
   const auto run = [&](long steps) {
     Status s = method->start(from.t, from.state.q, from.state.v);
     if (s == Status::ok) {
@@ -108,7 +109,7 @@ StepLimit largest_step(const ScalingCase& c, const Parameters& parameters) {
           ? stability_bounds(find_strand_scene("release"), cheapest, *system)
           : release_bounds(*system, start, t_end);
   constexpr double most_work = 1e9;
-  StabilityRuns tried("semi_implicit_euler", *system, step_of(frame, *system), start,
+  StabilityRuns tried("linearly_implicit_euler", *system, step_of(frame, *system), start,
                       t_end, bounds, most_work);
   return find_step_limit({.coarsest = frame}, [&](double dt) -> std::optional<Broken> {
     const auto run = tried.judge(dt);
@@ -130,7 +131,7 @@ void measure(const Work& work, Row& row) {
   const double cost =
       step_cost(*system, moving(c, work.parameters), work.time_s, work.repeat);
   row.set("cost_per_step_s", cost).set("cost_per_element_step_s", cost / c.elements);
-  if (const auto seed = c.seed_fps()) row.set("seed_fps", *seed);
+  if (const auto seed = c.published_fps()) row.set("published_fps", *seed);
   if (!c.in_seed_table()) return;
 
   const StepLimit limit = largest_step(c, work.parameters);
@@ -202,8 +203,8 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
 /// A model that cannot represent the scene of a file.
 bool finding(const Row& row) { return row.status() == "refused"; }
 
-constexpr Unused unused[] = {{"integrators", "steps are those of semi_implicit_euler"},
-                             not_random};
+constexpr Unused unused[] = {
+    {"integrators", "steps are those of linearly_implicit_euler"}, not_random};
 
 }  // namespace
 }  // namespace tress::experiments::scaling

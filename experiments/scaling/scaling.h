@@ -25,7 +25,7 @@ inline constexpr double timed_step = 1e-4;
 struct ScalingCase {
   std::string_view structure;
   const ModelEntry* model;
-  std::string_view solver, tangent, modes;
+  std::string_view solver, jacobian, modes;
   int elements;
 
   Row identity() const;
@@ -36,20 +36,21 @@ struct ScalingCase {
   bool in_seed_table() const;
   /// Published frames per second at 30 a second [Bertails-Descoubes 2010, "Performance
   /// results"], on hardware of 2008; empty where not given.
-  std::optional<double> seed_fps() const;
+  std::optional<double> published_fps() const;
 };
 
 /// --set keys that select rows.
 std::span<const Parameter> scaling_settings();
 
-/// The rows that the command line and its settings select: every solver, tangent and set
-/// of modes over the sizes, dense matrices up to a size limit, and the five trees.
+/// Returns the rows that the command line and its settings select. They are every solver,
+/// Jacobian and set of modes over the sizes, dense matrices up to a size limit, and the
+/// five trees.
 std::vector<ScalingCase> scaling_cases(const CommandLine& line, const Settings& settings);
 
-/// Rows for scene files: the cost of a semi-implicit step by every selected strand model,
-/// against the number of elements (of one typical strand; of all, where they touch each
-/// other) and against the number of strands with the file's discretisation. Throws
-/// InputError on scenes without strands and on two of one name.
+/// Returns rows for scene files: the cost of a linearly implicit step by every selected
+/// strand model. One series is against the number of elements (of one typical strand; of
+/// all, where they touch each other), one against the number of strands with the file's
+/// discretisation. Throws InputError on scenes without strands and on two of one name.
 std::vector<Case> scene_costs(const CommandLine& line,
                               const std::vector<std::string>& files);
 
@@ -59,18 +60,18 @@ std::vector<std::size_t> growing(std::size_t first, std::size_t factor, std::siz
 /// Sets the cost of a step (s), and the cost per element of all strands of the row.
 void set_cost(double per_step, Row& row);
 
-/// Rows for scene files as heads of hair, by a device or what stands in for it: the cost
-/// of a step of the scene's own model, all strands side by side, against their number.
-/// Throws InputError on a scene that is no head.
+/// Returns rows for scene files as batches, by a device or the CPU in its place. The cost
+/// is that of a step of the scene's own model, all strands in one batch, against their
+/// number. Throws InputError on a scene that cannot run as a batch.
 std::vector<Case> head_costs(const CommandLine& line,
                              const std::vector<std::string>& files, DeviceChoice device);
 
-/// Fills `exponent` of every series of straight strands (same model, solver, tangent and
-/// modes) and of scene files: p of cost ~ N^p, fitted to the measurements from 20
+/// Fills `exponent` of every series of straight strands (same model, solver, Jacobian and
+/// modes) and of scene files. It is p of cost ~ N^p, fitted to the measurements from 20
 /// elements on, or to all numbers of strands, with at least three sizes.
 void add_exponents(std::vector<Row>& rows);
 
-/// Figures of this machine for the super-helix with the stiff tangent: growth of the
+/// Figures of this machine for the super-helix with the elastic Jacobian: growth of the
 /// recursion's cost and cost per element, cost ratio of the composite, and savings from
 /// fewer unknowns.
 void tell_scaling_figures(const std::vector<Row>& rows, Verdicts& verdicts);

@@ -13,7 +13,7 @@ namespace {
 constexpr double first_fitted = 20;
 
 std::string series_of(const Row& row) {
-  return joined(row, {"structure", "model", "solver", "tangent", "modes", "grows"});
+  return joined(row, {"structure", "model", "solver", "jacobian", "modes", "grows"});
 }
 
 /// Trees have a fixed size.
@@ -30,7 +30,7 @@ const Row* stiff(const std::vector<Row>& rows, const Which& which) {
   const auto found = std::ranges::find_if(rows, [&which](const Row& row) {
     return row.ok() && row.text("structure") == which.structure &&
            row.text("model") != "articulated_chain" &&
-           row.text("solver") == which.solver && row.text("tangent") == "stiff" &&
+           row.text("solver") == which.solver && row.text("jacobian") == "elastic" &&
            row.text("modes") == which.modes && row.text("elements") == which.elements;
   });
   return found == rows.end() ? nullptr : &*found;

@@ -18,9 +18,9 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "solver",
      .help = "rows of one solver of the model",
      .choices = "all|recursive|composite|sparse|banded|klu"},
-    {.name = "tangent",
-     .help = "rows of one tangent of the model",
-     .choices = "all|stiff|exact"},
+    {.name = "jacobian",
+     .help = "rows of one Jacobian of the model",
+     .choices = "all|elastic|exact"},
     {.name = "modes",
      .help = "rows of strands with these modes",
      .choices = "all|bend_twist|bend|bend_planar"},
@@ -36,18 +36,18 @@ constexpr Parameter settings_of_rows[] = {
 };
 
 struct Variation {
-  std::string_view model, solver, tangent, modes;
+  std::string_view model, solver, jacobian, modes;
 };
 
 std::vector<Variation> methods_of_strands() {
   std::vector<Variation> all;
   for (const std::string_view solver : {"recursive", "composite", "sparse"}) {
-    for (const std::string_view tangent : {"stiff", "exact"}) {
+    for (const std::string_view jacobian : {"elastic", "exact"}) {
       for (const std::string_view modes : {"bend_twist", "bend", "bend_planar"}) {
-        all.push_back({"super_helix", solver, tangent, modes});
+        all.push_back({"super_helix", solver, jacobian, modes});
       }
       if (solver != "sparse") {
-        all.push_back({"articulated_chain", solver, tangent, "bend_twist"});
+        all.push_back({"articulated_chain", solver, jacobian, "bend_twist"});
       }
     }
   }
@@ -55,7 +55,7 @@ std::vector<Variation> methods_of_strands() {
 }
 
 /// Every other strand model: each of its solvers, or once if it has no choice, with the
-/// stiff tangent if available.
+/// elastic Jacobian if available.
 std::vector<Variation> methods_of_others() {
   const std::vector<Variation> known = methods_of_strands();
   std::vector<Variation> all;
@@ -75,8 +75,8 @@ std::vector<Variation> methods_of_others() {
 }
 
 constexpr Variation methods_of_trees[] = {
-    {"super_helix_tree", "recursive", "stiff", "bend_twist"},
-    {"super_helix_tree", "composite", "stiff", "bend_twist"},
+    {"super_helix_tree", "recursive", "elastic", "bend_twist"},
+    {"super_helix_tree", "composite", "elastic", "bend_twist"},
     {"super_helix_tree", "recursive", "exact", "bend_twist"},
 };
 
@@ -127,7 +127,7 @@ void set_tree(Parameters& p, std::string_view tree) {
 Row ScalingCase::identity() const {
   Row row;
   row.set("structure", structure).set("model", model->id).set("solver", solver);
-  row.set("tangent", tangent).set("modes", modes).set("elements", elements);
+  row.set("jacobian", jacobian).set("modes", modes).set("elements", elements);
   return row;
 }
 
@@ -141,7 +141,7 @@ Parameters ScalingCase::parameters(const Settings& settings) const {
   } else {
     set_tree(p, structure);
   }
-  set_known(p, {{"solver", solver}, {"tangent", tangent}});
+  set_known(p, {{"solver", solver}, {"jacobian", jacobian}});
   if (!modes.empty()) p.set("modes", modes);
   return p;
 }
@@ -150,9 +150,9 @@ bool ScalingCase::in_seed_table() const {
   return modes == "bend_twist" && seed_frames(*this) != nullptr;
 }
 
-std::optional<double> ScalingCase::seed_fps() const {
+std::optional<double> ScalingCase::published_fps() const {
   const SeedFrames* row = seed_frames(*this);
-  if (row == nullptr || !model->id.starts_with("super_helix") || tangent != "stiff" ||
+  if (row == nullptr || !model->id.starts_with("super_helix") || jacobian != "elastic" ||
       modes != "bend_twist") {
     return {};
   }
@@ -171,7 +171,7 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
     return rows.word(key) == "all" || rows.word(key) == word;
   };
   const auto wanted_method = [&](const Variation& m) {
-    return keeps("solver", m.solver) && keeps("tangent", m.tangent) &&
+    return keeps("solver", m.solver) && keeps("jacobian", m.jacobian) &&
            (m.modes.empty() || keeps("modes", m.modes)) && wanted(line.models, m.model);
   };
   std::vector<Variation> methods = methods_of_strands();
@@ -185,7 +185,7 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
       const bool too_large = m.solver == "composite" && elements > largest_dense;
       if (too_large && !line.full && line.elements.empty()) continue;
       all.push_back(
-          {straight, &find_model(m.model), m.solver, m.tangent, m.modes, elements});
+          {straight, &find_model(m.model), m.solver, m.jacobian, m.modes, elements});
     }
   }
   for (const std::string_view tree : words_of(tree_choices)) {
@@ -194,7 +194,8 @@ std::vector<ScalingCase> scaling_cases(const CommandLine& line,
     if (!line.elements.empty() && !std::ranges::count(line.elements, elements)) continue;
     for (const Variation& m : methods_of_trees) {
       if (!wanted_method(m)) continue;
-      all.push_back({tree, &find_model(m.model), m.solver, m.tangent, m.modes, elements});
+      all.push_back(
+          {tree, &find_model(m.model), m.solver, m.jacobian, m.modes, elements});
     }
   }
   return all;

@@ -18,7 +18,7 @@ constexpr int most_strands = 64;  // without --full
 void measure(const Scene& cut, const ModelEntry& model, double steps, int repeat,
              Row& row) {
   try {
-    Scene scene = driven(cut, model, find_integrator("semi_implicit_euler"));
+    Scene scene = driven(cut, model, find_integrator("linearly_implicit_euler"));
     set_cost(step_cost(std::move(scene), timed_step, steps, repeat), row);
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());

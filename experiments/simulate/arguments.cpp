@@ -13,23 +13,25 @@ namespace {
 constexpr const char* help_end =
     "\nExample:\n  simulate scenes/hair_under_wind.toml --vtk\n\n"
     "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
-    "the\nreport page), with --error-bars .errors.csv (errors over time); of a "
+    "the\nreport page), with --error-bars .errors.csv (errors over time),\nwith "
+    "--gradient .gradient.csv (derivatives); of a "
     "scene with rest = \"inverse\" .rest.csv\n(how each strand is held); of a head .h5 "
-    "and .xdmf\n(all frames, for ParaView and others) and .lost.csv (strands that could "
+    "and .xdmf\n(all frames, for ParaView and others) and .failed.csv (strands that "
+    "could "
     "not be computed).\nExit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
     "a "
-    "scene did not run to\nits end, or lost strands, 130 interrupted (--resume "
-    "continues)\n\nmpirun -n 4 simulate ... --as head: four processes share the "
+    "scene did not run to\nits end, or failed strands, 130 interrupted (--resume "
+    "continues)\n\nmpirun -n 4 simulate ... --as batch: four processes share the "
     "head; the results are the same\n";
 
 /// Endings of the files that a run writes in its folder, or may write.
 std::vector<std::string> endings(bool head, const SceneRunOptions& options) {
   std::vector<std::string> all{".csv", ".meta.json", ".json", ".state"};
   if (head) {
-    all.insert(all.end(), {".h5", ".xdmf", ".lost.csv", ".rest.csv"});
+    all.insert(all.end(), {".h5", ".xdmf", ".failed.csv", ".rest.csv"});
   } else {
-    all.push_back(".lost.csv");
-    all.insert(all.end(), {".errors.csv", ".rest.csv", ".fit.csv"});
+    all.push_back(".failed.csv");
+    all.insert(all.end(), {".errors.csv", ".gradient.csv", ".rest.csv", ".fit.csv"});
   }
   if (options.usd) all.push_back(".usda");
   if (options.gltf) all.push_back(".glb");
@@ -58,25 +60,22 @@ void declare(CLI::App& app, Arguments& a) {
          "formats to write by name: vtk, usd, hair, or gltf (a .glb file for viewers)")
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
-  app.add_option(
-         "--as", a.as,
-         "strands: each by itself; head: all in one batch, up to a million, in SIMD "
-         "lanes or as replicated systems (the batch matrix of cost_of_accuracy "
-         "--list names which); "
-         "auto: a head, where 1000 strands have lanes, or above 10000 strands "
-         "(default auto)")
-      ->check(CLI::IsMember({"auto", "strands", "head"}));
-  app.add_option("--bits", a.bits,
+  app.add_option("--as", a.as,
+                 "strands: each by itself. head: all in one batch, up to a million, in "
+                 "SIMD lanes or as replicated systems (cost_of_accuracy --list prints "
+                 "the batch matrix). auto: a head, where 1000 strands have lanes, or "
+                 "above 10000 strands (default auto)")
+      ->check(CLI::IsMember({"auto", "strands", "batch"}));
+  app.add_option("--precision", a.bits,
                  "floating-point precision of a head in bits: 64 or 32 (default 64)")
       ->check(CLI::IsMember({64, 32}));
-  app.add_option(
-         "--lanes", a.lanes,
-         "strands per SIMD pack of a head: 1, 4 or 8 with --bits 64, 8 or 16 with "
-         "--bits 32 (default 8, 16); results are bitwise identical")
+  app.add_option("--simd-width", a.lanes,
+                 "strands per SIMD pack of a head: 1, 4 or 8 with --precision 64, 8 or "
+                 "16 with --precision 32 (default 8, 16). Results are bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
-                 "device for the time steps of a head: cpu, gpu or auto: gpu if there is "
-                 "one and the scene has gravity and drag only (default cpu)")
+                 "device for the time steps of a head: cpu, gpu or auto (default cpu). "
+                 "auto: gpu if there is one and the scene has gravity and drag only")
       ->check(CLI::IsMember({"cpu", "gpu", "auto"}));
   app.add_option("--frames", a.frames,
                  "bits of a coordinate in a head's .h5: 32, 64, or none (default 32)")
@@ -92,6 +91,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--error-bars", a.error_bars,
                "estimate time and space errors from runs with finer steps and twice the "
                "elements, with bounds that hold in 90 % of runs");
+  app.add_flag("--gradient", a.gradient,
+               "derivatives of the motion by the numbers that the scene's [gradient] "
+               "names (.gradient.csv)");
   app.add_flag("--verify", a.verify, "error in time alone, with a tolerance");
   app.add_option("--progress", a.progress, "auto, none or json (default auto)")
       ->check(CLI::IsMember({"auto", "none", "json"}));

@@ -13,8 +13,8 @@ namespace tress::experiments::scene_runs {
 /// again.
 std::vector<std::size_t> shown_strands(std::size_t strands);
 
-/// Pictures of the shown strands at some 50 of the frames at most, in the format of any
-/// scene: all frames of all strands would not fit into memory, or on a page.
+/// Writes pictures of the shown strands, of at most about 50 of the frames, in the format
+/// of any scene. All frames of all strands would not fit into memory, or on a page.
 void write_head_pictures(const SceneOutline& outline, const HeadFrames& frames,
                          const std::vector<std::size_t>& shown,
                          const SceneRunOptions& options);

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
-#include "experiments/simulate/lost_strands.h"
+#include "experiments/simulate/failed_strands.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/files/row.h"
@@ -17,7 +17,7 @@ namespace {
 
 /// Checks the outputs before creating any.
 std::string checked(std::string stem) {
-  for (const char* ending : {".csv", ".h5", ".lost.csv"}) check_output(stem + ending);
+  for (const char* ending : {".csv", ".h5", ".failed.csv"}) check_output(stem + ending);
   return stem;
 }
 
@@ -71,13 +71,13 @@ void HeadRecording::open(const Scene& scene, StoredFrames stored, bool resume) {
   }
   replace_file(stem_ + ".csv", table);
   csv_.emplace(stem_ + ".csv", O_WRONLY | O_APPEND | O_CLOEXEC);
-  std::filesystem::remove(stem_ + ".lost.csv", error);  // of a run before
+  std::filesystem::remove(stem_ + ".failed.csv", error);  // of a run before
   write_lost();
 }
 
 void HeadRecording::write_lost() {
   if (progress_.lost.size() == lost_written_) return;
-  replace_file(stem_ + ".lost.csv", lost_table(progress_.lost));
+  replace_file(stem_ + ".failed.csv", failed_table(progress_.lost));
   lost_written_ = progress_.lost.size();
 }
 

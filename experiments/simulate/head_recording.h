@@ -19,7 +19,7 @@ namespace tress::experiments::scene_runs {
 using namespace simulation;
 
 /// Files that the run of a head writes as it proceeds: frames (HeadFrames), the time
-/// series <stem>.csv, lost strands <stem>.lost.csv, and the last saved state
+/// series <stem>.csv, failed strands <stem>.failed.csv, and the last saved state
 /// <stem>.state. Only one process at a time writes them.
 class HeadRecording {
  public:
@@ -33,8 +33,8 @@ class HeadRecording {
   /// Returns the state from which the run continues, to be read once.
   std::unique_ptr<HeadToResume> take_saved() { return std::move(saved_); }
 
-  void lose(const LostStrand& strand) { progress_.lost.push_back(strand); }
-  /// Takes a frame; add() writes it, its series and the lost strands.
+  void lose(const FailedStrand& strand) { progress_.lost.push_back(strand); }
+  /// Takes a frame; add() writes it, its series and the failed strands.
   HeadFrames& frame() { return *frames_; }
   void add(const std::vector<double>& series);
   /// For the state of all strands, `step` steps after the last frame.

@@ -40,7 +40,7 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
                                  strands, elements, memory / 1e9, free / 1e9),
                      scene.name,
                      without ? "give fewer strands or elements"
-                             : "give fewer strands or elements, or --bits 32");
+                             : "give fewer strands or elements, or --precision 32");
   }
   std::error_code unknown;
   const auto disk =
@@ -52,7 +52,7 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
             "are free",
             frames, frame / 1e6, frame * frames / 1e9,
             static_cast<double>(disk.available) / 1e9),
-        scene.name, "give fewer frames_1_s, --frames 32 or none, or another --out");
+        scene.name, "give fewer frames_per_s, --frames 32 or none, or another --out");
   }
   const std::string engine =
       without ? fmt::format(

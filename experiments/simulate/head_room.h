@@ -4,8 +4,9 @@
 
 namespace tress::experiments::scene_runs {
 
-/// Throws InputError, with both figures, if the head of a scene needs more memory than
-/// there is, or its frames more of the disk; else says on standard error what they need.
+/// Throws InputError, with both figures, if the batch of a scene needs more memory than
+/// is available, or its frames more of the disk. Otherwise prints the needs on standard
+/// error.
 void check_room(const SceneOutline& outline, const SceneRunOptions& options);
 
 }  // namespace tress::experiments::scene_runs

@@ -10,12 +10,12 @@
 #include "contract/input_error.h"
 #include "experiments/run/machine.h"
 #include "experiments/run/message.h"
+#include "experiments/simulate/failed_strands.h"
 #include "experiments/simulate/head_pictures.h"
 #include "experiments/simulate/head_reading.h"
 #include "experiments/simulate/head_recording.h"
 #include "experiments/simulate/head_series.h"
 #include "experiments/simulate/held_report.h"
-#include "experiments/simulate/lost_strands.h"
 #include "experiments/simulate/save_clock.h"
 #include "experiments/simulate/stop_request.h"
 #include "experiments/simulate/time_bar.h"
@@ -110,12 +110,12 @@ class HeadSceneRun {
     report_held(whole, held, options_.stem + ".rest.csv");
   }
 
-  std::string why_failed(const std::vector<LostStrand>& lost) const {
-    const LostStrand& first = lost.front();
+  std::string why_failed(const std::vector<FailedStrand>& lost) const {
+    const FailedStrand& first = lost.front();
     const bool unsolved = first.reason.starts_with("no solution");
     return fmt::format(
         "{}{} of {} strands were lost, the first at t = {:.9g} s, strand {}: {} "
-        "({}.lost.csv): {}{}",
+        "({}.failed.csv): {}{}",
         unsolved ? "" : "unstable: ", lost.size(), run_->strands(), first.t, first.strand,
         first.reason, options_.stem, remedy(scene_.integrator, scene_.options),
         unsolved && run_->lanes()
@@ -297,7 +297,7 @@ class HeadSceneRun {
   }
 
   void gather_lost() {
-    for (const LostStrand& lost : lost_.gathered()) {
+    for (const FailedStrand& lost : lost_.gathered()) {
       ++losses_;
       if (recording_) recording_->lose(lost);
     }
@@ -344,7 +344,7 @@ class HeadSceneRun {
   double build_s_ = 0;  // of the rank that took longest
   std::optional<HeadReading> reading_;
   std::optional<HeadRecording> recording_;  // of the first rank
-  LostStrands lost_;                        // not yet known to the first rank
+  FailuresOfRanks lost_;                    // not yet known to the first rank
   std::size_t frames_ = 0, step_ = 0;       // written; taken before this process began
   std::size_t losses_ = 0;                  // of all ranks
   long steps_ = 0;

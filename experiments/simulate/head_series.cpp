@@ -7,7 +7,7 @@ namespace tress::experiments::scene_runs {
 std::vector<Reading> head_series(const Scene& scene) {
   std::vector<Reading> all{
       {"t_s", "time"},
-      {"tip_x_m", "tip, mean over the strands; all without lost strands"},
+      {"tip_x_m", "tip, mean over the strands; all without failed strands"},
       {"tip_y_m", "tip, mean over the strands"},
       {"tip_z_m", "tip, mean over the strands"},
       {"kinetic_j", "kinetic energy of all strands"},
@@ -16,7 +16,7 @@ std::vector<Reading> head_series(const Scene& scene) {
       {"most_kinetic_j", "kinetic energy of the strand that has most"},
       {"most_elastic_j", "elastic energy of the strand that has most"},
       {"fastest_m_s", "largest speed of an element's end"},
-      {"lost_strands", "strands that have stopped, for their step was impossible"},
+      {"failed_strands", "strands that have stopped, for their step was impossible"},
   };
   const models::Effects effects = make_effects(scene);
   const std::vector<std::string> names = effect_names(scene);

@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "experiments/run/command_line.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/manifest.h"
 #include "experiments/run/message.h"
 #include "experiments/simulate/arguments.h"
+#include "experiments/simulate/gradient_report.h"
 #include "experiments/simulate/head_room.h"
 #include "experiments/simulate/head_scene_run.h"
 #include "experiments/simulate/held_report.h"
@@ -24,6 +26,7 @@
 #include "integrators/error_indicator.h"
 #include "simulation/errors/error_bars.h"
 #include "simulation/files/files.h"
+#include "simulation/gradient/scene_gradient.h"
 #include "simulation/groom/fitted_groom.h"
 #include "simulation/head/head_classes.h"
 #include "simulation/head/ranks.h"
@@ -101,9 +104,10 @@ std::optional<NoHead> no_head(const SceneOutline& outline, const Arguments& a) {
   const char* option = a.hairs > 0    ? "--hairs"
                        : a.verify     ? "--verify"
                        : a.error_bars ? "--error-bars"
+                       : a.gradient   ? "--gradient"
                                       : nullptr;
   if (option != nullptr) {
-    return NoHead{std::string(option) + " cannot be combined with --as head",
+    return NoHead{std::string(option) + " cannot be combined with --as batch",
                   "leave it out, or give --as strands with fewer strands"};
   }
   if (has_classes(outline)) {
@@ -138,8 +142,8 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
   const bool faster =
       strands > held_at_once.strands ||
       (strands >= many && !no_lanes(job.outline.scene, pack_of(a).number));
-  job.head = a.as == "head" || (a.as == "auto" && faster && !no);
-  if (a.as == "head" && no) throw InputError(no->reason, file, no->remedy);
+  job.head = a.as == "batch" || (a.as == "auto" && faster && !no);
+  if (a.as == "batch" && no) throw InputError(no->reason, file, no->remedy);
   if (a.as == "auto" && no && strands > held_at_once.strands) {
     throw InputError(
         fmt::format("{} strands are too many to run one by one (at most {}), "
@@ -148,22 +152,23 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
         file, no->remedy);
   }
   if (!job.head && a.device == "gpu") {
-    throw InputError("--device gpu requires --as head", file,
-                     "give --as head, or --device cpu");
+    throw InputError("--device gpu requires --as batch", file,
+                     "give --as batch, or --device cpu");
   }
   if (!job.head && a.bits != 64) {
     throw InputError(
         "single precision is for heads of hair, and this runs strand by strand" +
             (no ? ": " + no->reason : std::string()),
-        file, no ? no->remedy : "give --as head, or --bits 64");
+        file, no ? no->remedy : "give --as batch, or --precision 64");
   }
   if (!job.head && ranks.size() > 1) {
     throw InputError("strands that run one by one are not shared by ranks", file,
-                     "leave out mpirun, or give --as head");
+                     "leave out mpirun, or give --as batch");
   }
   if (job.head) return job;
   job.outline.scene = read_scene(file);
   if (a.verify) check_verifiable(job.outline.scene);
+  if (a.gradient) check_gradient(job.outline.scene);
   return job;
 }
 
@@ -193,9 +198,11 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   options.heartbeat = &heartbeat;
   heartbeat.doing(scene.name + ": preparing its run");
   std::error_code ignored;  // what a run before has left would only mislead
-  for (const char* ending : {".errors.csv", ".h5", ".xdmf", ".lost.csv", ".rest.csv"}) {
+  for (const char* ending :
+       {".errors.csv", ".gradient.csv", ".h5", ".xdmf", ".failed.csv", ".rest.csv"}) {
     const std::string_view what = ending;
-    if (job.head && what != ".errors.csv" && what != ".rest.csv") continue;
+    const bool of_strands = what == ".errors.csv" || what == ".gradient.csv";
+    if (job.head && !of_strands && what != ".rest.csv") continue;
     if (!ranks.first()) continue;
     std::filesystem::remove(options.stem + ending, ignored);
   }
@@ -232,6 +239,10 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   if (!ranks.first()) return complete;
   const bool came_to_its_end = complete;
   if (complete) complete = errors.report(scene, options.stem, row);
+  if (came_to_its_end && a.gradient) {
+    heartbeat.doing(scene.name + ": running it again for its gradient");
+    complete = report_gradient(scene, options.stem + ".gradient.csv") && complete;
+  }
   manifest.set_outcome(row);
   replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   // Last: all that it says is done is on the disk.
@@ -301,7 +312,7 @@ int answer(int argc, char** argv) {
   } catch (const CLI::CallForHelp&) {
     throw Answer(help_text(app));
   } catch (const CLI::ParseError& error) {
-    throw InputError(error.what(), "command line", "simulate --help shows the options");
+    refuse_arguments(app, "simulate", argc, argv, error);
   }
   CommandLine line;
   line.argv.assign(argv, argv + argc);

@@ -80,10 +80,10 @@ constexpr Column columns_of_outcome[] = {
     {"space_parted", "strands whose two runs part"},
     {"space_error_missing", "reason why there is no estimate of the error in space"},
     {"strands", "number of strands of a head"},
-    {"lost_strands",
+    {"failed_strands",
      "strands whose step was impossible, of a head or with failed_strands = stay"},
-    {"bits", "floating-point precision of a head in bits"},
-    {"lanes", "strands of a head per SIMD pack"},
+    {"precision", "floating-point precision of a head in bits"},
+    {"simd_width", "strands of a head per SIMD pack"},
     {"engine",
      "engine of a head: lanes, or replicated (each strand is a system of its "
      "own, as a single strand is)"},
@@ -102,7 +102,7 @@ constexpr Column columns_of_outcome[] = {
      "time per step to send and receive, waiting included, largest over ranks", true},
     {"meet_s", "time per step to list contacts with ghosts, largest over ranks", true},
     {"bytes_per_strand", "memory of a head: state, rest shape, material, root"},
-    {"state",
+    {"state_hash",
      "checksum of all states of a head at the end, the same for any number of "
      "ranks, threads and lanes"},
     {"build_s", "time to make the strands of a head", true},
@@ -177,8 +177,8 @@ Row outcome(const Scene& scene, const SceneRun& run) {
   }
   if (run.head) {
     const HeadOutcome& head = *run.head;
-    row.set("strands", head.strands).set("lost_strands", head.lost);
-    row.set("bits", bits_of(head.pack));
+    row.set("strands", head.strands).set("failed_strands", head.lost);
+    row.set("precision", bits_of(head.pack));
     row.set("device", head.device).set("ranks", head.ranks);
     row.set("rank_strands", head.rank_strands);
     row.set("peak_memory_mb", head.peak_memory_mb);
@@ -189,14 +189,14 @@ Row outcome(const Scene& scene, const SceneRun& run) {
       row.set("claim_s", head.claim_s).set("exchange_s", head.exchange_s);
       row.set("meet_s", head.meet_s);
     }
-    row.set("lanes", head.pack.lanes).set("engine", head.engine);
+    row.set("simd_width", head.pack.lanes).set("engine", head.engine);
     row.set("bytes_per_strand", head.bytes_per_strand);
-    row.set("state", head.state).set("build_s", head.build_s);
+    row.set("state_hash", head.state).set("build_s", head.build_s);
     row.set("step_s", head.step_s).set("read_s", head.read_s);
     row.set("write_s", head.write_s);
   }
   if (!run.head && scene.failed_strands == FailedStrands::stay) {
-    row.set("lost_strands", run.lost);
+    row.set("failed_strands", run.lost);
   }
   row.set("wall_s", run.wall_s);
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);

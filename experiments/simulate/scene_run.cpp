@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "contract/input_error.h"
+#include "experiments/simulate/failed_strands.h"
 #include "experiments/simulate/held_report.h"
-#include "experiments/simulate/lost_strands.h"
 #include "experiments/simulate/pictures.h"
 #include "experiments/simulate/save_clock.h"
 #include "experiments/simulate/time_bar.h"
@@ -88,7 +88,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     }
     if (world->lost().size() > run.lost) {
       run.lost = world->lost().size();
-      replace_file(options.stem + ".lost.csv", lost_table(world->lost()));
+      replace_file(options.stem + ".failed.csv", failed_table(world->lost()));
     }
     add_frame();
     if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
@@ -113,11 +113,11 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     run.rejected += static_cast<long>(frame.series.back());
   }
   if (run.lost > 0 && run.end != SceneRun::End::failed) {
-    const LostStrand& first = world->lost().front();
+    const FailedStrand& first = world->lost().front();
     run.end = SceneRun::End::failed;
     run.reason = fmt::format(
         "{} of {} strands were lost, the first at t = {:.9g} s, strand {}: {} "
-        "({}.lost.csv): {}",
+        "({}.failed.csv): {}",
         run.lost, world->strands(), first.t, first.strand, first.reason, options.stem,
         remedy(scene.integrator, scene.options));
   }

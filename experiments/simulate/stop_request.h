@@ -12,8 +12,8 @@
 
 namespace tress::experiments::scene_runs {
 
-/// Lets the thread that handles signals ask the run to save itself between two steps: a
-/// copy of the state for whenever a signal comes would take as much memory again.
+/// Lets the thread that handles signals request that the run saves itself between two
+/// steps. A permanent copy of the state for a signal at any time would double the memory.
 class StopRequest {
  public:
   bool asked() const { return asked_; }

@@ -1,5 +1,5 @@
 // What is the largest stable step of a strand, against the number of its elements, and
-// which factor decides it: the solver, the tangent, damping or the scene?
+// which factor decides it: the solver, the Jacobian, damping or the scene?
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -24,7 +24,7 @@ constexpr Column columns[] = {
     {"model", "catalogue id"},
     {"integrator", "method"},
     {"solver", "linear solver of the model for S x = b"},
-    {"tangent", "terms of S (Jacobian approximation)"},
+    {"jacobian", "terms of S (Jacobian approximation)"},
     {"modes", "unknowns per element"},
     {"elements", "number of elements"},
     {"damping", "internal friction: none, light (1e-12) or seed (1e-10 kg m^3/s)"},

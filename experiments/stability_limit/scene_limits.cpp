@@ -155,14 +155,14 @@ std::vector<Case> cases_of(const CommandLine& line, const std::vector<std::strin
     const Scene scene = thinned(given, how.strands);
     for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (!chosen(line, entry)) continue;
-      for (const std::string_view tangent : scene_tangents(scene, entry.id)) {
+      for (const std::string_view jacobian : scene_jacobians(scene, entry.id)) {
         Scene own = scene;
         own.integrator = entry.id;
-        if (!tangent.empty()) own.model_options.set("tangent", tangent);
+        if (!jacobian.empty()) own.model_options.set("jacobian", jacobian);
         Row row;
         row.set("study", study).set("scene", scene.name);
         row.set("model", scene.model->id);
-        row.set("integrator", entry.id).set("tangent", tangent);
+        row.set("integrator", entry.id).set("jacobian", jacobian);
         if (most_elements(scene) > 0) row.set("elements", most_elements(scene));
         all.push_back({row, [own, how, fill](Row& of_case, const Deadline&) {
                          fill(own, how, of_case);

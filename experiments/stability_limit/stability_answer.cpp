@@ -13,9 +13,9 @@ namespace {
 
 std::string method(const Row& row) {
   return fmt::format("{}{}", row.text("integrator"),
-                     row.text("tangent").empty()
+                     row.text("jacobian").empty()
                          ? ""
-                         : fmt::format(" (tangent {})", row.text("tangent")));
+                         : fmt::format(" (jacobian {})", row.text("jacobian")));
 }
 
 std::string subject(const Row& row) {

@@ -11,33 +11,33 @@ namespace tress::experiments::stability_limit {
 namespace {
 
 // EI/gamma is the relaxation rate; gamma damps modes beyond 2 EI/gamma over-critically.
-// The "seed" gamma does so from 120 rad/s on, the third bending mode of a hair of 10 cm;
-// a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
+// The published gamma does so from 120 rad/s on, the third bending mode of a hair of 10
+// cm; a hundredth of it from 12 000 rad/s on, the highest bending mode of 20 elements: it
 // leaves the motion unchanged and only damps artefacts of the grid.
-constexpr Damping dampings[] = {undamped, {"light", "1e-12"}, {"seed", "1e-10"}};
+constexpr Damping dampings[] = {undamped, {"light", "1e-12"}, {"published", "1e-10"}};
 
 struct Variation {
-  std::string_view model, integrator, solver, tangent;
+  std::string_view model, integrator, solver, jacobian;
 };
 
-/// Against the number of elements: the semi-implicit step with the stiff tangent on every
-/// solver, our reconstruction of the published recursion, the exact tangent, and the
-/// serial chain.
+/// Against the number of elements: the linearly implicit step with the elastic Jacobian
+/// on every solver, our reconstruction of the published recursion, the exact Jacobian,
+/// and the serial chain.
 constexpr Variation methods[] = {
-    {"super_helix", "semi_implicit_euler", "recursive", "stiff"},
-    {"super_helix", "semi_implicit_euler", "composite", "stiff"},
-    {"super_helix", "semi_implicit_euler", "recursive", "less_implicit"},
-    {"super_helix", "semi_implicit_euler", "recursive", "exact"},
+    {"super_helix", "linearly_implicit_euler", "recursive", "elastic"},
+    {"super_helix", "linearly_implicit_euler", "composite", "elastic"},
+    {"super_helix", "linearly_implicit_euler", "recursive", "elastic_local"},
+    {"super_helix", "linearly_implicit_euler", "recursive", "exact"},
     {"super_helix", "backward_euler", "recursive", "exact"},
-    {"articulated_chain", "semi_implicit_euler", "recursive", "stiff"},
+    {"articulated_chain", "linearly_implicit_euler", "recursive", "elastic"},
 };
 
 /// Every other strand model with its first solver, by the usual step and by full Newton
 /// steps.
 std::vector<Variation> methods_of(const ModelEntry& model) {
   const std::string_view solver = first_word(model, "solver");
-  return {{model.id, "semi_implicit_euler", solver, usual_tangent(model)},
-          {model.id, "backward_euler", solver, first_word(model, "tangent")}};
+  return {{model.id, "linearly_implicit_euler", solver, usual_tangent(model)},
+          {model.id, "backward_euler", solver, first_word(model, "jacobian")}};
 }
 
 bool of_the_seed(std::string_view model) {
@@ -46,11 +46,11 @@ bool of_the_seed(std::string_view model) {
 
 /// Only where methods are compared with each other.
 constexpr Variation further_methods[] = {
-    {"super_helix", "semi_implicit_euler", "sparse", "stiff"},
-    {"super_helix", "semi_implicit_euler", "composite", "exact"},
-    {"super_helix", "semi_implicit_euler", "sparse", "exact"},
-    {"articulated_chain", "semi_implicit_euler", "composite", "stiff"},
-    {"articulated_chain", "semi_implicit_euler", "recursive", "exact"},
+    {"super_helix", "linearly_implicit_euler", "sparse", "elastic"},
+    {"super_helix", "linearly_implicit_euler", "composite", "exact"},
+    {"super_helix", "linearly_implicit_euler", "sparse", "exact"},
+    {"articulated_chain", "linearly_implicit_euler", "composite", "elastic"},
+    {"articulated_chain", "linearly_implicit_euler", "recursive", "exact"},
     {"articulated_chain", "backward_euler", "recursive", "exact"},
 };
 
@@ -58,7 +58,7 @@ constexpr Variation further_methods[] = {
 /// order 1, symplectic, with one solve a step, and two that damp fast modes. The others
 /// add nothing about stability.
 constexpr std::string_view quick_integrators[] = {"rk4",
-                                                  "semi_implicit_euler",
+                                                  "linearly_implicit_euler",
                                                   "backward_euler",
                                                   "implicit_midpoint",
                                                   "bdf2",
@@ -81,7 +81,7 @@ std::vector<int> element_counts(const CommandLine& line) {
 }
 
 /// `others`: also every other fixed-step integrator, by the linear-time solver with the
-/// exact tangent.
+/// exact Jacobian.
 std::vector<Variation> all_methods(const CommandLine& line, bool others) {
   std::vector<Variation> all(std::begin(methods), std::end(methods));
   for (const ModelEntry* model : strand_models()) {
@@ -122,7 +122,7 @@ bool usual(const CommandLine& line, const StabilityCase& c) {
 
 bool possible(const StabilityCase& c, const Settings& settings) {
   for (const auto& [key, word] :
-       {std::pair{"solver", c.solver}, {"tangent", c.tangent}}) {
+       {std::pair{"solver", c.solver}, {"jacobian", c.jacobian}}) {
     if (!word.empty() && !has_word(*c.model, key, word)) return false;
   }
   try {
@@ -137,7 +137,7 @@ Row StabilityCase::identity() const {
   Row row;
   row.set("study", "grid").set("scene", scene->name);
   row.set("model", model->id).set("integrator", integrator);
-  row.set("solver", solver).set("tangent", tangent).set("modes", modes);
+  row.set("solver", solver).set("jacobian", jacobian).set("modes", modes);
   row.set("elements", elements).set("damping", damping.name);
   return row;
 }
@@ -146,7 +146,7 @@ bool StabilityCase::selected(const CommandLine& line, const Parameters& rows) co
   for (const auto& [key, word] : {std::pair{"scene", scene->name},
                                   {"damping", damping.name},
                                   {"solver", solver},
-                                  {"tangent", tangent}}) {
+                                  {"jacobian", jacobian}}) {
     if (rows.word(key) != "all" && rows.word(key) != word) return false;
   }
   return wanted(line.models, model->id) && wanted(line.integrators, integrator);
@@ -157,7 +157,7 @@ Parameters StabilityCase::parameters(const Settings& settings) const {
   for (const auto& [key, value] : scene->settings) p.set(key, value);
   p.set("elements", std::to_string(elements));
   p.set("internal_friction_kg_m3_s", damping.internal_friction);
-  set_known(p, {{"solver", solver}, {"tangent", tangent}, {"modes", modes}});
+  set_known(p, {{"solver", solver}, {"jacobian", jacobian}, {"modes", modes}});
   return p;
 }
 
@@ -180,8 +180,8 @@ std::vector<StabilityCase> stability_cases(const CommandLine& line,
         const bool others = !line.integrators.empty() || rows.word("solver") != "all" ||
                             (elements == usual_elements && damping.name == "none");
         for (const Variation& m : all_methods(line, others)) {
-          const StabilityCase c{&scene,    &find_model(m.model), m.integrator, m.solver,
-                                m.tangent, rows.word("modes"),   elements,     damping};
+          const StabilityCase c{&scene,     &find_model(m.model), m.integrator, m.solver,
+                                m.jacobian, rows.word("modes"),   elements,     damping};
           if (!c.selected(line, rows) || !(chosen || usual(line, c))) continue;
           if (possible(c, settings)) all.push_back(c);
         }

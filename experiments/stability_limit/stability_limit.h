@@ -33,7 +33,7 @@ inline constexpr int usual_elements = 20;
 struct StabilityCase {
   const StrandScene* scene;
   const ModelEntry* model;
-  std::string_view integrator, solver, tangent, modes;
+  std::string_view integrator, solver, jacobian, modes;
   int elements;
   Damping damping;
 
@@ -61,7 +61,7 @@ bool considered(const CommandLine& line, const IntegratorEntry& entry);
 /// Whether the study `tolerance` includes the method: --quick keeps tr_bdf2.
 bool by_tolerance(const CommandLine& line, const IntegratorEntry& entry);
 
-/// Whether the model has this solver and tangent, and the integrator takes it.
+/// Whether the model has this solver and Jacobian, and the integrator takes it.
 bool possible(const StabilityCase& c, const Settings& settings);
 
 /// The rows that the command line and its settings select, without those whose model the
@@ -95,17 +95,17 @@ struct SceneLimits {
   int repeat;
 };
 
-/// Rows for scene files: the largest step of each method such that the scene as a whole
-/// satisfies the simulation guard (Guard), and no step has to be repeated with shorter
-/// ones. Of many strands that do not touch each other, typical ones are run. Throws
-/// InputError on --models and --elements, which a scene defines itself.
+/// Returns rows for scene files. A row has the largest step of a method with which the
+/// scene satisfies the simulation guard (Guard) and no step has to be repeated with
+/// shorter ones. Of many strands that do not touch each other, typical ones are run.
+/// Throws InputError on --models and --elements, which a scene defines itself.
 std::vector<Case> scene_cases(const CommandLine& line,
                               const std::vector<std::string>& files,
                               const SceneLimits& how);
 
-/// The tolerances from 1e-1 to 1e-5, from loose to tight until the work is used up: the
-/// loosest such that it and all tighter ones tried were stable, the tightest that was
-/// run, and the cost at 1e-3.
+/// Tolerances from 1e-1 to 1e-5, from loose to tight until the work is used up. Results
+/// are the loosest one such that it and all tighter ones tried were stable, the tightest
+/// that was run, and the cost at 1e-3.
 struct ToleranceRun {
   StabilityRun run;
   double work;  // total_work()
@@ -128,23 +128,24 @@ std::vector<Case> scene_tolerance_cases(const CommandLine& line,
                                         const std::vector<std::string>& files,
                                         const SceneLimits& how);
 
-/// The study `nodal`: is a nodal scheme of Kirchhoff's equations with the stiffness of
-/// curvature removed unstable for a hair of 200 nodes at steps of 1e-5 s [Bertails 2006],
-/// and which steps does it need? Empty if the command line selects other rows.
+/// Returns the study `nodal`. Is a nodal scheme of Kirchhoff's equations with the
+/// stiffness of curvature removed unstable for a hair of 200 nodes at steps of 1e-5 s
+/// [Bertails 2006]? Which steps does it need? Empty if the command line selects other
+/// rows.
 std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings);
 
 /// Checks that claim, method by method; that in a plane the limit falls as 1/N^2; and
 /// that the limits of explicit methods are those of the grid's highest frequency.
 void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
-/// The answer about scene files, a line for each method, the largest step first: its
-/// largest stable step, what is beyond it, the time over which that was judged, and the
-/// time of a simulated second.
+/// Returns the answer about scene files, a line for each method, the largest step first.
+/// A line has the largest stable step, the failure beyond it, the time over which that
+/// was judged, and the time of a simulated second.
 std::vector<std::string> stability_answer(const std::vector<Row>& rows);
 
-/// The claims about the table of stability_limit. Two limits are equal when the brackets
-/// of their bisections, from dt_max_s to dt_first_unstable_s, have a step in common; the
-/// deciding number is the ratio of the two dt_max_s of the worst pair.
+/// Checks the claims about the table of stability_limit. Two limits are equal when the
+/// brackets of their bisections, from dt_max_s to dt_first_unstable_s, have a step in
+/// common. The deciding number is the ratio of the two dt_max_s of the worst pair.
 void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 }  // namespace tress::experiments::stability_limit

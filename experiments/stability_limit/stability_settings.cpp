@@ -12,13 +12,13 @@ constexpr Parameter settings_of_rows[] = {
      .choices = "all|release|compress|shake|shake_rotate|curl_drop|whip|swing"},
     {.name = "damping",
      .help = "rows of one level of internal friction: 0, 1e-12 or 1e-10 kg m^3/s",
-     .choices = "all|none|light|seed"},
+     .choices = "all|none|light|published"},
     {.name = "solver",
      .help = "rows of one solver of the model",
      .choices = "all|recursive|composite|sparse|recursive_plain"},
-    {.name = "tangent",
-     .help = "rows of one tangent of the model",
-     .choices = "all|stiff|exact|less_implicit"},
+    {.name = "jacobian",
+     .help = "rows of one Jacobian of the model",
+     .choices = "all|elastic|exact|elastic_local"},
     {.name = "modes",
      .help = "modes of the strands",
      .choices = "bend_twist|bend|bend_planar"},
@@ -38,10 +38,9 @@ constexpr Parameter settings_of_rows[] = {
      .min = 1.0001},
     {.name = "scenes", .help = "scene files instead of our scenes", .text = true},
     {.name = "horizon_s",
-     .help =
-         "time that a run simulates (s), of a scene file (at most the scene's) and of "
-         "study nodal; 0: 0.5, of study nodal 1, with --quick 0.25, explicit methods "
-         "0.02",
+     .help = "time that a run simulates (s), of a scene file (at most the scene's) and "
+             "of study nodal. 0: 0.5, of study nodal 1, with --quick 0.25, explicit "
+             "methods 0.02",
      .number = 0,
      .min = 0,
      .max = 1e3},
@@ -52,9 +51,9 @@ constexpr Parameter settings_of_rows[] = {
      .max = 1e4,
      .whole = true},
     {.name = "row_work",
-     .help = "work of the search for one row (max_work), 0: 2e7, with --quick 3e6, "
-             "with --full 1e8; of study tolerance 1e8, with --quick 3e7, with --full "
-             "3e8; of study nodal 1e9, with --quick 1.5e8",
+     .help = "work of the search for one row (max_work). 0: 2e7, with --quick 3e6, with "
+             "--full 1e8. Of study tolerance: 1e8, with --quick 3e7, with --full 3e8. Of "
+             "study nodal: 1e9, with --quick 1.5e8",
      .number = 0,
      .min = 0},
 };

@@ -51,14 +51,14 @@ void measure(const Work& work, Row& row) {
       row);
 }
 
-/// By the linear-time solver where there is a choice, and the exact tangent.
+/// By the linear-time solver where there is a choice, and the exact Jacobian.
 StabilityCase case_of(const StrandScene& scene, const ModelEntry& model,
                       std::string_view integrator, std::string_view modes, int elements) {
   return {&scene,
           &model,
           integrator,
           first_word(model, "solver"),
-          first_word(model, "tangent"),
+          first_word(model, "jacobian"),
           modes,
           elements,
           undamped};

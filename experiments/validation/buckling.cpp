@@ -106,11 +106,11 @@ double zero_of_last(const std::vector<std::array<double, 2>>& points) {
   return at_zero;
 }
 
-/// A strand that twists by -Tw at rest, bent to a ring without twist, its end held to its
-/// clamp: for a round section equivalent to an untwisted one closed after Tw. As its
-/// sections may roll while the ring turns about the tangent at the clamp, at no cost, a
-/// spring of 0.1 EI/L^3 holds its far point in place: buckling modes are 1e3 times as
-/// stiff at 0.8 and 1.2 of the threshold, which this shifts by 1e-4 or less.
+/// Measures a strand that twists by -Tw at rest, bent to a ring without twist, its end
+/// held to its clamp. For a round section that is equivalent to an untwisted one closed
+/// after Tw. Its sections may roll while the ring turns about the tangent at the clamp,
+/// at no cost, so a spring of 0.1 EI/L^3 holds its far point in place. Buckling modes are
+/// 1e3 times as stiff at 0.8 and 1.2 of the threshold, which this shifts by 1e-4 or less.
 double measure_ring(const ModelTrial& trial) {
   // Least square relative to that of the spring.
   const auto least_square = [&](double twist) {

@@ -35,10 +35,10 @@ double sag(double span) { return Catenary(span).sag(); }
 
 constexpr double rope_length = 1;
 
-/// EI/(H a^2) = 1/(Gamma a^3), H the tension at the lowest point, is the relative effect
-/// of EI there: a hundredth at most. As in a hanging chain its effect at an end reaches
-/// about Gamma^(-1/2), and the clamp is aligned with the rope; weight stretches it by
-/// Gamma r^2/(4 L^2), 4e-5 to 4e-4.
+/// Returns the Gamma at which EI/(H a^2) = 1/(Gamma a^3) is a hundredth at most: the
+/// relative effect of EI at the lowest point, with H the tension there. As in a hanging
+/// chain, the effect of EI at an end reaches about Gamma^(-1/2), and the clamp is aligned
+/// with the rope. Weight stretches the rope by Gamma r^2/(4 L^2), 4e-5 to 4e-4.
 double rope_gamma(const Catenary& rope) {
   return std::max(1e5, 100 / std::pow(rope.a, 3));
 }

@@ -79,7 +79,7 @@ double measured_force(const ModelTrial& trial) {
   }
   effects.push_back(
       {"linear_drag",
-       {{"drag_kg_m_s", "0"}, {"mass_damping_1_s", number_text(1 / period)}}});
+       {{"drag_kg_m_s", "0"}, {"mass_damping_per_s", number_text(1 / period)}}});
   effects.push_back({"strand_friction",
                      {{"friction", number_text(mu)},
                       {"thickness_m", number_text(2 * half_thick)},

@@ -11,9 +11,9 @@ std::vector<Case> cases(const CommandLine& line) {
   return validation_cases(line, Settings(line, validation_settings()));
 }
 
-/// A model that refuses a test, or finds no answer within the time limit, is a valid
-/// result, and so is a step too long for a flying hair; required results are among the
-/// checks, and a claim with a killed row is broken.
+/// Returns whether a failed row is a valid result. These are a model that refuses a test
+/// or finds no answer within the time limit, and a step too long for a flying hair.
+/// Required results are among the checks, and a claim with a killed row is broken.
 bool finding(const Row& row) {
   return row.text("test") == free_flight || row.status() == "refused" ||
          row.status() == "failed" || row.status() == "timeout";

@@ -56,10 +56,10 @@ Strand strand(int elements, double amplitude) {
   return strand;
 }
 
-/// Measured at the tip over three periods, by steps of 1/400 of one: (omega h)^2 =
-/// 2.5e-4. bdf2: such steps do not resolve the stiff modes of a rigid rod, which have to
-/// be damped; implicit_midpoint does not, and its Newton iteration then fails for most
-/// models.
+/// Measures the period at the tip over three periods, by steps of 1/400 of one: (omega
+/// h)^2 = 2.5e-4. The method is bdf2, since such steps do not resolve the stiff modes of
+/// a rigid rod, which have to be damped. implicit_midpoint does not damp them, and its
+/// Newton iteration then fails for most models.
 double swinging_period(const ModelTrial& trial) {
   const auto system =
       on_strand(trial.variant, strand(trial.elements, trial.parameter), weight());

@@ -6,9 +6,10 @@
 
 namespace tress::experiments::validation {
 
-/// The pendulum limit of a strand: a stiff rod of length L and mass m that hangs on a
-/// hinge, one thin short segment of length l and bending stiffness k (N m per rad),
-/// clamped at the angle a from the vertical and released straight. It swings by
+/// Tests of the pendulum limit of a strand: a stiff rod of length L and mass m that hangs
+/// on a hinge. The hinge is one thin short segment of length l and bending stiffness k (N
+/// m per rad), clamped at the angle a from the vertical. The rod is released straight. It
+/// swings by
 ///
 ///     I theta'' = -m g c sin theta - k (theta - a),
 ///
@@ -17,8 +18,7 @@ namespace tress::experiments::validation {
 /// hinge, L - l/2 for L, and the period by quadrature of the energy.
 ///
 /// The hinge is weak, k = 0.0005 m g L/2, so that the test judges the rod and not the
-/// hinge: the nodal models put the spring of a clamp over half a segment, which makes it
-/// 2 k.
+/// hinge. Nodal models put the spring of a clamp over half a segment, which makes it 2 k.
 std::vector<ValidationTest> pendulum_tests();
 
 /// Period (s) of the equation above for the test's rod.

@@ -95,7 +95,7 @@ double measured_angle(const ModelTrial& trial) {
     return t;
   };
   // One linear solve a step: Newton's iteration does not converge on the snap.
-  const Track run = track("semi_implicit_euler", *system, 2e-3, thread.settled, look,
+  const Track run = track("linearly_implicit_euler", *system, 2e-3, thread.settled, look,
                           [&](double) { return trial.deadline.passed(); });
   if (run.t.back() < thread.settled) {
     throw std::runtime_error("the time for the row was over");

@@ -47,8 +47,9 @@ struct HeldThread {
   std::array<Hand, 3> hands;
   double settled;  // s, when its plies have come to rest
 
-  Vec pull(const Hand& hand, std::span<const double> x) const;  // N
-  double tension(std::span<const double> x) const;              // N, along the clamp
+  /// Returns the pull of a hand, N.
+  Vec pull(const Hand& hand, std::span<const double> x) const;
+  double tension(std::span<const double> x) const;  // N, along the clamp
   /// N m, about the clamp's axis: at rest the clamp has the same.
   double moment(std::span<const double> x) const;
   /// Angle of its plies over that of equilibrium. Throws std::runtime_error without any.
@@ -58,7 +59,7 @@ struct HeldThread {
 HeldThread held_thread(const ModelVariant& variant, int elements, double turns);
 
 /// Work (J) of the clamp that twists the plectoneme of 12 turns by four more in 2 s, and
-/// what it has back from the same way back; steps of dt (s).
+/// the work returned on the same way back. Steps are of dt (s).
 struct TwistWork {
   double given, returned;
 };
@@ -69,9 +70,9 @@ TwistWork twist_on_and_back(const ModelVariant& variant, int elements, double fr
 double ply_angle(double tension);
 
 /// Mean radius and angle from its axis of the two plies of a curve through `x` (3 per
-/// point, `apart` m from point to point) where it comes within `reach` (m) of itself at
-/// more than `separation` (m) along it; excludes the three pairs at either end. pairs =
-/// 0: no plies.
+/// point, `apart` m from point to point). The plies are where the curve comes within
+/// `reach` (m) of itself at more than `separation` (m) along it; the three pairs at
+/// either end are excluded. pairs = 0: no plies.
 struct Ply {
   int pairs = 0;
   double radius = 0, angle = 0;  // m, rad

@@ -34,7 +34,8 @@ simulation::Scene exact_thread(const ModelVariant& variant, const HeldThread& th
                       {"thickness_m", number_text(2 * HeldThread::ply_radius)},
                       {"tolerance_m_s", "1e-5"}}});
   // One linear solve a step, as `plectoneme`.
-  return touching_strands(variant, {thread.strand}, effects, step, "semi_implicit_euler");
+  return touching_strands(variant, {thread.strand}, effects, step,
+                          "linearly_implicit_euler");
 }
 
 void proceed(simulation::World& world, double t, const Deadline& deadline) {

@@ -25,7 +25,7 @@ constexpr Column columns[] = {
     {"measured", "value that the model gives"},
     {"reference", "value of the continuous rod"},
     {"error_rel", "|measured/reference - 1|"},
-    {"tolerance", "largest error_rel that passes"},
+    {"accepted_error_rel", "largest error_rel that passes"},
     {"judged", "whether the test sets a tolerance for this number of elements"},
     {"passed", "error_rel <= tolerance"},
     {"order", "error ~ elements^-order at this parameter"},
@@ -63,7 +63,9 @@ void measure(const Work& work, Row& row, const Deadline& deadline) {
   const ValidationTest& test = *work.test;
   const double reference = test.reference(work.parameter);
   const bool judged = work.elements >= test.judged_from;
-  row.set("reference", reference).set("tolerance", test.tolerance).set("judged", judged);
+  row.set("reference", reference)
+      .set("accepted_error_rel", test.tolerance)
+      .set("judged", judged);
   try {
     const double measured =
         test.measure({work.variant, work.elements, work.parameter, deadline});

@@ -21,7 +21,7 @@ constexpr Column columns[] = {
     {"scene", "the problem, the strand, or the scene file"},
     {"model", "catalogue id"},
     {"modes", "unknowns per element of a strand, where the model has a choice"},
-    {"tangent",
+    {"jacobian",
      "terms of S (Jacobian approximation), where the model has a choice and the "
      "method uses S"},
     {"integrator", "method"},
@@ -31,7 +31,7 @@ constexpr Column columns[] = {
     {"refresh", "when S is rebuilt, where chosen"},
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance, adaptive methods"},
-    {"tolerance",
+    {"position_tol_rel",
      "requested time error of a point over the length; steps follow from it"},
     {"elements", "coordinates of the problem; for a strand, its elements"},
     {"grading", "last element's length over the first's, for a strand"},
@@ -40,13 +40,13 @@ constexpr Column columns[] = {
      "time: against the same equations integrated to convergence; total: against the "
      "continuous body"},
     {"error_rel",
-     "largest error of the compared positions over their scale; of a strand, root mean "
+     "largest error of the compared positions over their scale. Of a strand: root mean "
      "square over the run of the tip's distance from the reference, over the length"},
     {"scd", "significant correct digits, -log10 of the largest relative error"},
-    {"achieved_over_asked",
-     "largest time error at the compared instants over the tolerance: of the tip of a "
-     "strand, over its length; of the points of a problem's body, over its length, or of "
-     "its coordinates over their scales where it has none"},
+    {"error_over_tolerance",
+     "largest time error at the compared instants over the tolerance. Of a strand it is "
+     "that of the tip, over its length. Of a problem's body it is that of the points, "
+     "over its length, or of its coordinates over their scales where it has none"},
     {"reference_gap", "disagreement of the two references, same norm"},
     {"below_reference", "error below ten times that gap: not to be trusted"},
     {"wall_s", "median wall time of the run, setting up a strand aside", true},
@@ -99,8 +99,9 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
       const std::string steps =
           best->has("dt_s")
               ? fmt::format("dt {:.3g} ms", 1e3 * best->number("dt_s"))
-              : fmt::format("tolerance {:.2g}",
-                            best->number(best->has("tolerance") ? "tolerance" : "rtol"));
+              : fmt::format("tolerance {:.2g}", best->number(best->has("position_tol_rel")
+                                                                 ? "position_tol_rel"
+                                                                 : "rtol"));
       lines.push_back(
           fmt::format("{}: within {:.3g} % ({}, over the time compared): {}, {}, {}: "
                       "{:.2g} % in {:.3g} ms per simulated second",

@@ -21,7 +21,7 @@ std::span<const double> tolerances(const CommandLine& line) {
 
 void set_drive(const Options& options, bool adaptive, Row& row) {
   if (options.tolerance > 0) {
-    row.set("tolerance", options.tolerance);
+    row.set("position_tol_rel", options.tolerance);
   } else if (adaptive) {
     row.set("rtol", options.rtol);
   } else {
@@ -30,7 +30,7 @@ void set_drive(const Options& options, bool adaptive, Row& row) {
 }
 
 void set_achieved(double largest, const Options& options, Row& row) {
-  if (options.tolerance > 0) row.set("achieved_over_asked", largest / options.tolerance);
+  if (options.tolerance > 0) row.set("error_over_tolerance", largest / options.tolerance);
 }
 
 void set_error(double relative, double gap, Row& row) {

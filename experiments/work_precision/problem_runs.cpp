@@ -152,7 +152,7 @@ std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings
   const bool of_strands = !line.elements.empty() || !keeps(settings, "error", "time") ||
                           !keeps(settings, "modes", "") ||
                           !keeps(settings, "solver", "") ||
-                          !keeps(settings, "tangent", "");
+                          !keeps(settings, "jacobian", "");
   List list(line, settings);
   if (of_strands) return {};
   for (const Problem& problem : problems()) {

@@ -24,7 +24,7 @@ std::string_view name(Refresh refresh) {
 Row StrandCase::identity() const {
   Row row;
   row.set("scene", strand->name).set("error_kind", error_kind).set("model", model->id);
-  row.set("modes", modes).set("solver", solver).set("tangent", tangent);
+  row.set("modes", modes).set("solver", solver).set("jacobian", jacobian);
   row.set("integrator", integrator).set("formulation", tress::name(options.formulation));
   if (options.max_order > 0) row.set("max_order", options.max_order);
   if (newton) {
@@ -50,7 +50,7 @@ Parameters StrandCase::parameters(const Settings& settings) const {
   p.set("grading", std::to_string(grading));
   if (!modes.empty()) p.set("modes", modes);
   if (!solver.empty()) p.set("solver", solver);
-  if (!tangent.empty()) p.set("tangent", tangent);
+  if (!jacobian.empty()) p.set("jacobian", jacobian);
   return p;
 }
 

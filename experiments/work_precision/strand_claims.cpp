@@ -25,7 +25,7 @@ void check_target(const std::vector<Row>& rows, std::string_view kind, double er
   bool complete = false;
   for (const Row& row : rows) {
     if (row.text("error_kind") != kind) continue;
-    if (kind == "time" && row.number("elements") != peer_elements) continue;
+    if (kind == "time" && row.number("elements") != simulator_elements) continue;
     complete = complete || row.text("integrator") == sure;
     if (!row.ok()) continue;
     least = std::min(least, row.number("error_rel"));
@@ -47,15 +47,16 @@ std::map<std::string, double> converged_errors(const std::vector<Row>& rows,
   for (const Row& row : rows) {
     if (row.text("error_kind") != "time" || row.text("modes") != modes) continue;
     if (!row.ok() || !(row.number("newton_tolerance") <= converged)) continue;
-    errors[joined(row, {"model", "solver", "tangent", "integrator", "newton_tolerance",
+    errors[joined(row, {"model", "solver", "jacobian", "integrator", "newton_tolerance",
                         "elements", "dt_s"})] = row.number("error_rel");
   }
   return errors;
 }
 
-/// Bending moments of a section that bends equally in all directions have no part along
-/// the tangent, so nothing but the section's rotational inertia, (r/L)^2 of the
-/// strand's, twists a straight strand that starts without twist.
+/// Checks that twist does not matter. Bending moments of a section that bends equally in
+/// all directions have no component along the tangent. Only the section's rotational
+/// inertia, (r/L)^2 of the strand's, therefore twists a straight strand that starts
+/// without twist.
 void check_twist(const std::vector<Row>& rows, Verdicts& verdicts) {
   constexpr double least = 1e-4;  // smaller errors include rounding
   double worst = 0;

@@ -46,7 +46,7 @@ class Grid {
 
  private:
   void add_swing_in_time() {
-    for (const int elements : counts({peer_elements})) {
+    for (const int elements : counts({simulator_elements})) {
       for (const Variation& m : methods) add_swing("time", principal, m, elements, 1);
       for (const Body& body : others) {
         for (const Variation& m : best) add_swing("time", body, m, elements, 1);
@@ -81,7 +81,7 @@ class Grid {
                  .model = &find_model(body.model),
                  .modes = body.modes,
                  .solver = body.solver,
-                 .tangent = m.tangent,
+                 .jacobian = m.jacobian,
                  .integrator = m.integrator,
                  .adaptive = entry.adaptive,
                  .newton = m.newton.tolerance > 0,
@@ -91,7 +91,7 @@ class Grid {
     c.options.max_order = m.max_order;
     c.options.refresh = m.newton.refresh;
     if (c.newton) c.options.newton_tolerance = m.newton.tolerance;
-    add(c, ladder(entry, !m.tangent.empty(), line_));
+    add(c, ladder(entry, !m.jacobian.empty(), line_));
     if (error == "time") add_tolerances(c);
   }
 
@@ -102,7 +102,7 @@ class Grid {
             .model = &model,
             .modes = has_word(model, "modes", "bend") ? "bend" : "",
             .solver = first_word(model, "solver"),
-            .tangent = first_word(model, "tangent"),
+            .jacobian = first_word(model, "jacobian"),
             .integrator = integrator,
             .adaptive = false,
             .newton = false,
@@ -148,7 +148,7 @@ class Grid {
     if (!keeps(settings_, "error", c.error_kind)) return false;
     if (!keeps(settings_, "modes", c.modes)) return false;
     if (!keeps(settings_, "solver", c.solver)) return false;
-    if (!keeps(settings_, "tangent", c.tangent)) return false;
+    if (!keeps(settings_, "jacobian", c.jacobian)) return false;
     if (!wanted(line_.models, c.model->id)) return false;
     if (!wanted(line_.integrators, c.integrator)) return false;
     const IntegratorEntry& entry = find_integrator(c.integrator);

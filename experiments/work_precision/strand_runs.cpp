@@ -41,7 +41,7 @@ class References {
     const MakeStrand make = [&](std::string_view model, int elements) {
       const ModelEntry& entry = find_model(model);
       Parameters p = strand_parameters_of(strand, settings, entry, elements);
-      if (has_word(entry, "tangent", "stiff")) set_known(p, {{"tangent", "stiff"}});
+      if (has_word(entry, "jacobian", "elastic")) set_known(p, {{"jacobian", "elastic"}});
       return entry.make(p);
     };
     if (c.error_kind == "total") {

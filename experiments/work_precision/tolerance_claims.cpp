@@ -43,14 +43,14 @@ std::map<std::string, Errors> curves(const std::vector<Row>& rows,
                                      const ControlClaim& claim) {
   std::map<std::string, Errors> all;
   for (const Row& row : rows) {
-    if (!row.ok() || !row.has("achieved_over_asked")) continue;
+    if (!row.ok() || !row.has("error_over_tolerance")) continue;
     if (row.text("scene") != claim.scene || row.text("integrator") != claim.integrator) {
       continue;
     }
-    const double tolerance = row.number("tolerance");
+    const double tolerance = row.number("position_tol_rel");
     if (tolerance > 1.01 * loosest || tolerance < 0.99 * tightest) continue;
     all[joined(row, {"model", "modes", "elements"})][tolerance] =
-        tolerance * row.number("achieved_over_asked");
+        tolerance * row.number("error_over_tolerance");
   }
   return all;
 }

@@ -23,17 +23,17 @@ std::span<const Parameter> row_settings();
 /// Whether the user's choice for this key includes this value.
 bool keeps(const Settings& settings, std::string_view key, std::string_view word);
 
-/// Fills the columns common to all runs: counters,
+/// Sets the counters of a run.
 void set_counts(const Stats& stats, Row& row);
-/// largest error of a point over the body, over what was asked for, where steps followed
-/// from a tolerance: Options::tolerance is of the time error of a point over the length,
-/// so the reference has the same elements. Of a strand the tip stands for all points: in
-/// twelve runs (tr_bdf2 at 1e-3, three models, four scenes of scenes/accuracy) its
-/// largest error was theirs, or 0.6 % below it,
+/// Sets the largest error of a point over the body, over the requested tolerance, where
+/// steps are adaptive. Options::tolerance is of the time error of a point over the
+/// length, so the reference has the same elements. Of a strand the tip stands for all
+/// points. In twelve runs (tr_bdf2 at 1e-3, three models, four scenes of scenes/accuracy)
+/// the tip's largest error was that of all points, or 0.6 % below it.
 void set_achieved(double largest, const Options& options, Row& row);
-/// distance from the reference, whose two sides are `gap` apart,
+/// Sets the distance from the reference, whose two sides are `gap` apart.
 void set_error(double relative, double gap, Row& row);
-/// and wall times (s).
+/// Sets the wall times (s).
 void set_time(double wall, double simulated, Row& row);
 
 /// Options::tolerance from loose to tight, for methods that control their error.
@@ -56,7 +56,7 @@ inline constexpr FollowedStrand strand_release{
     "strand_release", "release", {0.25, 5, 0.1}};
 
 /// Elements at which other simulators were measured, with their time error.
-constexpr int peer_elements = 20;
+constexpr int simulator_elements = 20;
 
 /// One row about a strand: the method, and the kind of error.
 struct StrandCase {
@@ -64,7 +64,7 @@ struct StrandCase {
   std::string_view error_kind;  // time or total
   const ModelEntry* model;
   std::string_view modes, solver;  // empty: the model has no such option
-  std::string_view tangent;        // empty: not used by the integrator
+  std::string_view jacobian;       // empty: not used by the integrator
   std::string_view integrator;
   bool adaptive, newton;  // whether it is driven by rtol, and iterates with `options`
   Options options;
@@ -81,9 +81,9 @@ struct StrandCase {
 Parameters strand_parameters_of(const FollowedStrand& strand, const Settings& settings,
                                 const ModelEntry& model, int elements);
 
-/// The rows that the command line and its settings select, without those whose model the
-/// integrator refuses: the swing by every integrator, and every strand model on the
-/// released hair against the continuous rod.
+/// Returns the rows that the command line and its settings select, without those whose
+/// model the integrator refuses. They are the swing by every integrator, and every strand
+/// model on the released hair against the continuous rod.
 std::vector<StrandCase> strand_cases(const CommandLine& line, const Settings& settings);
 
 /// The rows of strand_cases(): error of the tip, root mean square over the run, against
@@ -95,11 +95,11 @@ std::vector<Case> strand_runs(const CommandLine& line, const Settings& settings)
 /// default.
 std::vector<Case> problem_runs(const CommandLine& line, const Settings& settings);
 
-/// Rows for scene files: the tips' error against wall time, root mean square over the run
-/// and over the length, by every selected strand model and integrator. A fixed step
-/// starts at one frame and is halved until several steps succeeded or the next one would
-/// exceed the work limit of a run; of the coarser ones that failed only the finest is
-/// kept.
+/// Returns rows for scene files: the tips' error against wall time, root mean square over
+/// the run and over the length, by every selected strand model and integrator. A fixed
+/// step starts at one frame and is halved until several steps succeeded or the next one
+/// would exceed the work limit of a run. Of the coarser ones that failed only the finest
+/// is kept.
 ///
 /// time: against the same model at a much finer step; total: against the continuous rod,
 /// where strands do not touch each other. References are computed here. Throws InputError
@@ -112,25 +112,25 @@ std::vector<Case> scene_runs(const CommandLine& line, const Settings& settings,
 void add_pareto(std::vector<Row>& rows, std::string_view error,
                 const std::function<std::string(const Row&)>& group);
 
-/// Fills the columns that depend on the whole table: `order_fit` of every fixed-step
-/// series, the least-squares slope over its finest trusted points (same scene,
-/// integrator, formulation and solver, over steps; total errors: same model at its finest
-/// step, over element lengths; none for the swing), and `pareto` of every row (no run of
-/// its scene and kind of error, for time errors also of its number of elements, is both
-/// faster and more accurate).
+/// Fills the columns that depend on the whole table. `order_fit` of every fixed-step
+/// series is the least-squares slope over its finest trusted points (same scene,
+/// integrator, formulation and solver, over steps). For total errors it is over element
+/// lengths, with the same model at its finest step; none for the swing. `pareto` of every
+/// row: no run of its scene and kind of error, for time errors also of its number of
+/// elements, is both faster and more accurate.
 void add_series_columns(std::vector<Row>& rows);
 
-/// The claims about the table: digits reached on published problems, the order of total
-/// errors in element length, the cost of a high BDF order on a rod, and the claims about
-/// the swing.
+/// Checks the claims about the table. They concern the digits reached on published
+/// problems, the order of total errors in element length, and the cost of a high BDF
+/// order on a rod. Others are those about the swing.
 void check_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 /// The claims that a time error is proportional to the tolerance.
 void check_tolerances(const std::vector<Row>& rows, Verdicts& verdicts);
 
-/// The claims about the rows of the swing: runs with a time error of 1 % and of 0.1 % at
-/// the peers' number of elements and with a total error of 1 %, whose times are figures;
-/// twist does not matter; the references agree.
+/// Checks the claims about the rows of the swing. Runs with a time error of 1 % and of
+/// 0.1 % at the other simulators' number of elements and with a total error of 1 %, whose
+/// times are figures. Twist does not matter. The references agree.
 void check_swing_claims(const std::vector<Row>& all, Verdicts& verdicts);
 
 }  // namespace tress::experiments::work_precision

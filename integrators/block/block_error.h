@@ -4,19 +4,19 @@
 
 namespace tress::integrators {
 
-/// Size of the estimated error of steps, per lane, by the points that it moves: the
-/// largest of |dx|/L and |du| sqrt(L/g)/L over the root and the tips of elements, L the
-/// strand's length along its elements and g = 9.81 m/s^2, and of coordinates over their
-/// typical sizes as much as ErrorNorm takes. So that measures a strand by itself, but for
-/// its L, the sum of the chords at the start, which is shorter for elements that are
-/// arcs.
+/// Size of the estimated error of steps, per lane, by the points that the error moves.
+/// The size is the largest of |dx|/L and |du| sqrt(L/g)/L over the root and the tips of
+/// elements. L is the strand's length along its elements and g = 9.81 m/s^2. Coordinates
+/// over their typical sizes count with the weight of ErrorNorm. ErrorNorm measures a
+/// single strand in the same way except for L. Its L is the sum of the chords at the
+/// start, which is shorter for elements that are arcs.
 template <class N>
 class BlockError {
  public:
   explicit BlockError(const Block<N>& block);
 
-  /// Of `work` at the end of a step; not a number where something is not. Valid until the
-  /// next call.
+  /// Returns the error size of `work` at the end of a step, per lane; NaN where an entry
+  /// is not finite. Valid until the next call.
   const N* of(BlockWork<N>& work);
 
  private:

@@ -34,10 +34,10 @@ constexpr BlockEstimate tr_bdf2_estimate{
     .share = table.share,
     .power = table.power};
 
-/// Of semi_implicit_euler one correction of backward_euler's stage, from a = 0.
+/// Of linearly_implicit_euler one correction of backward_euler's stage, from a = 0.
 BlockMethod block_method(HeadMethod method) {
   switch (method) {
-    case HeadMethod::semi_implicit_euler:
+    case HeadMethod::linearly_implicit_euler:
       return {.stages = backward_euler, .iterates = false};
     case HeadMethod::linearly_implicit_midpoint:
       return {

@@ -21,9 +21,9 @@ struct BlockStage {
   std::array<double, 2> rate{}, drift{};
 };
 
-/// What the last stage's state is off one of higher order from the same stages: h^2 times
-/// the sum of drift[i] a_i in q, h times that of rate[i] a_i in v. It falls as h^falls,
-/// and a step may have share tolerance^power of it in the norm of BlockError.
+/// Difference between the last stage's state and one of higher order from the same
+/// stages: h^2 sum drift[i] a_i in q, h sum rate[i] a_i in v. The difference falls as
+/// h^falls. The threshold of a step in the norm of BlockError is share tolerance^power.
 struct BlockEstimate {
   std::array<double, 3> rate, drift;
   double falls, share, power;
@@ -39,10 +39,12 @@ struct BlockEstimate {
 struct BlockMethod {
   std::span<const BlockStage> stages;
   bool iterates;  // in every step; false: one correction solves a stage
-  /// So many steps of a strand differ from those that follow: they solve the first stage
-  /// that others have from the step before, or iterate where others do not.
+  /// Number of first steps of a strand that differ from the following ones. They solve
+  /// the first stage, which later steps take from the step before, or iterate where later
+  /// steps do not.
   std::size_t first_steps = 0;
-  /// So many last accelerations are kept of a strand, with two the lengths of both steps.
+  /// Number of last accelerations that are kept of a strand; with two, also the lengths
+  /// of both steps.
   std::size_t accelerations = 0;
   const BlockEstimate* estimate = nullptr;  // null: it has none
 
@@ -50,7 +52,7 @@ struct BlockMethod {
   std::size_t first() const { return stages[0].gamma == 0 ? 1 : 0; }
   /// Whether a step is one correction from a = 0 with the matrix there.
   bool linear() const { return !iterates && accelerations == 0; }
-  /// Numbers of state of a strand of so many unknowns.
+  /// Returns how many numbers the state of a strand of `unknowns` coordinates has.
   std::size_t of_state(std::size_t unknowns) const {
     return (2 + accelerations) * unknowns + (accelerations == 2 ? 2 : 0);
   }
@@ -58,7 +60,7 @@ struct BlockMethod {
 
 /// Methods that blocks have, by the ids of their integrators.
 enum class HeadMethod {
-  semi_implicit_euler,
+  linearly_implicit_euler,
   linearly_implicit_midpoint,
   backward_euler,
   tr_bdf2

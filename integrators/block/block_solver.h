@@ -10,14 +10,14 @@
 
 namespace tress::integrators {
 
-/// How Newton's method is used: see Options.
+/// Limits of Newton's iteration: see Options.
 struct NewtonLimits {
   double tolerance;
   double left;  // see PlainCourse
   int iterations;
 };
 
-/// What becomes of strands at the end of their step.
+/// Receiver of the outcome of each strand's step.
 class StepJudge {
  public:
   virtual ~StepJudge() = default;
@@ -26,12 +26,12 @@ class StepJudge {
   virtual void failed(std::size_t strand, std::size_t stage) = 0;
 };
 
-/// Steps of strands by the stages of a BlockMethod, stage by stage: Newton's iteration,
-/// damped iterations of the strands on which it fails, as Stage's, from the guess, from
-/// zero acceleration and from standstill, and 2, 4, ... shorter steps of those on which
-/// they fail. All go side by side, and lanes that are done take the next strand.
-/// Decisions are taken lane by lane, so results are the same bits for any number of lanes
-/// and whatever strands are stepped together. Memory of one thread.
+/// Steps strands by the stages of a BlockMethod, stage by stage. Newton's iteration comes
+/// first. Strands on which it fails get damped iterations, as in Stage: from the guess,
+/// from zero acceleration and from standstill. Strands on which these fail take 2, 4, ...
+/// shorter steps. All strands are processed in parallel lanes; a finished lane takes the
+/// next strand. Decisions are made per lane, so results are bit-identical for any number
+/// of lanes and any set of strands stepped together. Memory of one thread.
 template <class N>
 class BlockSolver {
  public:
@@ -52,12 +52,12 @@ class BlockSolver {
 
   /// A step of the queue's strands that are not lost. Returns those that are from now on.
   const std::vector<Loss>& step(LaneQueue all, const Step& now);
-  /// The same by whole corrections alone: strands on which they fail at a stage are
-  /// failed. At its end the step of the others is judged.
+  /// Steps strands with whole corrections only: strands on which they fail at a stage are
+  /// reported as failed. `judge` judges the others at the end of their step.
   const std::vector<Loss>& attempt(const Step& now, const LaneQueue& all,
                                    StepJudge& judge);
-  /// The step of these strands, on which it has failed: `parts`, twice as many and so on
-  /// shorter ones, to 64. Leaves those that are lost.
+  /// Repeats the step of these strands, on which it has failed, as `parts` shorter steps,
+  /// then twice that number, up to 64. Leaves in `strands` those that remain unsolved.
   void in_parts(const Step& now, std::vector<std::size_t>& strands, int parts);
   /// A step of a linear() method, of blocks first to last - 1 where they lie.
   const std::vector<Loss>& correct_blocks(std::size_t first, std::size_t last,

@@ -17,9 +17,8 @@ struct LaneQueue {
   std::size_t strand() const { return list == nullptr ? next : (*list)[next]; }
 };
 
-/// Many strands in blocks of as many as there are lanes, and their ways into lanes of
-/// BlockWork and back. Strands of one block must not be put back by several threads at
-/// once.
+/// Many strands in blocks with one strand per lane. Moves strands into lanes of BlockWork
+/// and back. Two threads must not put back strands of one block at the same time.
 template <class N>
 class BlockStore {
  public:
@@ -46,7 +45,7 @@ class BlockStore {
   }
   /// Another strand, with the whole state of `strand` of others.
   void add(const BlockStore& others, std::size_t strand);
-  /// What steps have changed of others' strand.
+  /// Copies from a strand of `others` the data that steps change.
   void take(std::size_t strand, const BlockStore& others, std::size_t from);
   void clear();
 
@@ -73,7 +72,7 @@ class BlockStore {
 
   bool lost(std::size_t strand) const { return lost_[strand] != 0; }
   bool some_lost(std::size_t block) const;
-  /// It rests from now on.
+  /// Marks a strand as failed: it rests from now on.
   void lose(std::size_t strand);
 
   /// Whether it takes one of its first steps.
@@ -86,11 +85,11 @@ class BlockStore {
   /// behind them.
   Lanes renew(Block<N>& by, std::size_t block);
 
-  /// The step of h that it was to take ends here: the last known acceleration, a_1, is
-  /// that of the stage that ends at `time` of it, from which the next trial's is
-  /// interpolated.
+  /// Ends the current step of h early. The last known acceleration a_1 is then that of
+  /// the stage that ends at the fraction `time` of the step; the next trial interpolates
+  /// from it.
   void interrupt(std::size_t strand, double h, double time);
-  /// Of a strand that chooses its steps.
+  /// Returns the step-length control of a strand that chooses its steps.
   StepLength& length(std::size_t strand) { return lengths_[strand]; }
 
   /// Numbers that steps change of a strand: state, what else its model knows, whether it
@@ -105,7 +104,8 @@ class BlockStore {
   /// lanes; into all lanes of a whole block at once.
   void fill(Home& home, LaneQueue& queue, const std::vector<std::size_t>& but,
             BlockWork<N>& work) const;
-  /// What steps have made of a strand in a lane: `which` of work's, and its state.
+  /// Stores the results of a step for a strand in a lane: its state, and its data of
+  /// `which` (now or renewed) of `work`.
   void put_home(const BlockWork<N>& work, std::size_t which, int lane,
                 std::size_t strand);
 

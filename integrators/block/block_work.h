@@ -38,11 +38,11 @@ class BlockWork {
   /// Lengths of the last two steps, of the strands at `from`.
   N* lengths(LaneVector<N>& from) const { return from.data() + 4 * numbers_; }
 
-  /// States the equations of a stage of a step of h, and finds the loads of it, of gamma
-  /// h = `loads` (s). `starts`: lanes that need a guess of a; others have come closer.
-  /// Lanes that start do so from `from`.
+  /// Sets the equations of a stage of a step of h, and computes the stage's loads for
+  /// gamma h = `loads` (s). Lanes in `starts` need a guess of a and start from `from`;
+  /// the other lanes continue.
   void begin(std::size_t stage, double h, double loads, Lanes starts, NewtonStart from);
-  /// Writes `after`.
+  /// Writes the state at the end of the stage to `after`.
   void end();
   /// After end() of the last stage, of the method's estimate.
   void difference(N* dq, N* dv) const;
@@ -52,11 +52,11 @@ class BlockWork {
   /// step = S^-1 r, and `size`. Where corrections are `whole`, the stresses that the last
   /// one has found serve this one; at first those at the start of the step.
   void newton(bool whole);
-  /// The same with the matrix of the last newton().
+  /// Computes step and size as newton() does, with the matrix of the last newton().
   void again();
-  /// a -= by.
+  /// Subtracts `by` from the acceleration a.
   void move(const N* by);
-  /// The same of a part of it in each lane.
+  /// Subtracts the fraction `part` (one per lane) of `by` from the acceleration a.
   void move(const N* part, const N* by);
 
  private:

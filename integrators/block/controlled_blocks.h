@@ -9,16 +9,16 @@
 
 namespace tress::integrators {
 
-/// Steps of strands that are as long as each one's own estimated error allows: powers of
-/// two parts of an interval that start at multiples of themselves. So strands that are at
-/// the same time and take the same step are lanes of one step, with the same poses of the
-/// head; the interval is halved until it is no longer than what a strand asks for, first
-/// half first. What a strand does depends on itself alone: results are the same bits for
-/// any number of lanes and whatever strands are stepped together. Memory of one thread.
+/// Steps strands with step lengths that each strand's own estimated error allows. A step
+/// is a power-of-two part of an interval and starts at a multiple of itself. Strands at
+/// the same time with the same step share one step in parallel lanes, with the same poses
+/// of the head. The interval is halved until it is no longer than a strand's next step;
+/// the first half comes first. Strands are independent: results are bit-identical for any
+/// number of lanes and any set of strands stepped together. Memory of one thread.
 ///
-/// A step with too large an error, or one on which whole corrections of Newton's fail, is
-/// taken again as two or more shorter ones. The shortest (StepLimits) without a solution
-/// is taken in parts (BlockSolver), without an estimate, or the strand is lost.
+/// A step with too large an error, or one on which Newton's whole corrections fail, is
+/// repeated as two or more shorter ones. The shortest step (StepLimits) without a
+/// solution is taken in parts (BlockSolver), without an estimate, or the strand fails.
 template <class N>
 class ControlledBlocks {
  public:
@@ -50,7 +50,7 @@ class ControlledBlocks {
   void take(const Step& interval, double begin, double part,
             std::vector<std::size_t>& later);
   void renew();
-  /// Those of work that have what a step has made of strands.
+  /// Returns the index of the strands of `work` that hold the results of a step.
   std::size_t stepped() const;
 
   const BlockEstimate& estimate_;

@@ -13,8 +13,8 @@ namespace tress::integrators {
 
 enum class NewtonVerdict { go_on, converged, failed };
 
-/// How Newton's iterations of strands in lanes go on and end: each lane by the sizes of
-/// its own corrections, so that no strand depends on its neighbours.
+/// Control of Newton's iterations of strands in lanes. Each lane is judged by the sizes
+/// of its own corrections, so that no strand depends on its neighbours.
 template <class N>
 class NewtonCourse {
  public:
@@ -23,7 +23,7 @@ class NewtonCourse {
   virtual ~NewtonCourse() = default;
   /// Whether it goes on by whole corrections (BlockWork::newton).
   virtual bool whole() const = 0;
-  /// Of a strand that has come into this lane.
+  /// Starts the iteration of a strand that has entered this lane.
   virtual void start(int lane, const BlockWork<N>& work) = 0;
   /// After a correction of all lanes: moves a.
   virtual void go_on(BlockWork<N>& work, Verdicts all) = 0;

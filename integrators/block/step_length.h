@@ -9,13 +9,14 @@
 
 namespace tress::integrators {
 
-/// The length of a strand's next step, such that an estimated error that falls as h^falls
-/// stays below its threshold: the elementary control of [Hairer, Wanner 1996, section
-/// IV.8]. Steps are powers of two parts of an interval, the largest that are no longer,
-/// so that most are shorter than this length by up to a half: that is the dead band of
-/// StepControl, whose proportional part would take a step that is left alone for one that
-/// the error asks for. A step without a solution sets a ceiling as there: the estimate
-/// does not see why there was none. In the block's units.
+/// Length of a strand's next step, by elementary error control: an estimated error that
+/// falls as h^falls stays below its threshold [Hairer, Wanner 1996, section IV.8]. Steps
+/// are power-of-two parts of an interval, the largest ones that are no longer than this
+/// length. Most steps are therefore shorter by up to a half, which acts as the dead band
+/// of StepControl. Its proportional part is absent: it would mistake an unchanged step
+/// for one that the error requires. A step without a solution sets a ceiling, as in
+/// StepControl, since the estimate does not reveal the cause. Lengths are in the block's
+/// units.
 class StepLength {
  public:
   double next() const { return std::min(next_, ceiling_); }

@@ -8,19 +8,19 @@
 
 namespace tress::integrators {
 
-/// Of steps with error control, over the time sqrt(L/g) in which a strand falls by its
-/// length.
+/// Limits of steps with error control, over the time sqrt(L/g) in which a strand falls by
+/// its length.
 struct StepLimits {
   double first;     // tried, if its motion starts smoothly
   double shortest;  // beyond rounding
 
-  /// Of numbers that resolve `epsilon` of themselves. They know places to epsilon L, so
-  /// that a stage of gamma h knows its acceleration to epsilon L/(gamma h)^2, of which
-  /// the estimate of velocities sees
+  /// Returns the limits for numbers with relative resolution `epsilon`. Positions are
+  /// known to epsilon L, so a stage of gamma h knows its acceleration to epsilon L/(gamma
+  /// h)^2. The estimate of velocities then contains
   ///
   ///     h sum |rate_i| epsilon L/(gamma h)^2 sqrt(L/g)/L.
   ///
-  /// Where that is above the threshold shorter steps are worse.
+  /// Where that is above the threshold, shorter steps are worse.
   static StepLimits of(const BlockMethod& method, double tolerance, double epsilon) {
     const BlockEstimate& estimate = *method.estimate;
     const double threshold = estimate.threshold(tolerance),

@@ -12,11 +12,11 @@ struct TimeSpan {
   static TimeSpan part_of(const TimeSpan& whole, double begin, double part) {
     return {.of = &whole, .begin = begin, .part = part};
   }
-  /// After x of it, 0 to 1, s.
+  /// Returns the time (s) at the fraction x of the span, 0 to 1.
   double at(double x) const {
     return of == nullptr ? t + x * h : of->at(begin + x * part);
   }
-  /// Length of x of it, s.
+  /// Returns the length (s) of the fraction x of the span.
   double length(double x) const { return of == nullptr ? x * h : of->length(x * part); }
 };
 

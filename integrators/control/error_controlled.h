@@ -15,21 +15,21 @@
 
 namespace tress::integrators {
 
-/// The loop shared by every method that chooses its steps so that the estimated error of
-/// each stays below a threshold (ErrorNorm). A method writes try_step().
+/// Loop of every method that chooses its steps so that the estimated error of each stays
+/// below a threshold (ErrorNorm). A method implements try_step().
 ///
-/// Steps do not end where advance() does: the state there is read off a quintic
-/// polynomial through (q, v, a) at both ends of the step, error O(h^6), before
-/// System::accept is called for the step's end, so that coordinates keep their meaning.
-/// It is projected onto the constraints where the method projects. The polynomial does
-/// not keep lengths that a stiff strand keeps: where it stretches the strand, the step is
-/// repeated to end there, and so do the next ones of that length (fails_from_).
-/// The system must not be changed from outside between two calls of advance(), except
-/// before rewind().
+/// Steps need not end where advance() does. The state there is interpolated by a quintic
+/// polynomial through (q, v, a) at both ends of the step, with error O(h^6).
+/// Interpolation precedes System::accept for the step's end, which may change the meaning
+/// of coordinates. The state is projected onto the constraints where the method projects.
+/// The polynomial does not preserve the length of a stiff strand. Where it stretches the
+/// strand, the step is repeated to end at t_end, and so are later steps of that length
+/// (fails_from_). The system must not be changed from outside between two calls of
+/// advance(), except before rewind().
 ///
 /// Step control: StepControl. Where Newton's iteration fails, shorter steps are tried
-/// first, which are cheap; where several fail too, the first one with all that Stage has,
-/// and from then on shorter ones likewise.
+/// first because they are cheap. If several fail too, the first step is tried again with
+/// all methods of Stage, then shorter ones in the same way.
 class ErrorControlled : public Integrator, public Rewindable {
  public:
   Status start(double t, In q, In v) final;
@@ -54,8 +54,8 @@ class ErrorControlled : public Integrator, public Rewindable {
     std::vector<double> q, v, a, lambda;
   };
 
-  /// From `from` over h to `to`, with the estimated errors of its q and v. `retry`: no
-  /// solution was found with this effort.
+  /// Takes a trial step from `from` over h to `to`, with the estimated errors of q and v.
+  /// Returns `retry` if no solution was found with this effort.
   virtual Status try_step(const State& from, double h, Effort effort, State& to,
                           Out error_q, Out error_v) = 0;
   /// The next step does not go on from the last one: nothing may be guessed from it.
@@ -68,14 +68,15 @@ class ErrorControlled : public Integrator, public Rewindable {
 
  private:
   Status end_run(Status status, const std::string& what);
-  /// As above for a step that cannot be taken; adds its number and what was not finite.
+  /// Ends the run after a step that cannot be taken; the message adds the number of the
+  /// step and what was not finite.
   Status fail(Status status, const std::string& what);
   /// Forgets history at begin_.
   Status restart();
   /// Finds the next step: end_. A step as long as those whose polynomial failed ends at
   /// `t_end` at the latest.
   Status next_step(double t_end);
-  /// Those of one step.
+  /// Attempts at one step.
   struct Attempts {
     Effort effort = Effort::plain;
     int plain = 0;       // without a solution
@@ -108,7 +109,7 @@ class ErrorControlled : public Integrator, public Rewindable {
   bool stale_ = false;         // begin_.a is of equations that do not hold any more
   double fails_from_ = 0;      // length of the last step whose polynomial failed
   std::vector<double> error_q_, error_v_;
-  /// What rewind() goes back to.
+  /// State that rewind() restores.
   struct Mark {
     double t;
     std::vector<double> q, v;

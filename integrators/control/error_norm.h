@@ -11,11 +11,11 @@ namespace tress::integrators {
 
 /// Size of an error of coordinates and velocities by the material points that it moves
 /// (PointNorm). Coordinates alone miss energy, and generalised velocities count twist
-/// that moves nothing. But frames that move no point must not leave their solution
-/// unseen: coordinates over System::scale count too, a fifteenth of them. (Seven strand
-/// models in hard cases by tr_bdf2 at 1e-3: 325 of 259 625 steps were above that by a
-/// quarter or more; where elements of corde and xpbd_cosserat turned over, which released
-/// a hundred times the energy of the fall, they were 1.3 to 4.6 times as large.) A body
+/// that moves nothing. Errors of frames that move no point must count as well:
+/// coordinates over System::scale count with a factor of 1/15. In tests of seven strand
+/// models in hard cases with tr_bdf2 at 1e-3, 325 of 259 625 steps exceeded that by a
+/// quarter or more. Where elements of corde and xpbd_cosserat turned over, which released
+/// a hundred times the energy of the fall, the excess was a factor of 1.3 to 4.6. A body
 /// without length is measured by its coordinates and velocities alone.
 class ErrorNorm {
  public:
@@ -23,10 +23,10 @@ class ErrorNorm {
 
   void start(double t, In q);
 
-  /// Of the error (dq, dv) of the state (q, v).
+  /// Returns the size of the error (dq, dv) of the state (q, v).
   double of(double t, In q, In v, In dq, In dv);
 
-  /// What the last value came from: "velocity of point 7".
+  /// Names the origin of the last value: "velocity of point 7".
   std::string where() const;
 
   /// Time (s) in which the body falls about its own size.

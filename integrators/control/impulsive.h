@@ -4,9 +4,8 @@
 
 namespace tress::integrators {
 
-/// A method whose state may be changed between steps, as impulses do; an optional
-/// capability of methods that solve for the state at the end of a step and keep none of
-/// the steps before it.
+/// Method whose state may be changed between steps, as impulses do. Optional capability
+/// of methods that solve for the state at the end of a step and use no earlier steps.
 class Impulsive {
  public:
   virtual ~Impulsive() = default;

@@ -8,9 +8,8 @@
 
 namespace tress::integrators {
 
-/// Size of the difference of two states of a body as a viewer sees it: the largest over
-/// its material points of |dx|/L and |du| sqrt(L/g)/L, L the longest way along the body
-/// and g = 9.81 m/s^2.
+/// Size of the difference of two states of a body by its material points: the largest of
+/// |dx|/L and |du| sqrt(L/g)/L. L is the longest path along the body and g = 9.81 m/s^2.
 class PointNorm {
  public:
   /// L from the points at x (3 per point).
@@ -22,7 +21,7 @@ class PointNorm {
 
   /// Positions x, velocities u against y, w. Infinite if a number is not finite.
   double of(In x, In u, In y, In w);
-  /// What the last value came from: "velocity of point 7".
+  /// Names the origin of the last value: "velocity of point 7".
   std::string where() const;
 
  private:

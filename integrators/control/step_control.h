@@ -5,11 +5,11 @@
 namespace tress::integrators {
 
 /// Chooses the lengths of steps (or of other intervals of time) such that an estimated
-/// error that falls as h^k stays below its threshold: PI control with gains 0.7/k and
-/// 0.4/k [Gustafsson 1991, ACM TOMS 17, 533], a dead band that leaves the length alone,
-/// and no growth after a rejection. A step without a solution also sets a ceiling, which
-/// rises slowly: the estimate does not see why there was none, and steps would grow into
-/// it again and again.
+/// error that falls as h^k stays below its threshold. The rule is PI control with gains
+/// 0.7/k and 0.4/k [Gustafsson 1991, ACM TOMS 17, 533], a dead band that leaves the
+/// length unchanged, and no growth after a rejection. A step without a solution also sets
+/// a ceiling, which rises slowly. The estimate does not reveal the cause, and steps would
+/// otherwise grow into the same failure again and again.
 class StepControl {
  public:
   explicit StepControl(int k) : k_(k) {}

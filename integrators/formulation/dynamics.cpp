@@ -111,9 +111,10 @@ Status Dynamics::linearize(double t, In q, In v, In a, In lambda, Weights w) noe
   return s;
 }
 
-/// ht_ = (w.acc dc/da + w.vel dc/dv + w.pos dc/dq)^T. With R(v) = d(G v + g_t)/dq: dc/da
-/// = G, dc/dv = 2 R(v) + beta G, dc/dq = R(a) + beta R(v) + alpha G + d(bias)/dq, whose
-/// last term (third derivatives of g) is omitted. Index 3: G, scaled in solve().
+/// Sets ht_ = (w.acc dc/da + w.vel dc/dv + w.pos dc/dq)^T, where dc/da = G. With R(v) =
+/// d(G v + g_t)/dq, the others are dc/dv = 2 R(v) + beta G and dc/dq = R(a) + beta R(v) +
+/// alpha G + d(bias)/dq. The last term (third derivatives of g) is omitted. Index 3: G,
+/// scaled in solve().
 Status Dynamics::constraint_tangent(double t, In q, In v, In a, Weights w) noexcept {
   std::copy(gt_.begin(), gt_.end(), ht_.begin());
   if (position_level_ || (w.vel == 0 && w.pos == 0)) return Status::ok;

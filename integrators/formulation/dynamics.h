@@ -52,15 +52,16 @@ class Dynamics {
   /// Whether directional() is called at a new state, or at that of its last call.
   enum class Base { fresh, kept };
 
-  /// Derivative of (r, c) along (dq, dv) at fixed a and lambda, by a forward difference:
-  /// one residual (two with a fresh base), error about 1e-8 relative, enough for the
-  /// right-hand side of a Newton correction. All zero directions cost nothing.
+  /// Computes the derivative of (r, c) along (dq, dv) at fixed a and lambda by a forward
+  /// difference. The cost is one residual, or two with a fresh base; zero directions cost
+  /// nothing. The relative error is about 1e-8, enough for the right-hand side of a
+  /// Newton correction.
   Status directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr, Out dc,
                      Base base = Base::fresh) noexcept;
 
   /// a and lambda that satisfy r = 0 and g'' = -alpha g - beta g' at (t, q, v); leaves
   /// the mass matrix with the constraints of this state factored for solve(). A singular
-  /// mass matrix determines no acceleration; a is then that of a short semi-implicit
+  /// mass matrix determines no acceleration; a is then that of a short linearly implicit
   /// step, after which massless coordinates are nearly in equilibrium.
   Status accelerate(double t, In q, In v, Out a, Out lambda) noexcept;
 
@@ -75,8 +76,8 @@ class Dynamics {
   }
   /// The part of the step that failed at which its solution turned back; 0: not known.
   double reached = 0;
-  /// The speed (m/s) at which exact friction did work on a slide where the best solution
-  /// of the step that failed left its law violated; 0: that was not the reason.
+  /// Speed (m/s) at which exact friction did work on a slide, where the best solution of
+  /// the failed step violated the law of friction. 0: not the reason of the failure.
   double driven = 0;
 
   /// To be called before a run: resets the counts and all memory of the previous run.

@@ -17,11 +17,11 @@ std::optional<std::vector<double>> diagonal_mass(System& system);
 ///
 ///     q -= omega g_k W G_k^T / (G_k W G_k^T),   W = M^-1 diagonal
 ///
-/// with g_k updated to first order during the sweep; g and G are re-evaluated when the
+/// with g_k updated to first order during the sweep. g and G are re-evaluated when the
 /// violation has fallen tenfold. Internal constraints preserve the centre of mass. The
 /// factor omega = 2/(1 + sin(pi/(2 m + 1))) is optimal for a chain of m equal links held
-/// at one end, whose Jacobi iteration has the spectral radius cos(pi/(2 m + 1)) [Young
-/// 1971, Iterative Solution of Large Linear Systems, section 6.2]; any in (0, 2)
+/// at one end. Its Jacobi iteration has the spectral radius cos(pi/(2 m + 1)) [Young
+/// 1971, Iterative Solution of Large Linear Systems, section 6.2]. Any omega in (0, 2)
 /// converges. One digit then costs about m sweeps. [Provot 1995, Graphics Interface,
 /// section 5]
 class Relaxation {

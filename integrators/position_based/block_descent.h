@@ -12,14 +12,14 @@
 
 namespace tress::integrators {
 
-/// How descent takes the second derivatives of strains.
+/// Treatment of the second derivatives of strains in block descent.
 enum class Curvature {
   exact,      // as they are where the window's matrix is then positive definite
   majorised,  // sums of the sizes of each row on the diagonal
   none        // left out
 };
 
-/// What descent hides from the sweeps of rows that are too stiff for them.
+/// Limit on the stiffness of rows that the sweeps use, for rows too stiff to converge.
 struct Augmentation {
   double penalty;  // 1/s^2: largest stiffness of a row, times its G W G^T; 0: by the step
   double kept;     // part of the multipliers that the next step starts from
@@ -41,24 +41,24 @@ struct DescentChoice {
 ///
 ///     |x - target|^2_M/(2 h^2) + E(x),      target = origin + h v + h^2 rest,
 ///
-/// and friction at the rates (x - origin)/h: in every sweep each window of consecutive
-/// nodes (windows.h) in turn takes a Newton step on its own coordinates with the others
-/// held [Chen et al. 2024]. In sweeps of odd number windows begin half a window earlier.
-/// With s the stress of a row, C_f = C + alpha c C' its strain with friction, gamma =
-/// alpha c/h:
+/// and friction at the rates (x - origin)/h. In every sweep each window of consecutive
+/// nodes (windows.h) in turn takes a Newton step on its own coordinates, with the others
+/// held [Chen et al. 2024]. In odd sweeps windows begin half a window earlier. With s the
+/// stress of a row, C_f = C + alpha c C' its strain with friction, gamma = alpha c/h:
 ///
 ///     H = M/h^2 + sum k (1 + gamma) G^T G + s d^2C/dx^2,    k = 1/alpha, s = k C_f.
 ///
-/// H is made positive definite by a majoriser of its last term [Giles et al. 2025, with
-/// row sums, which bound it, in place of norms] where it is not. Without a majoriser a
-/// move is halved while the forces after it push back more than those before it drove:
-/// else blocks of several locked nodes throw each other about. Converged sweeps are
-/// backward Euler's step, G and all; before that stiff rows lock soft ones: a node can
-/// move only as far as its rows' stiffness lets it with its neighbours held, so that on a
-/// hair hundreds of sweeps do not bring about a step's bending.
+/// Where H is not positive definite, a majoriser of its last term makes it so [Giles et
+/// al. 2025, with row sums, which bound it, in place of norms]. Without a majoriser a
+/// move is halved while the forces after it push back more than those before it drove.
+/// Otherwise blocks of several locked nodes would throw each other about. Converged
+/// sweeps solve backward Euler's step, including the change of G. Before convergence
+/// stiff rows lock soft ones: with its neighbours held, a node moves only as far as the
+/// stiffness of its rows allows. On a hair, hundreds of sweeps do not reproduce the
+/// bending of one step.
 ///
-/// Augmented, k is at most penalty/(G W G^T), as a spring of that stiffness would be, and
-/// the multiplier makes up for the rest,
+/// With augmentation, k is at most penalty/(G W G^T), the stiffness of a spring, and the
+/// multiplier makes up for the rest,
 ///
 ///     s = k C_f + (1 - k alpha) lambda,    lambda <- s after some sweeps,
 ///
@@ -73,7 +73,7 @@ class BlockDescent {
 
   /// The multipliers of a state that is not reached by run(): of its strains.
   void begin(double t, In q);
-  /// Of equations at time t; x is the guess, then the solution. Counts into `stats`.
+  /// Solves the equations of time t; x is the guess, then the solution. Adds to `stats`.
   void run(double t, double h, In origin, In target, InOut x, Stats& stats);
 
   /// Nodes in the order of sweeps, orientations that have a closed form excluded.
@@ -113,7 +113,7 @@ class BlockDescent {
   ComplianceForm& form_;
   const std::vector<Block>& blocks_;
   std::vector<std::vector<int>> nodes_;
-  /// Those of even sweeps and of odd ones, and the order of each.
+  /// Windows of even sweeps and of odd ones, and the order of each.
   std::array<std::vector<Window>, 2> windows_;
   std::array<std::vector<std::size_t>, 2> order_;
   std::vector<std::size_t> order_of_orientations_;

@@ -8,7 +8,7 @@
 
 namespace tress::integrators {
 
-/// Where the sweeps of a step start from q, v and rest = a of a node.
+/// Starting point of the sweeps of a step, from q, v and rest = a of a node.
 enum class Start {
   inertial,  // q + h v + h^2 a
   adaptive   // q + h v + h^2 s a, s in [0, 1] the part of a in the last step's motion

@@ -24,32 +24,33 @@ inline constexpr Parameter sweep_order_option{.name = "sweep_order",
 /// The options above, which all methods that sweep have.
 std::span<const Parameter> sweep_options();
 
-/// Indices of `count` blocks in the order of a sweep: from the root to the tip, or from
-/// both ends alternately, even indices upwards and odd ones downwards, after the
-/// bilateral interleaving of [Kugelstadt & Schoemer 2016].
+/// Returns the indices of `count` blocks in the order of a sweep: from the root to the
+/// tip, or from both ends alternately. In the latter, even indices ascend and odd ones
+/// descend, after the bilateral interleaving of [Kugelstadt & Schoemer 2016].
 std::vector<std::size_t> sweep_indices(std::string_view sweep_order, std::size_t count);
 
-/// Gauss-Seidel sweeps over the blocks of a model's ComplianceForm: from a guess x and
+/// Gauss-Seidel sweeps over the blocks of a model's ComplianceForm. From a guess x and
 /// lambda = 0 every block is corrected in turn by x += W G^T dlambda with
 ///
 ///     ((1 + gamma) G W G^T + alpha/h^2) dlambda
 ///         = -C - alpha lambda/h^2 - gamma (G (x - origin) + h C_t),   gamma = alpha c/h,
 ///
-/// so that converged sweeps solve x = guess + h^2 W G^T s, s of the energy and of its
-/// friction at the rates (x - origin)/h, except for the change of G on the way. [Macklin,
-/// Mueller & Chentanez 2016, eqs. 18, 26]
+/// so that converged sweeps solve x = guess + h^2 W G^T s, except for the change of G.
+/// The stress s is that of the energy and of its friction at the rates (x - origin)/h.
+/// [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
 class PositionSweeps {
  public:
-  /// Reads sweep_options(). Throws InputError where an option is out of range.
+  /// Constructs the sweeps from sweep_options(). Throws InputError if an option is out of
+  /// range.
   PositionSweeps(System& system, const Options& options);
 
-  /// Of equations at time t; x is the guess, then the solution. Counts into `stats`.
+  /// Solves the equations of time t; x is the guess, then the solution. Adds to `stats`.
   void run(double t, double h, In origin, InOut x, Stats& stats);
-  /// What the sweeps of the last run leave undone, over how far x is from its origin, by
-  /// the root of the sum of squares weighed by the diagonal of the mass: the rest of a
-  /// geometric series of the moves of the last two sweeps, r m/(1 - r) with r =
-  /// m/m_before (at most `slowest`), m the last. A single sweep does not tell its r:
-  /// `unknown`.
+  /// Estimates the remaining error of the last run's sweeps relative to the distance of x
+  /// from its origin. The norm is the root of the sum of squares weighted by the diagonal
+  /// of the mass. The remainder is that of a geometric series of the moves m of the last
+  /// two sweeps: r m/(1 - r), with r = m/m_before, at most `slowest`. After a single
+  /// sweep r is not known: `unknown`.
   double unsettled() const { return unsettled_; }
 
  private:

@@ -4,13 +4,13 @@
 namespace tress::integrators {
 namespace {
 
-/// Stable Cosserat rods: in every sweep all nodes by block descent with inertia, then all
-/// orientations in closed form and without inertia (ComplianceForm::orient), from the
-/// adaptive start and the orientations of the last step. Converged sweeps are backward
-/// Euler's step of a rod whose sections have no rotary inertia. Where the paper's
-/// energies are isotropic and it replaces the multiplier of the norm by a bound, the
-/// closed form here is exact and its fixed point that of the model's energy. [Hsu et al.
-/// 2025]
+/// Stable Cosserat rods. Every sweep treats all nodes by block descent with inertia, then
+/// all orientations in closed form and without inertia (ComplianceForm::orient). Sweeps
+/// start from the adaptive start and the orientations of the last step. Converged sweeps
+/// solve backward Euler's step of a rod whose sections have no rotary inertia. The
+/// paper's energies are isotropic, and it replaces the multiplier of the norm by a bound.
+/// The closed form here is exact, and its fixed point is that of the model's energy. [Hsu
+/// et al. 2025]
 std::unique_ptr<Integrator> cosserat_of(System& system, const Options& options) {
   const Parameters chosen = own_options(options, sweep_options());
   return std::make_unique<DescentMethod>(

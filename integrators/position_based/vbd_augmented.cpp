@@ -5,12 +5,13 @@
 namespace tress::integrators {
 namespace {
 
-/// Block descent on the compliant augmented Lagrangian: DescentMethod with no row stiffer
-/// than a spring that swings the row's coordinates at sqrt(penalty), and multipliers that
-/// carry the stress over steps. Where vbd locks for hundreds of sweeps, tens reach the
-/// step, within a window of the penalty: below it multipliers take long, above it sweeps
-/// do. The window lies near 5/h^2, a decade wide or less. [Giles et al. 2025 with an
-/// infinite stiffness and a penalty that grows; Rockafellar 1976]
+/// Block descent on the compliant augmented Lagrangian: DescentMethod with bounded row
+/// stiffness, and multipliers that carry the stress over steps. No row is stiffer than a
+/// spring that swings the row's coordinates at sqrt(penalty). Where vbd locks for
+/// hundreds of sweeps, tens of sweeps converge if the penalty lies in a window. Below the
+/// window multipliers converge slowly, above it sweeps do. The window lies near 5/h^2 and
+/// spans a decade or less. [Giles et al. 2025 with an infinite stiffness and a penalty
+/// that grows; Rockafellar 1976]
 constexpr Parameter augmented_own[] = {
     sweeps_option,
     sweep_order_option,
@@ -18,7 +19,7 @@ constexpr Parameter augmented_own[] = {
     curvature_option,
     start_option,
     chebyshev_option,
-    {.name = "penalty_1_s2",
+    {.name = "penalty_per_s2",
      .help = "largest stiffness of a row, times its G W G^T, 0: 5 over the square of the "
              "step",
      .number = 0,
@@ -39,7 +40,7 @@ constexpr Parameter augmented_own[] = {
 std::unique_ptr<Integrator> augmented_of(System& system, const Options& options) {
   const Parameters chosen = own_options(options, augmented_own);
   DescentChoice choice = descent_choice(chosen);
-  choice.augmentation = {.penalty = chosen.number("penalty_1_s2"),
+  choice.augmentation = {.penalty = chosen.number("penalty_per_s2"),
                          .kept = chosen.number("kept_multipliers"),
                          .sweeps = chosen.whole("primal_sweeps")};
   return std::make_unique<DescentMethod>(system, options, choice, start_choice(chosen));

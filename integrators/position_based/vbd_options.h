@@ -27,7 +27,7 @@ inline constexpr Parameter chebyshev_option{
     .min = 0,
     .max = 1};
 
-/// Of values of sweeps_option, sweep_order_option and the above.
+/// Returns the choice given by sweeps_option, sweep_order_option and the options above.
 DescentChoice descent_choice(const Parameters& chosen);
 Start start_choice(const Parameters& chosen);
 

@@ -20,10 +20,10 @@ struct Window {
   Skyline matrix, exact;  // of the profile that the parts give
 };
 
-/// The nodes of a system of n coordinates, those of one of them after the other: sets of
-/// coordinates that enter the same blocks, as the position of a mass point does or a
-/// quaternion. In the order of the blocks, so along the body from the root. Coordinates
-/// in `without` are in none.
+/// Returns the nodes of a system of n coordinates, each as a list of coordinates. A node
+/// is a set of coordinates that enter the same blocks, such as the position of a mass
+/// point or a quaternion. Nodes are in the order of the blocks, along the body from the
+/// root. Coordinates in `without` are in none.
 std::vector<std::vector<int>> nodes_of(const ComplianceForm& form, int n,
                                        const std::vector<int>& without);
 

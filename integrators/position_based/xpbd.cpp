@@ -8,11 +8,12 @@ namespace tress::integrators {
 namespace {
 
 /// Position-based dynamics with compliance: backward Euler on the energy, explicit on all
-/// other forces, by a fixed number of sweeps (PositionSweeps) from x = q + h v + h^2
+/// other forces. A fixed number of sweeps (PositionSweeps) starts from x = q + h v + h^2
 /// rest(q, v); then v = (x - q)/h. Order 1. With few sweeps it is softer than the model,
 /// increasingly so for longer steps and finer strands. Converged sweeps give backward
-/// Euler's step except for the change of G during the step, O(h^2) of the force (none for
-/// linear C, large if light coordinates turn far). [Macklin, Mueller & Chentanez 2016]
+/// Euler's step except for the change of G during the step. That change is O(h^2) of the
+/// force: none for linear C, large if light coordinates turn far. [Macklin, Mueller &
+/// Chentanez 2016]
 class Xpbd final : public FixedStep {
  public:
   Xpbd(System& system, const Options& options)

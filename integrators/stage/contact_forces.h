@@ -7,15 +7,16 @@
 
 namespace tress::integrators {
 
-/// The state and the forces of rigid contacts at once: each iteration solves the
-/// equations and the laws of contact, linear about the last state [Josephy 1979], and is
-/// damped as those of Damped are. Tried with exact contact where Newton's method fails
-/// with the multipliers of now, from its guess and from zero acceleration; for systems
-/// with a Complementarity.
+/// Solves for the state and the forces of rigid contacts at once. Each iteration solves
+/// the equations and the laws of contact, both linear about the last state [Josephy
+/// 1979], with the damping of Damped. For systems with a Complementarity. Used with exact
+/// contact where Newton's method fails with the current multipliers, from its guess and
+/// from zero acceleration.
 ///
-/// Cost: for each correction a matrix, a residual and a solve for each of the three
-/// components of every contact, and two of both more, again for each halving. So contacts
-/// with more than two components for every unknown are left to other ways.
+/// Cost: each correction needs a matrix, a residual, and a solve for each of the three
+/// components of every contact. Two more residuals and solves are added, and again for
+/// each halving. Contacts with more than two components per unknown are left to other
+/// methods.
 class ContactForces {
  public:
   ContactForces(StageEquations& equations, ContactForm& contacts, double tolerance)

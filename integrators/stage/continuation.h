@@ -22,7 +22,7 @@ class Continuation {
         f_(equations.dynamics),
         f_part_(f_) {}
 
-  /// From x, a solution of `part` of the step, to that of the whole one.
+  /// Continues from x, a solution of `part` of the step, to a solution of the whole step.
   Status solve(double part, Unknowns& x) noexcept;
 
  private:

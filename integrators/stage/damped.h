@@ -4,14 +4,15 @@
 
 namespace tress::integrators {
 
-/// Newton's method with damped corrections: the whole one, or the largest halving of it
-/// for which the next correction with the same matrix is smaller (the natural
-/// monotonicity test) [Deuflhard 2011, Newton Methods for Nonlinear Problems, section
-/// 3.3]. Tried where Newton's method fails, as with long steps of shaken strands: from
-/// the guess, from zero acceleration and from standstill.
+/// Newton's method with damped corrections: the whole correction, or its largest halving
+/// that passes the natural monotonicity test. The test requires that the next correction
+/// with the same matrix is smaller [Deuflhard 2011, Newton Methods for Nonlinear
+/// Problems, section 3.3]. Used where Newton's method fails, as with long steps of shaken
+/// strands: from the guess, from zero acceleration and from standstill.
 ///
-/// Cost: a matrix for each correction, of which damped_patience times newton_iterations
-/// are allowed, and a residual and a solve for it and for each halving.
+/// Cost: each correction needs a matrix, and a residual and a solve for the correction
+/// and for each halving. At most damped_patience times newton_iterations corrections are
+/// taken.
 class Damped {
  public:
   explicit Damped(StageEquations& equations)

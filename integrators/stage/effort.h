@@ -2,8 +2,8 @@
 
 namespace tress::integrators {
 
-/// How far a solution of a stage is sought: by Newton's iteration and on jumps alone
-/// (plain), or also by all that costs a hundred times as much (whole).
+/// Effort to solve a stage: Newton's iteration and jumps only (plain), or also all
+/// methods that cost a hundred times more (whole).
 enum class Effort { plain, whole };
 
 }  // namespace tress::integrators

@@ -4,15 +4,15 @@
 
 namespace tress::integrators {
 
-/// A tenth of the step is solved, then a gradually longer part of it until it is whole
-/// [Deuflhard 2011, Newton Methods for Nonlinear Problems, section 5.1], each by damped
-/// corrections from an extrapolation. Tried where damped corrections fail: first with the
-/// drift of the whole step, for soft strands that fall far in one step; then with the
-/// drift of the part, for strands that turn fast, which the drift of the whole step
-/// carries out of reach of any guess. Where that gets stuck, Continuation goes on.
+/// Solves a tenth of the step, then a gradually longer part until it is whole [Deuflhard
+/// 2011, Newton Methods for Nonlinear Problems, section 5.1]. Each part is solved by
+/// damped corrections from an extrapolation. Used where damped corrections fail. The
+/// drift of the whole step comes first, for soft strands that fall far in one step. The
+/// drift of the part follows, for strands that turn fast: the drift of the whole step
+/// would carry them out of reach of any guess. Where that stalls, Continuation follows.
 ///
-/// Cost: that of Damped for each part. A part that fails is followed by a shorter one,
-/// growth falling to 1.05, so a step that can be solved takes about ten.
+/// Cost: that of Damped for each part. After a part that fails, a shorter one follows
+/// with growth down to 1.05, so a step that can be solved takes about ten.
 class Lengthened {
  public:
   using Drift = StageEquations::Drift;
@@ -24,7 +24,7 @@ class Lengthened {
         solved_(equations.dynamics),
         before_(solved_) {}
 
-  /// From standstill; x: multipliers in, solution out.
+  /// Solves from standstill; x: multipliers in, solution out.
   Status solve(Drift drift, Unknowns& x) noexcept {
     const Status s = lengthen(drift, x);
     equations_.take_whole();

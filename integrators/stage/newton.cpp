@@ -8,7 +8,7 @@ namespace tress::integrators {
 namespace {
 
 // A matrix is rebuilt where more iterations than this are to come at the present rate.
-// An exact tangent costs as much as six of them, and two follow it.
+// An exact Jacobian costs as much as six of them, and two follow it.
 constexpr double most_to_come = 8;
 
 }  // namespace

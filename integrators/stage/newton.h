@@ -10,16 +10,15 @@
 
 namespace tress::integrators {
 
-/// How Newton's method ends, and what it learns.
+/// Convergence criteria of Newton's method, and reuse of its matrix.
 struct NewtonEnding {
   double remaining = NewtonRules::margin;
-  /// Stages learn from those before that had the same matrix, which is improved
-  /// (SecantUpdates). For smooth equations without multipliers. Only the matrix is
-  /// taken over: a first correction is never the last one on the strength of the rate
-  /// of the stage before [as Hairer, Wanner 1996, Solving ODEs II, IV.8, allow]. That
-  /// rate is one direction's, and the errors that it did not see made steps shorter and
-  /// added up over them: 40 tolerances at 1e-5 where 7 are left without
-  /// (tests/control/test_tolerance_family.cpp).
+  /// Reuses the matrix of earlier stages, improved by SecantUpdates, where it is the
+  /// same. For smooth equations without multipliers. Only the matrix is reused: the rate
+  /// of the stage before never makes a first correction the last one [as Hairer, Wanner
+  /// 1996, Solving ODEs II, IV.8, allow]. That rate belongs to one direction. The errors
+  /// that it missed shortened the steps and accumulated: 40 tolerances at 1e-5, against 7
+  /// without (tests/control/test_tolerance_family.cpp).
   bool learns = false;
   /// A correction of this size (System::scale), if it is the first one or has a new
   /// matrix, leaves the matrix out of date, whatever its rate.

@@ -9,8 +9,8 @@ namespace tress::integrators {
 /// After this many growing corrections the iteration counts as not converging.
 inline constexpr int most_grown = 2;
 
-/// Damped corrections are smaller: this many times as many are allowed; a part of one
-/// below the shortest makes no progress.
+/// Factor on the allowed number of corrections when they are damped, since these are
+/// smaller. A fraction of a correction below the shortest makes no progress.
 inline constexpr int damped_patience = 3;
 inline constexpr double shortest_damped = 1e-4;
 
@@ -25,7 +25,8 @@ struct NewtonRules {
   double left;       // of the error, by the rate at which corrections shrink
   double rounding;   // below it corrections that stop shrinking are rounding errors
 
-  /// Of a tolerance that has no margin of its own: what is left is a tenth of it.
+  /// Margin of a tolerance without a margin of its own: the error left is a tenth of the
+  /// tolerance.
   static constexpr double margin = 0.1;
 
   /// `left`: the part of the tolerance that may be left. Numbers resolve corrections of a
@@ -40,7 +41,8 @@ struct NewtonRules {
   /// The error that a correction of this size leaves if the next ones shrink at this
   /// rate: the sum of those.
   static double error_left(double size, double rate) { return size * rate / (1 - rate); }
-  /// Of a correction after `done` others, `rate` times as large as the last one.
+  /// Tests whether a correction stagnates: `done` others came before, the last one
+  /// smaller by 1/`rate`.
   bool stagnates(double size, double rate, int done) const {
     return rate > 0.5 && done >= 2 && size <= rounding;
   }

@@ -6,11 +6,11 @@
 
 namespace tress::integrators {
 
-/// What the steps of Newton's iteration with one matrix tell about its error: Broyden's
-/// good rank-one updates, in the product form of [Deuflhard 2011, Newton Methods for
-/// Nonlinear Problems, section 2.1.4]. An update costs two products of vectors in each of
-/// the next steps. It turns the linear convergence with an old or incomplete matrix into
-/// one that gets faster with every step.
+/// Broyden's good rank-one updates of a matrix by the steps of Newton's iteration with
+/// it, in the product form of [Deuflhard 2011, Newton Methods for Nonlinear Problems,
+/// section 2.1.4]. An update costs two products of vectors in each of the next steps.
+/// Convergence with an old or incomplete matrix is then faster with every step instead of
+/// linear.
 class SecantUpdates {
  public:
   /// `typical`: sizes of the unknowns, by which they are compared. It must outlive this.

@@ -16,6 +16,7 @@ Stage::Stage(Dynamics& dynamics, const Options& options, Ending ending)
                  options.newton_iterations),
       stresses_(dynamics),
       contacts_(dynamics.system().contact_form()),
+      watcher_(dynamic_cast<StageWatcher*>(&dynamics.system())),
       newton_(equations_, stresses_, options.refresh, ending, contacts_ != nullptr),
       jump_(equations_),
       damped_(equations_),
@@ -47,6 +48,9 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
   } else {
     s = by_newton(matrix);
     if (s == Status::retry && effort == Effort::whole) s = by_all_means();
+  }
+  if (watcher_ != nullptr && s == Status::ok) {
+    watcher_->solved(t, q(), v(), x_.a, x_.lambda);
   }
   std::ranges::copy(x_.a, a.begin());
   std::ranges::copy(x_.lambda, lambda.begin());

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contract/forms/contact_form.h"
+#include "contract/forms/stage_watcher.h"
 #include "integrators/stage/contact_forces.h"
 #include "integrators/stage/continuation.h"
 #include "integrators/stage/damped.h"
@@ -14,11 +15,11 @@
 
 namespace tress::integrators {
 
-/// Solves the nonlinear equations of one implicit stage, for every implicit fixed-step
-/// method: finds a (n) and lambda (m) with
+/// Solves the nonlinear equations of one implicit stage: finds a (n) and lambda (m) with
 ///     r(t, q, v, a) = G^T lambda,  c = 0,   q = q_bar + w.pos a,  v = v_bar + w.vel a.
 ///
-/// Each way to solve them is a class of its own, tried in this order until one succeeds:
+/// Each solution method is a class of its own. They are tried in this order until one
+/// succeeds:
 ///
 ///     Newton         whole corrections
 ///     Jump           where Newton's iterates alternate between two states
@@ -27,10 +28,10 @@ namespace tress::integrators {
 ///                    then with its own
 ///     Continuation   where the last of these gets stuck
 ///
-/// With exact contact (ContactForm) the multipliers of contact are constants while the
-/// equations are solved; they are improved and the equations are solved again until the
-/// law holds within Options::contact_tolerance (augmented Lagrangian). There
-/// ContactForces follows Jump.
+/// With exact contact (ContactForm) the contact multipliers are constant while the
+/// equations are solved. Improving the multipliers and solving the equations alternate
+/// until the law is satisfied within Options::contact_tolerance (augmented Lagrangian).
+/// ContactForces then follows Jump.
 class Stage {
  public:
   using Ending = NewtonEnding;
@@ -48,17 +49,17 @@ class Stage {
   Status solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lambda,
                Matrix matrix = Matrix::own, Effort effort = Effort::whole) noexcept;
 
-  /// Exactly one Newton step from the guess, converged or not (semi-implicit methods),
-  /// with the matrix at acceleration a_matrix.
+  /// Exactly one Newton step from the guess, converged or not (linearly implicit
+  /// methods), with the matrix at acceleration a_matrix.
   Status single_step(double t, In q_bar, In v_bar, Weights w, In a_matrix, InOut a,
                      InOut lambda) noexcept;
 
-  /// The state from which the next solution goes on, to be told of every step: its
-  /// stresses are near those of the solution, where those of a guess need not be.
+  /// Sets the state from which the next solution continues; call it at every step. The
+  /// stresses of this state are near those of the solution, unlike those of a guess.
   void leave(double t, In q) noexcept { stresses_.leave(t, q); }
 
-  /// Where solve() goes on from along the bodies that points may touch (ContactForm): x0
-  /// in X = x0 + tau U. Empty without exact contact.
+  /// Positions x0 in X = x0 + tau U along the bodies that points may touch (ContactForm),
+  /// from which solve() continues. Empty without exact contact.
   InOut place_bar() { return place_bar_; }
   /// X, or U, at a state, in vectors of that size.
   void places(double t, In q, In v, Out x) noexcept {
@@ -84,6 +85,7 @@ class Stage {
   StageEquations equations_;
   StressOrigin stresses_;
   ContactForm* contacts_;  // null: none
+  StageWatcher* watcher_;  // null: the system does not watch
   Newton newton_;
   Jump jump_;
   Damped damped_;

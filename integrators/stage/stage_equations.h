@@ -7,12 +7,16 @@
 
 namespace tress::integrators {
 
-/// The equations of one implicit stage as a function of its unknowns x = (a, lambda):
+/// Equations of one implicit stage as a function of the unknowns x = (a, lambda),
+///
 ///     F(x) = (r(t, q, v, a) - G^T lambda, c) = 0,  q = q_bar + w.pos a,  v = v_bar +
 ///     w.vel a
+///
 /// or those of a part s of the step, with t - left in place of t and
+///
 ///     q = q_bar - left v_bar + s^2 w.pos a,  v = v_bar + s w.vel a.
-/// All ways to solve a stage share them, and the place q(), v() at which they are
+///
+/// All solution methods of a stage share them, and the state q(), v() at which they are
 /// evaluated.
 class StageEquations {
  public:

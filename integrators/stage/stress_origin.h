@@ -8,9 +8,10 @@
 
 namespace tress::integrators {
 
-/// Where Newton's matrices of systems with a StressForm take their stresses: first from
-/// the state that the motion left last, then from Newton's corrections, so that an edge
-/// that turns within an iteration is not stretched by that. Without such a form: nothing.
+/// Origin of the stresses in Newton's matrices of systems with a StressForm. They come
+/// first from the last state of the motion, then from Newton's corrections, so that an
+/// edge that turns within an iteration does not appear stretched. Without such a form: no
+/// effect.
 class StressOrigin {
  public:
   explicit StressOrigin(Dynamics& dynamics)

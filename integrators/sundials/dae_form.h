@@ -28,9 +28,9 @@ class DaeForm {
   /// and g' = 0, without a corrector of the initial values.
   Status consistent(double t, InOut y, Out y_dot) noexcept;
 
-  /// Typical sizes of the multipliers at a consistent y: for lambda the larger of its
-  /// value there and the force that turns v_typ within q_typ, M v_typ^2 / (q_typ |G|);
-  /// for mu v_typ / |G|.
+  /// Computes typical sizes of the multipliers at a consistent y. For mu: v_typ / |G|.
+  /// For lambda: the larger of its value and of the force that reverses v_typ within
+  /// q_typ, M v_typ^2 / (q_typ |G|).
   Status multiplier_scale(double t, In y, Out typ) noexcept;
 
   /// 1 for differential unknowns (q and v), 0 for multipliers.

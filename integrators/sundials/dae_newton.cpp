@@ -6,9 +6,9 @@
 namespace tress::integrators {
 namespace {
 
-/// Added to the multipliers' diagonal (whose Schur complement G G^T is of order one in
-/// the scaled matrix) when constraints are redundant: the corrections of q and v keep
-/// eight digits, those of the multipliers have minimum norm.
+/// Regularisation added to the diagonal of the multipliers when constraints are
+/// redundant. The Schur complement G G^T is of order one in the scaled matrix. The
+/// corrections of q and v keep eight digits, those of the multipliers have minimum norm.
 constexpr double regularisation = 1e-8;
 
 }  // namespace

@@ -40,13 +40,13 @@ class EliminatedNewton final : public DaeNewton {
 ///     [ H_q                   H_v           .       .   ]
 ///     [ G                     .             .       .   ]   (GGL)
 ///
-/// Index 1: H_q = R(v') + beta R(v) + alpha G (without third derivatives of g),
-/// H_v = (cj + beta) G + 2 R(v). Index 3: H_q = G, H_v = 0. GGL: H_q = R(v), H_v = G.
+/// Index 1: H_q = R(v') + beta R(v) + alpha G (without third derivatives of g), H_v = (cj
+/// + beta) G + 2 R(v). Index 3: H_q = G, H_v = 0. GGL: H_q = R(v), H_v = G.
 ///
 /// cj and the mass unit s are factored out, so that the condition number does not grow as
-/// the step shrinks: unknowns (cj x_q, x_v, x_lambda / (cj s), x_mu), second row / (cj
-/// s), rows of g'' / cj, rows of g times cj. [Bottasso, Bauchau, Cardona, SIAM J. Sci.
-/// Comput. 29 (2007) 397] scales index 3 in the same way.
+/// the step shrinks. Unknowns are (cj x_q, x_v, x_lambda / (cj s), x_mu). The second row
+/// is divided by cj s, rows of g'' by cj; rows of g are multiplied by cj. [Bottasso,
+/// Bauchau, Cardona, SIAM J. Sci. Comput. 29 (2007) 397] scales index 3 in the same way.
 class AssembledNewton final : public DaeNewton {
  public:
   AssembledNewton(DaeForm& form, const Options& options);

@@ -8,14 +8,14 @@
 
 namespace tress::integrators {
 
-/// Common base of all SUNDIALS integrators: the state y = (q, v, ...) in our memory,
-/// absolute tolerances atol * System::scale, one internal step at a time with the end of
-/// the interval as stop time, System::accept and the observer after each, and failures as
-/// text.
+/// Common base of all SUNDIALS integrators. The state y = (q, v, ...) is in memory of
+/// tress, with absolute tolerances atol * System::scale. The driver takes one internal
+/// step at a time, with the end of the interval as stop time. System::accept and the
+/// observer follow each step. Failures are reported as text.
 ///
 /// Options.refresh: SUNDIALS never rebuilds inside a step. `every_step` forces a rebuild
-/// in each; the other two leave SUNDIALS' own rule (when gamma or cj has drifted, when
-/// convergence is slow, at the latest after some 20 steps).
+/// in each. The other two leave SUNDIALS' own rule: rebuild when gamma or cj has drifted,
+/// when convergence is slow, or after 20 steps at the latest.
 class Driver : public Integrator {
  public:
   Status start(double t, In q, In v) final;
@@ -56,7 +56,8 @@ class Driver : public Integrator {
 
  private:
   Status fail(const std::string& why);
-  /// As fail(), with the number of the step and what was not finite in it.
+  /// Ends the run as fail() does; the message adds the number of the step and what was
+  /// not finite in it.
   Status fail_in_step(std::string why);
   Status fail_with(int code);
   Status begin();

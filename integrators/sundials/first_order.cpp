@@ -6,9 +6,10 @@
 namespace tress::integrators {
 namespace {
 
-/// The error test allows each unknown atol of its scale and rtol of its size, which is
-/// taken to be a hundredth of the scale: Newton's iteration may leave a part of that, but
-/// not less than the rounding of the unknowns. A matrix is kept while it serves.
+/// Returns the options of the stages. The error test allows each unknown atol of its
+/// scale and rtol of its size, which is taken as a hundredth of the scale. Newton's
+/// iteration may leave a part of that allowance, but not less than the rounding of the
+/// unknowns. The matrix is kept as long as it converges.
 Options of_stages(Options options) {
   constexpr double sundials_coefficient = 0.1;  // its default, selected by 0
   constexpr double small = 0.01, rounding = 1e-13;

@@ -14,7 +14,8 @@ class ImplicitAdapter {
   void attach(const ArkstepMemory& memory);
 
  private:
-  /// What the library wants solved: y = predicted + correction = known + gamma f(t, y).
+  /// Equation that SUNDIALS passes to be solved: y = predicted + correction = known +
+  /// gamma f(t, y).
   struct Equation {
     double t = 0, gamma = 0;
     In predicted;

@@ -43,8 +43,8 @@ constexpr int linear_solver_code(Status status) noexcept {
                                    : unrecoverable;
 }
 
-/// For calls that set up an integrator: they fail only through a programming error or
-/// lack of memory, so they throw. Never used inside a callback.
+/// Throws if a call that sets up an integrator fails: the cause is a programming error or
+/// lack of memory. Never used inside a callback.
 inline void require(int code, const char* call) {
   if (code >= 0) return;
   throw std::runtime_error(std::string("SUNDIALS refused ") + call + " with code " +
@@ -107,7 +107,7 @@ class SundialsContext {
   SUNContext context_ = nullptr;
 };
 
-/// Memory owned here, with an N_Vector as a view of it.
+/// Memory owned by this class, with an N_Vector as a view.
 class SundialsVector {
  public:
   SundialsVector(const SundialsContext& context, int length)

@@ -21,9 +21,9 @@ int points(const ReducedStrand& strand) {
 void check_alike(const std::vector<ReducedStrand>& strands) {
   const ReducedStrand& first = strands.front();
   refuse_if(
-      first.tangent != ReducedTangent::stiff || first.method != TreeMethod::recursive,
-      "only the stiff tangent is solved for several strands at once, recursively", place,
-      "use tangent = stiff and solver = recursive");
+      first.jacobian != ReducedJacobian::elastic || first.method != TreeMethod::recursive,
+      "only the elastic Jacobian is solved for several strands at once, recursively",
+      place, "use jacobian = elastic and solver = recursive");
   for (const ReducedStrand& strand : strands) {
     refuse_if(strand.free_root.has_value(), "a free root", place, "clamp all roots");
     refuse_if(!std::ranges::equal(strand.segments, first.segments, {},

@@ -21,7 +21,8 @@ ReducedOptions with_same_points(std::span<const Strand> strands, Unknown unknown
                                 ReducedOptions options);
 
 /// Throws InputError unless there are one to four clamped strands with the same
-/// segments and parents, and options select the stiff tangent and the recursive method.
+/// segments and parents, and options select the elastic Jacobian and the recursive
+/// method.
 PackedStrands packed(std::span<const Strand> strands, Unknown unknown,
                      const ReducedOptions& options, std::vector<Effects> effects);
 

@@ -18,7 +18,7 @@
 
 namespace tress::models {
 
-/// The equations of ReducedSystem with the stiff tangent, solved recursively, for four
+/// The equations of ReducedSystem with the elastic Jacobian, solved recursively, for four
 /// strands if the kernel's scalar is a pack.
 template <class Kernel, int modes>
 class RecursiveMechanics {
@@ -71,7 +71,7 @@ class TransportMechanics {
   TransportSweeps<Kernel, modes> sweeps_;
 };
 
-/// Up to four strands, one per lane of a pack, with the stiff tangent. Results match
+/// Up to four strands, one per lane of a pack, with the elastic Jacobian. Results match
 /// those of single strands to rounding (points are summed in another order), at little
 /// more than the cost of one strand. The Kernel is over packs.
 template <template <class, int> class Mechanics, class Kernel, int modes>

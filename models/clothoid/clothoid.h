@@ -10,19 +10,19 @@
 
 namespace tress::models {
 
-/// Kinematics of an element whose Darboux vector kappa is linear in arc length
-/// (strain.h), seen from the frame at its start, R(s) its frame [Casati,
-/// Bertails-Descoubes 2013]. A variation x of kappa turns the frame at s by W x, in the
-/// components of the start, and
+/// Kinematics of an element whose Darboux vector kappa is linear in arc length (strain.h)
+/// [Casati, Bertails-Descoubes 2013]. R(s) is the frame at s in the components of the
+/// frame at the start. A variation x of kappa turns the frame at s by W x, in the same
+/// components, and
 ///
 ///     W x = int R x,   dR[x] = (W x) x R,   t = R e0,   P = int t,   P'[x] = int (W x) x
 ///     t
 ///
-/// with integrals by collocation on the element's points, of higher derivatives alike:
-/// with D(x, y) = int (W x) x R y, the derivative of W y along x, that of P'[x1] along x2
-/// is int D(x2, x1) x t + (W x1) x ((W x2) x t). Frames are by series (turning.h). The
-/// interface is that of HelixOf, but that points are those of the rule, by blocks.
-/// T = double, or Pack for four elements. O(points^2) for each integral.
+/// Integrals, also those of higher derivatives, are by collocation on the element's
+/// points. D(x, y) = int (W x) x R y is the derivative of W y along x. The derivative of
+/// P'[x1] along x2 is int D(x2, x1) x t + (W x1) x ((W x2) x t). Frames are by series
+/// (turning.h). The interface is that of HelixOf, except that points are those of the
+/// rule, by blocks. T = double, or Pack for four elements. O(points^2) for each integral.
 template <class T, int modes>
 class ClothoidOf {
  public:
@@ -55,7 +55,7 @@ class ClothoidOf {
       }
     }
   };
-  /// What is asked for at the tip only.
+  /// Value at the tip only.
   struct AtTip {
     Vec value;
     const Vec& at(const At<T>&) const { return value; }
@@ -108,7 +108,8 @@ class ClothoidOf {
   Along acceleration(const Strain& rate, const Strain& second) const {
     return sum(first(second), this->second(rate, rate));
   }
-  /// Its derivative along x: that of second(rate, rate) needs the one of D(rate, rate).
+  /// Computes the derivative of acceleration() along x. The one of second(rate, rate)
+  /// needs that of D(rate, rate).
   Along acceleration_slope(const Strain& rate, const Strain& second,
                            const Strain& x) const {
     const Along w = W(rate), wx = W(x), d = D(w, rate), dx = D(wx, rate);
@@ -230,7 +231,7 @@ class ClothoidOf {
   Along product(const Along& x, const Along& y) const {
     return values([&](int b) { return cross(x[b], y[b]); });
   }
-  /// R y
+  /// Computes R y along the element.
   Along turned(const Strain& y) const {
     return values([&](int b) {
       const Vec3<Pack> at = Vec3<Pack>(y.mean) + rule_->place(b) * Vec3<Pack>(y.half);
@@ -241,7 +242,7 @@ class ClothoidOf {
   Along D(const Along& wx, const Strain& y) const {
     return integral(product(wx, turned(y)));
   }
-  /// What the derivative of W y along x1 and x2 is the integral of.
+  /// Computes the integrand of the derivative of W y along x1 and x2.
   Along turning_slope(const Strain& x1, const Strain& x2, const Strain& y) const {
     const Along w1 = W(x1), w2 = W(x2), d = D(w2, x1), ry = turned(y);
     return values(

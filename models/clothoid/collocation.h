@@ -38,10 +38,10 @@ struct AlongOf {
   Pack entries[3 * most_blocks];  // x, y, z a block
 };
 
-/// Gauss collocation on the points of an element that carry its mass: integrals from its
-/// start to each point, of the polynomial through the values at the points, and to its
-/// tip [Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, II.1.2]. With the
-/// Legendre polynomials P_m and x in [0, 1],
+/// Gauss collocation on the points of an element that carry its mass. Integrates the
+/// polynomial through the values at the points from the element's start to each point and
+/// to its tip [Hairer, Lubich, Wanner 2006, Geometric Numerical Integration, II.1.2].
+/// With the Legendre polynomials P_m and x in [0, 1],
 ///
 ///     A_ij = b_j (x_i + sum_{m=1}^{n-1} P_m(y_j) (P_{m+1}(y_i) - P_{m-1}(y_i))/2),
 ///
@@ -50,7 +50,8 @@ template <class Real>
 class Collocation {
  public:
   Collocation() = default;
-  /// By the points of one segment; those of others are the same but for their length.
+  /// Constructs the rule from the points of one segment; other segments differ in length
+  /// only.
   Collocation(std::span<const PointBlock> points, const Real& length)
       : blocks_(static_cast<int>(points.size())) {
     constexpr int width = lanes<Real> == 1 ? Pack::lanes : 1;  // points in a block

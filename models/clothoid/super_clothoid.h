@@ -9,12 +9,12 @@
 namespace tress::models {
 
 /// Super-clothoid [Casati, Bertails-Descoubes 2013], in a discontinuous form: an
-/// inextensible Kirchhoff rod of N elements, each of a Darboux vector that is linear in
-/// arc length, with jumps between elements. Unknowns of an element are the mean of twist
-/// and curvatures (1/m) and half their difference between its ends, 6 (4, 2 by `modes`);
-/// both appear in K = l diag(GJ, EI1, EI2) and a third of it. Equations of motion, mass
-/// integrals, solvers and trees are those of super_helix. Of fourth order in the length
-/// of elements once they wind by less than some 1.5 rad.
+/// inextensible Kirchhoff rod of N elements. The Darboux vector of each element is linear
+/// in arc length and jumps between elements. Unknowns of an element are the mean of twist
+/// and curvatures (1/m) and half their difference between its ends, 6 (4, 2 by `modes`).
+/// The stiffness of the means is K = l diag(GJ, EI1, EI2), that of the half differences
+/// K/3. Equations of motion, mass integrals, solvers and trees are those of super_helix.
+/// Of fourth order in the length of elements once they wind by less than about 1.5 rad.
 ///
 /// Throws InputError as reduced_strand, beyond the winding that clothoid_points allows,
 /// and for `quadrature` below 4 or above most_clothoid_points, as its points also carry

@@ -9,14 +9,14 @@
 
 namespace tress::models {
 
-/// Frames along an element whose Darboux vector is linear, seen from its start: with y in
+/// Frames along an element whose Darboux vector is linear, seen from its start. With y in
 /// [-1, 1] and pure quaternions a = l mean/4, b = l half/4, multiplied from the right,
 ///
 ///     dq/dy = q (a + y b),    q_{n+1} = (q_n a + q_{n-1} b)/(n + 1),   q(y) = sum q_n
 ///     y^n
 ///
-/// about the middle, so that terms fall like (l |kappa|/4)^n/n!. Beyond some 4 rad the
-/// element is split in equal parts; up to 1000 rad, and NaN beyond.
+/// about the middle, so that terms fall like (l |kappa|/4)^n/n!. Beyond about 4 rad the
+/// element is split into equal parts; up to 1000 rad, and NaN beyond.
 template <class Real>
 class TurningOf {
  public:

@@ -18,9 +18,9 @@ constexpr Parameter parameters_of_bead[] = {
     {.name = "form",
      .help = "coordinates x with lambda, or s",
      .choices = "implicit|parametric"},
-    {.name = "tangent",
+    {.name = "jacobian",
      .help = "Jacobian of the parametric form",
-     .choices = "exact|stiff"},
+     .choices = "exact|elastic"},
     {.name = "mass_kg",
      .help = "mass of the bead (kg)",
      .number = 1,
@@ -128,7 +128,7 @@ std::unique_ptr<System> make_bead_on_wire(const Parameters& parameters) {
   setup.typical_speed = std::max(scene.typical_speed, std::abs(setup.start_speed));
   if (setup.typical_speed == 0) setup.typical_speed = wire.extent;  // per second
   setup.uniform = wire.uniform;
-  if (parameters.word("tangent") == "stiff") setup.tangent = Tangent::stiff;
+  if (parameters.word("jacobian") == "elastic") setup.jacobian = Jacobian::elastic;
   return std::make_unique<BeadOnWire>(std::move(setup), std::move(scene.effects));
 }
 

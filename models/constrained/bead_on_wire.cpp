@@ -77,7 +77,7 @@ double BeadOnWire::tangent(double t, In q, In v, In a, Weights w) const noexcept
   const auto& [c, d1, d2, d3] = at.p;
   const double m = setup_.mass;
   double s = w.acc * m * dot(d1, d1);
-  if (setup_.tangent == Tangent::exact) {
+  if (setup_.jacobian == Jacobian::exact) {
     s += w.vel * 2 * m * dot(d1, d2) * v[0];
     s += w.pos * m * (2 * dot(d1, d2) * a[0] + (dot(d2, d2) + dot(d1, d3)) * v[0] * v[0]);
   }

@@ -8,25 +8,26 @@
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/sparse_form.h"
+#include "contract/jacobian_choice.h"
 #include "contract/parameters.h"
 #include "contract/pattern.h"
 #include "contract/system.h"
-#include "contract/tangent_choice.h"
 #include "models/constrained/curve.h"
 #include "models/constrained/particles.h"
 #include "models/effects/effect.h"
 
 namespace tress::models {
 
-/// A bead of mass m on a wire x = c(s) in parametric form: one coordinate s, no
-/// constraint (the violation is zero because no g exists),
+/// Bead of mass m on a wire x = c(s) in parametric form: one coordinate s, no constraint
+/// (the violation is zero because no g exists),
 ///
 ///     r = c'.(m (c' s'' + c'' s'^2) - f(t, x, x')),    x' = c' s',    M = m |c'|^2,
 ///
-/// with the exact tangent (including c''') or the stiff one, which drops the s and s'
-/// derivatives of the inertia terms m c'.(c' s'' + c'' s'^2) and keeps those of the load.
-/// The implicit form (x, lambda) is a ParticleSystem with one module of on_curve.h.
-/// Units: s in the curve's unit (rad for those built here). Every call is O(1).
+/// The Jacobian is the exact one (including c''') or the stiff one. The latter drops the
+/// s and s' derivatives of the inertia terms m c'.(c' s'' + c'' s'^2) and keeps those of
+/// the load. The implicit form (x, lambda) is a ParticleSystem with one module of
+/// on_curve.h. Units: s in the curve's unit (rad for those built here). Every call is
+/// O(1).
 class BeadOnWire final : public System,
                          private SparseForm,
                          private ExplicitForm,
@@ -42,7 +43,7 @@ class BeadOnWire final : public System,
     double extent = 1;         // m, typical size
     double typical_speed = 1;  // m/s
     bool uniform = false;      // |c'| is the same everywhere: M is constant
-    Tangent tangent = Tangent::exact;
+    Jacobian jacobian = Jacobian::exact;
   };
 
   /// Throws InputError if mass <= 0 or c' = 0 at the start.

@@ -8,8 +8,8 @@
 
 namespace tress::models {
 
-/// What a constraint is attached to: a particle (3 coordinates), a massless parameter
-/// (1 coordinate) or an anchor (3 numbers prescribed in time, no coordinates).
+/// Object to which a constraint is attached: a particle (3 coordinates), a massless
+/// parameter (1 coordinate) or an anchor (3 numbers prescribed in time, no coordinates).
 struct Node {
   enum class Kind { particle, parameter, anchor };
   Kind kind = Kind::particle;
@@ -40,17 +40,19 @@ class Constraint {
   virtual bool linear() const = 0;  // H = 0: hessian() is not called
   /// Typical size of C (m, or rad) in a scene of the given extent (m).
   virtual double scale(double extent) const = 0;
-  virtual void value(In z, Out c) const noexcept = 0;          // (rows)
-  virtual void gradient(In z, Out g) const noexcept = 0;       // (rows x inputs)
-  virtual void hessian(In z, In w, Out h) const noexcept = 0;  // (inputs x inputs)
-                                                               // sum_k w_k H_k
+  /// Evaluates the constraint, (rows).
+  virtual void value(In z, Out c) const noexcept = 0;
+  /// Evaluates the gradient, (rows x inputs).
+  virtual void gradient(In z, Out g) const noexcept = 0;
+  /// Evaluates the second derivative sum_k w_k H_k, (inputs x inputs).
+  virtual void hessian(In z, In w, Out h) const noexcept = 0;
 };
 
 using Constraints = std::vector<std::unique_ptr<const Constraint>>;
 
-/// A constraint made from a kernel: a small struct with `node_count`, `inputs`, `rows`,
-/// `linear`, scale(extent), value(z, c) (a template on the scalar), gradient(z, g) and
-/// hessian(z, w, h) on plain arrays; matrices are row-major.
+/// Constraint made from a kernel: a small struct with `node_count`, `inputs`, `rows`,
+/// `linear` and scale(extent). It also has value(z, c) (a template on the scalar), and
+/// gradient(z, g) and hessian(z, w, h) on plain arrays. Matrices are row-major.
 template <class Kernel>
 class Module final : public Constraint {
  public:

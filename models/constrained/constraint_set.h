@@ -19,9 +19,9 @@ struct Anchor {
 
 /// Assembles modules into g(t, q) = 0 with block-sparse G. Particle i has coordinates
 /// q[3i..3i+2], parameter j has q[3 particles + j]; anchors follow as prescribed inputs
-/// p(t), the source of the time derivatives of g. Rows are in the order of the modules,
-/// so a chain whose particles and links are added from one end to the other has a banded
-/// KKT matrix once q and lambda are interleaved. Every call is O(modules).
+/// p(t), the source of the time derivatives of g. Rows are in the order of the modules.
+/// The KKT matrix of a chain whose particles and links are added from one end to the
+/// other is therefore banded once q and lambda are interleaved. Every call is O(modules).
 class ConstraintSet final : public ConstraintForm {
  public:
   /// Throws InputError if a module names an unknown node, or the same node twice.

@@ -9,7 +9,7 @@
 
 namespace tress::models {
 
-/// What all structures of hanging particles have in common.
+/// Data common to all structures of hanging particles.
 struct HangingShape {
   double mass = 1;        // kg, all particles together, equal shares
   double length = 1;      // m: L of a strand, a structure's own measure
@@ -33,13 +33,13 @@ inline constexpr Parameter hanging_spin_parameter{
 
 HangingShape hanging_shape(const Parameters& parameters);
 
-/// A hanging strand of n rigid massless links of length L/n with point masses m/n at
-/// their ends, as particles and distance constraints.
+/// Hanging strand of n rigid massless links of length L/n with point masses m/n at their
+/// ends, as particles and distance constraints.
 ///
 /// Open: pivot at the origin, straight along x, n particles, n rows; released
-/// horizontally. Closed: a regular polygon of perimeter L in the x-z plane beside its
-/// first particle, which is fixed at the origin: n particles, n + 3 rows. Both may spin
-/// about the vertical through the origin, a rigid and therefore consistent motion.
+/// horizontally. Closed: a regular polygon of perimeter L in the x-z plane whose first
+/// particle is fixed at the origin: n particles, n + 3 rows. Both may spin about the
+/// vertical through the origin, a rigid and therefore consistent motion.
 struct ChainShape : HangingShape {
   int links = 10;  // n: >= 1 open, >= 3 closed
   bool closed = false;

@@ -9,8 +9,10 @@
 namespace tress::models {
 
 /// Point on the ellipse with semi-axes a, b along unit vectors e1, e2 (2 rows, m):
+///
 ///     C1 = sqrt(ab)/2 ((y1/a)^2 + (y2/b)^2 - 1),   C2 = y3,   y_i = e_i.d, e3 = e1 x e2.
-/// For a circle C1 = (y1^2 + y2^2 - r^2)/(2 r), the radial error to first order; on an
+///
+/// For a circle C1 = (y1^2 + y2^2 - r^2)/(2 r), the radial error to first order. On an
 /// ellipse |dC1/dx| varies between sqrt(b/a) and sqrt(a/b) but never vanishes.
 struct OnEllipse {
   static constexpr int rows = 2;
@@ -53,7 +55,7 @@ struct OnHelix {
 };
 
 /// Point on any curve: C = x - c(s) (3 rows, m) with the curve's parameter s as a
-/// massless coordinate; the mass matrix is singular but the KKT matrix is not (c' != 0).
+/// massless coordinate. The mass matrix is singular but the KKT matrix is not (c' != 0).
 struct OnCurve {
   static constexpr int node_count = 2;
   static constexpr int inputs = 4;

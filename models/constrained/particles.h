@@ -61,8 +61,8 @@ struct ParticleScene {
 /// q = (x_1, ..., x_N, s_1, ...) in m (parameters in their curve's unit). Effects see the
 /// particles through Points, of which only the needed fields are computed; without
 /// effects f = 0 costs nothing. residual is O(N), linearize and solve invert 3x3 blocks.
-/// With parameters M is singular (traits().regular_mass is false, linearize returns
-/// `fatal`) while the KKT matrix is regular: use a constrained formulation, which reads
+/// With parameters M is singular: traits().regular_mass is false and linearize returns
+/// `fatal`. The KKT matrix is regular: use a constrained formulation, which reads
 /// sparse_form() and constraint_form(). power() omits the work of moving anchors, which
 /// depends on the multipliers.
 class ParticleSystem final : public System,

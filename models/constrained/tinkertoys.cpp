@@ -44,7 +44,7 @@ constexpr Parameter declared_of_tinkertoys[] = {
     hanging_spin_parameter,
 };
 
-/// Adds structure to a scene whose particles are all alike.
+/// Adds a structure to a scene whose particles are all identical.
 struct Builder {
   ParticleScene scene;
   double mass;    // kg per particle

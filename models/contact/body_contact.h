@@ -10,16 +10,16 @@
 
 namespace tress::models {
 
-/// The normal force of a compliant contact, per length of strand. With the signed
-/// distance phi of the centre line, g = grad phi, n = g/|g|, the depth d = offset - phi >
-/// 0 and the velocity u relative to the surface, u_n = n.u:
+/// Normal force of a compliant contact, per length of strand. With the signed distance
+/// phi of the centre line, g = grad phi, n = g/|g|, the depth d = offset - phi > 0 and
+/// the velocity u relative to the surface, u_n = n.u:
 ///
 ///     N = k d |g| h(1 - c u_n),   E = k d^2/2
 ///
 /// c damps in proportion to the depth, so the force does not jump when contact begins or
-/// ends [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]; h(s) = s for s >= 1/2 and (s +
-/// 1/2)^2/2 from there down to 0 at s = -1/2, so the contact never pulls, and h(1) = 1,
-/// so only the spring acts on a strand at rest.
+/// ends [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]. h(s) = s for s >= 1/2 and (s +
+/// 1/2)^2/2 from there down to 0 at s = -1/2, so the contact never pulls. h(1) = 1, so
+/// only the spring acts on a strand at rest.
 struct NormalContact {
   double stiffness = 0;  // k, N/m^2
   double damping = 0;    // c, s/m
@@ -104,10 +104,10 @@ using ContactSlopes = ContactSlopesOf<double>;
 ///
 ///     f = N (n - mu e(|u_t|) u_t),   u_t = u - u_n n
 ///
-/// Coulomb friction is full at |u_t| >= v and falls smoothly below, e(y) = 1/y and (2 -
-/// y/v)/v [Li et al. 2020, Incremental Potential Contact, eq. 15]: sticking contacts
-/// creep at less than v. Damping and friction dissipate. The load is continuous; its
-/// derivatives jump where contact begins.
+/// Coulomb friction is full at |u_t| >= v and falls smoothly below. e(y) is 1/y, and (2 -
+/// y/v)/v below v [Li et al. 2020, Incremental Potential Contact, eq. 15]. Sticking
+/// contacts creep at less than v. Damping and friction dissipate. The load is continuous;
+/// its derivatives jump where contact begins.
 struct BodyContact {
   double stiffness = 0;  // k, N/m^2
   double damping = 0;    // c, s/m
@@ -123,7 +123,8 @@ struct BodyContact {
     return at.load * at.direction();
   }
 
-  /// With w = n - mu e u_t and y = u dn/dx, and since u_t.n = 0 and n dn/dx = 0,
+  /// Returns the derivatives of the load. With w = n - mu e u_t and y = u dn/dx, and
+  /// since u_t.n = 0 and n dn/dx = 0,
   ///
   ///     df/dx = w dN/dx + N ((1 + mu e u_n) dn/dx + mu (e n + e'/|u_t| u_n u_t) y),
   ///     df/du = w dN/du - mu N (e (1 - n n) + e'/|u_t| u_t u_t).

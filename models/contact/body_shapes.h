@@ -20,14 +20,14 @@ struct DistanceOf {
 };
 using Distance = DistanceOf<double>;
 
-/// What one search for the nearest point gives.
+/// Result of a search for the nearest point.
 template <class T>
 struct NearestOf {
   DistanceOf<T> to;
   T length{};  // of an ellipsoid, of y_i/a_i^2
 };
 
-/// What all shapes give in addition to nearest() and curvature(x, nearest(x)).
+/// Functions of all shapes that follow from nearest() and curvature(x, nearest(x)).
 template <class Shape>
 struct DistanceByNearest {
   Distance distance(const Vec& x) const { return self().nearest(x).to; }
@@ -108,22 +108,23 @@ struct Capsule : DistanceByNearest<Capsule> {
   }
 };
 
-/// sum (x_i/a_i)^2 <= 1. The nearest point y has x - y = tau grad F(y), so that
+/// Ellipsoid sum (x_i/a_i)^2 <= 1. The nearest point y has x - y = tau grad F(y), so that
 ///
 ///     y_i = a_i^2 x_i/(a_i^2 + tau),   g(tau) = sum (a_i x_i/(a_i^2 + tau))^2 - 1 = 0
 ///
 /// with the largest root [Eberly 2013, Distance from a point to an ellipse, an ellipsoid,
-/// or a hyperellipsoid, section 2.3]. g is decreasing and convex right of its last pole,
-/// and g >= 0 at the largest a_i |x_i| - a_i^2, so Newton's method from there approaches
-/// the root monotonically. Then phi = tau |y_i/a_i^2|, free of cancellation, with an
-/// error of some eps of the largest axis. With the shape operator S = P diag(1/a^2)
-/// P/|y_i/a_i^2| at y, grad grad phi = S (1 + phi S)^-1.
+/// or a hyperellipsoid, section 2.3]. g is decreasing and convex right of its last pole.
+/// At the largest a_i |x_i| - a_i^2, g >= 0, so Newton's method from there approaches the
+/// root monotonically. Then phi = tau |y_i/a_i^2|, free of cancellation, with an error of
+/// a few eps of the largest axis. With the shape operator S = P diag(1/a^2) P/|y_i/a_i^2|
+/// at y, grad grad phi = S (1 + phi S)^-1.
 ///
-/// Packs take a few Newton steps from tau = 0, the root on the surface; lanes for which
-/// that is too few, far from it, are searched one by one.
+/// Packs take a few Newton steps from tau = 0, the root on the surface. Lanes far from
+/// the surface, which need more steps, are searched one by one.
 class Ellipsoid : public DistanceByNearest<Ellipsoid> {
  public:
-  explicit Ellipsoid(const Vec& half_axes);  // m, > 0
+  /// Constructs an ellipsoid with these half axes, m, > 0.
+  explicit Ellipsoid(const Vec& half_axes);
   const Vec& half_axes() const { return a_; }
 
   using DistanceByNearest::curvature;
@@ -236,9 +237,9 @@ Mat3Of<T> Ellipsoid::curvature(const Vec3<T>& /*x*/, const NearestOf<T>& at) con
           {b, c, all(zz, n.z, n.z, 1)}};
 }
 
-/// A convex function with a gradient of at most length 1 that is no more than the
-/// distance where it is positive, without a search: the distance itself where that takes
-/// none, for all shapes but grids are convex.
+/// Returns a lower bound of the distance where it is positive, without a search: a convex
+/// function with a gradient of length 1 at most. Where the distance needs no search, the
+/// bound is the distance itself. All shapes but grids are convex.
 template <class T, class Shape>
 DistanceOf<T> below(const Shape& shape, const Vec3<T>& x) {
   if constexpr (requires { shape.below(x); }) {

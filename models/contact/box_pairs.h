@@ -23,7 +23,7 @@ struct Box {
     constexpr double end = std::numeric_limits<double>::infinity();
     return {{end, end, end}, {-end, -end, -end}};
   }
-  /// Of none(), or of a box that is not finite.
+  /// Tests for none(), or a box that is not finite.
   bool empty() const { return !(least.x <= most.x); }
 
   void include(const Vec& x) { include(Box{x, x}); }
@@ -39,10 +39,10 @@ inline bool apart(const Box& a, const Box& b) {
          b.least.y > a.most.y || a.least.z > b.most.z || b.least.z > a.most.z;
 }
 
-/// Broad phase of many boxes of similar size: which of them overlap. Boxes are listed in
-/// every cell of a uniform grid that they reach into, cells in a hash table [Teschner et
-/// al. 2003], and tested against those of their cell. Built anew by every search, which
-/// takes about 0.5 us a box on shaken hair.
+/// Broad phase of many boxes of similar size: finds the boxes that overlap. A box is
+/// listed in every cell of a uniform grid that it overlaps and tested against the others
+/// there. Cells are in a hash table [Teschner et al. 2003]. Every search rebuilds the
+/// table, which takes about 0.5 us per box on shaken hair.
 class BoxPairs {
  public:
   struct Pair {
@@ -50,9 +50,10 @@ class BoxPairs {
     double distance = 0;  // that they keep at least, m, if it is told
   };
 
-  /// Every pair of boxes that overlap, each once, in an order that boxes decide, without
-  /// those that sift(some pairs) takes away (called at once from several threads), which
-  /// may tell the distances of the others. Boxes that are not finite overlap with none.
+  /// Finds every pair of boxes that overlap, each once, in an order that depends on the
+  /// boxes only. The caller's sift(pairs) removes pairs and may record the distances of
+  /// the others. Several threads call it at once. Boxes that are not finite overlap with
+  /// none.
   const std::vector<Pair>& find(std::span<const Box> boxes, const Loop& loop,
                                 const std::function<void(std::vector<Pair>&)>& sift);
 
@@ -60,8 +61,7 @@ class BoxPairs {
   struct Cell {
     int x, y, z;
   };
-  /// What is compared of a box, and the cells that it reaches into; none if it is not
-  /// finite.
+  /// Data of a box to compare, and the cells that it overlaps; none if it is not finite.
   struct Placed {
     float least[3], most[3];
     Cell from, to;

@@ -11,19 +11,19 @@
 
 namespace tress::models {
 
-/// Force per length (N/m) between two strands, as a function of the gap d from the other
-/// strand's nearest point and the velocity u relative to it:
+/// Force per length (N/m) between two strands. It depends on the gap d from the other
+/// strand's nearest point and the velocity u relative to that point:
 ///
 ///     F = K (P - rho)+ d/rho - D w(rho) u,    rho^2 = |d|^2 + (P/1000)^2
 ///     w = 1 up to P, 1 - 3 s^2 + 2 s^3 from P to the outer radius, s in [0, 1]; 0 beyond
 ///
 /// K (P - d) and D follow [Wang, thesis, NCTU, section 5.2]: K = 2e-6, D = 2e-5 or 2e-6,
 /// P_inner = 3 mm, no units, on strands of segments of about l = 1 cm. We read them as
-/// N/m and N s/m per segment; per length, K/l = 2e-4 N/m^2 and D/l = 2e-3 or 2e-4 N s/m^2
-/// do not depend on the discretisation. Our reconstruction: that reading, rho in place of
-/// |d| (F is then smooth and finite where strands coincide; beyond P/10 F changes by less
-/// than 1e-4 of itself), w and the outer radius. The force of K has a kink at P, w does
-/// not.
+/// N/m and N s/m per segment. Per length, K/l = 2e-4 N/m^2 and D/l = 2e-3 or 2e-4 N s/m^2
+/// do not depend on the discretisation. Our reconstruction consists of these units, rho
+/// in place of |d|, w and the outer radius. With rho F is smooth and finite where strands
+/// coincide, and beyond P/10 F changes by less than 1e-4 relative. The force of K has a
+/// kink at P, w does not.
 class ContactLaw {
  public:
   struct Values {
@@ -41,11 +41,11 @@ class ContactLaw {
 
   /// Throws InputError naming `where` unless the outer radius exceeds the inner one.
   ContactLaw(const Values& values, const std::string& where);
-  /// From the values of contact_parameters().
+  /// Constructs a law from the values of contact_parameters().
   ContactLaw(const Parameters& parameters, const std::string& where);
 
   double inner() const { return law_.inner; }
-  /// Distance beyond which there is no force, m.
+  /// Returns the distance beyond which the force is 0, m.
   double reach() const { return law_.viscosity > 0 ? law_.outer : law_.inner; }
 
   /// F = push d - drag u, dF/du = -drag I, and
@@ -54,7 +54,7 @@ class ContactLaw {
   struct Factors {
     T push, drag, push_slope, drag_slope;
   };
-  /// Of one gap, or one per lane of a pack.
+  /// Computes the factors for one gap, or one per lane of a pack.
   template <class T>
   Factors<T> factors(const Vec3<T>& d) const noexcept;
 

@@ -18,28 +18,30 @@ namespace tress::models {
 Mat3 axes_about(const Vec& normal);
 
 /// Contacts between points of bodies whose velocities respond linearly to forces: u = W r
-/// + b with the laws of contact_force() at every contact. W has one dense block per body,
-/// its compliance. Solved by block Gauss-Seidel over contacts, each exactly [Jourdan,
-/// Alart & Jean 1998; Daviet, Bertails-Descoubes & Boissieux 2011]. With more contacts
-/// than unknowns W is singular and the sweeps slow down or stall; each local problem
-/// therefore keeps near its last force by `proximal` times its own compliance [Acary &
-/// Brogliato 2008, section 13.4], which leaves the solution as it is.
+/// + b, with the laws of contact_force() at every contact. W has one dense block per
+/// body, its compliance. Solved by block Gauss-Seidel over contacts, each exactly
+/// [Jourdan, Alart & Jean 1998; Daviet, Bertails-Descoubes & Boissieux 2011]. With more
+/// contacts than unknowns W is singular and the sweeps slow down or stall. Each local
+/// problem therefore keeps near its last force by `proximal` times its own compliance
+/// [Acary & Brogliato 2008, section 13.4]. The solution does not depend on this term.
 ///
 /// Every few sweeps the contacts of the two bodies that violate the laws most are solved
-/// at once (JointContacts): a few that bear each other need hundreds of sweeps to settle.
+/// at once (JointContacts). A few contacts that support each other would need hundreds of
+/// sweeps to settle.
 ///
 /// Many contacts are divided into up to four parts of neighbours, on any threads. Those
-/// between two parts are visited after those within parts, two pairs of parts at a time:
-/// by the contacts alone, so that the result does not depend on the threads.
+/// between two parts are visited after those within parts, two pairs of parts at a time.
+/// The division depends on the contacts only, so the result does not depend on the
+/// threads.
 ///
 /// A visit of a contact costs O(points of its bodies), about 0.1 us at 10 points each. A
-/// contact that has settled is left alone until the velocities of its bodies change, and
-/// not solved again until its own has. What contacts violate the laws by at the end is
-/// computed of all of them.
+/// contact that has settled is not visited until the velocities of its bodies change, and
+/// not solved again until its own velocity changes. The violation at the end is that of
+/// all contacts.
 ///
-/// More contacts may be added to a problem that is solved, and bodies be touched at other
-/// points: the next solution starts from the last one and costs what is new, and what
-/// that disturbs.
+/// Contacts may be added to a solved problem, and bodies may be touched at other points.
+/// The next solution starts from the last one; its cost is that of new contacts and of
+/// those that they disturb.
 class ContactProblem {
  public:
   /// A point of a body, and its weight in the contact's velocity.
@@ -55,7 +57,7 @@ class ContactProblem {
     Vec force;   // a guess, then the solution, in these axes, N
     Mat3 local;  // set by solve()
   };
-  /// How a body responds: velocities (m/s) of its points per force (N) on each point.
+  /// Compliance of a body: velocities (m/s) of its points per force (N) on each point.
   class Compliance {
    public:
     Compliance() = default;
@@ -77,16 +79,18 @@ class ContactProblem {
   void clear();
   /// Returns its number. The compliance must outlive the use of the problem.
   int add_body(const Compliance& compliance);
-  /// Its compliance is of other points now: contacts on it are to be set() again.
+  /// Renews a body whose compliance is now that of other points: its contacts must be
+  /// set() again.
   void renew_body(int body);
   void add(const Contact& contact);
-  /// So many contacts more, to be set before solve().
+  /// Adds `count` contacts, to be set before solve().
   void add(std::size_t count);
   /// Safe for different contacts at once. The force of one that was solved stays.
   void set(std::size_t number, const Contact& contact);
 
-  /// Contacts of points that nothing moves hold no forces. Until no other contact
-  /// violates the laws by more than `tolerance` (m/s), or so many sweeps.
+  /// Solves until no contact violates the laws by more than `tolerance` (m/s), or for
+  /// `most_sweeps` sweeps. Contacts of points that nothing moves hold no forces and do
+  /// not count.
   Outcome solve(double proximal, double tolerance, int most_sweeps,
                 const Loop& loop = one_by_one);
   /// Ends a solution that was not found: reduces friction that does work on a slide until
@@ -98,8 +102,8 @@ class ContactProblem {
   /// With the forces, in the contact's axes, m/s.
   Vec velocity(const Contact& contact) const;
   std::size_t bodies() const { return used_; }
-  /// By how much the forces change the velocities of a body's points, m/s, and the forces
-  /// on them, N.
+  /// Returns the change of the velocity of a body's point by the forces, m/s; forces()
+  /// returns the forces on its points, N.
   Vec change(std::size_t body, std::size_t point) const;
   std::span<const Vec> forces(std::size_t body) const { return bodies_[body].forces; }
 
@@ -113,7 +117,7 @@ class ContactProblem {
 
     void respond_as(const Compliance& given);
   };
-  /// What solve() knows of a contact.
+  /// State of a contact in solve().
   struct Solved {
     struct Pushed {
       Body* body = nullptr;
@@ -143,7 +147,7 @@ class ContactProblem {
     const Solved* worst = nullptr;  // violates the laws most
   };
 
-  /// What some contacts solved at once violate the laws by, m/s.
+  /// Violation of the laws by contacts that are solved at once, m/s.
   struct Joint {
     double violation = std::numeric_limits<double>::infinity();
     bool all = false;  // there are no others

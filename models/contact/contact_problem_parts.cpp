@@ -51,8 +51,8 @@ void ContactProblem::link() {
   }
 }
 
-/// Parts of neighbours: bodies in the order in which contacts lead from one to the next,
-/// as many for each part as have an equal share of the contacts.
+/// Divides the contacts into parts of neighbours. Bodies are in the order in which
+/// contacts lead from one to the next; each part has an equal share of the contacts.
 void ContactProblem::divide() {
   const std::size_t count =
       std::clamp<std::size_t>(contacts_.size() / least_part, 1, most_parts);

@@ -27,7 +27,7 @@ class DistanceGrid {
 
   Distance distance(const Vec& x) const;
   Mat3 curvature(const Vec& x) const;
-  /// As the other shapes; packs are looked up lane by lane.
+  /// Finds the nearest point as the other shapes do; packs are looked up lane by lane.
   template <class T>
   NearestOf<T> nearest(const Vec3<T>& x) const {
     NearestOf<T> at;
@@ -49,8 +49,8 @@ class DistanceGrid {
     }
     return all;
   }
-  /// Distance from the grid's box outside of it, where no surface is; minus infinity
-  /// within.
+  /// Returns the distance from the grid's box outside the box, where no surface is; minus
+  /// infinity within.
   template <class T>
   DistanceOf<T> below(const Vec3<T>& x) const {
     const Vec end = s_.origin + s_.spacing * Vec{static_cast<double>(s_.nx - 1),

@@ -9,13 +9,13 @@
 
 namespace tress::models {
 
-/// What a contact holds between states; vectors in the components of the body.
+/// State of a contact between steps; vectors in the components of the body.
 struct HeldContact {
   double normal = 0;  // lambda_n, N
   Vec tangential;     // lambda_t, N
-  /// Gap that counts as none, m: that of a strand which overlaps the body at first; of a
-  /// closed contact what the tolerance left in the last step, which divided by a much
-  /// shorter one would be a speed.
+  /// Gap that counts as none, m. For a strand that overlaps the body at first: that
+  /// overlap. For a closed contact: the gap that the tolerance left in the last step,
+  /// which divided by a much shorter step would be a speed.
   double rest_gap = 0;
   double gap = 0;     // of the last solution, m
   double leaves = 0;  // part of its error that an improvement leaves, 0: unknown
@@ -28,27 +28,27 @@ struct HeldContact {
 ///
 ///     f = N n + T,   |T| <= mu N,   U_t = 0 if |T| < mu N, else U_t = -|U_t| T/|T|
 ///
-/// as an augmented Lagrangian [Alart & Curnier 1991] with multipliers
-/// lambda and a penalty rho (kg/s), P the projection onto the disc of radius mu N:
+/// as an augmented Lagrangian [Alart & Curnier 1991] with multipliers lambda and a
+/// penalty rho (kg/s), P the projection onto the disc of radius mu N:
 ///
 ///     T = P(lambda_t - rho U_t),   lambda_t and U_t in the tangent plane
 ///     N = l k d |g| h(1 - c u_n)          compliant: NormalContact on the length l
 ///     N = max(0, lambda_n - rho w)        rigid
 ///
-/// U = (X - x0)/tau is the slide of the place X in the frame of the body, by the formula
-/// of the method (ContactForm): 0 where the place stays, which the velocity u relative to
-/// the surface at the end of a step is not on a body that turns.
-/// w is the gap less rest_gap over tau, the time in which velocities move the point, or
-/// the excess u_n + e u_0 of the speed at which a point rebounds that came at u_0 < 0.
-/// The law holds where the multipliers are the forces. Without a penalty a rigid
-/// contact's force is its multiplier.
+/// U = (X - x0)/tau is the slide of the position X in the frame of the body, by the
+/// formula of the method (ContactForm). U is 0 where the position stays. The velocity u
+/// relative to the surface at the end of a step is not, if the body turns. The violation
+/// w is the gap less rest_gap over tau, the time in which velocities move the point. For
+/// a point that rebounds after impact at u_0 < 0, w is the excess u_n + e u_0. The law is
+/// satisfied where the multipliers are the forces. Without a penalty a rigid contact's
+/// force is its multiplier.
 struct ExactContact {
   NormalContact compliance;
   bool rigid = false;
   double friction = 0;     // mu
   double restitution = 0;  // e, of a rigid surface
 
-  /// Of a point, while the equations of one state are solved.
+  /// Penalty of a point while the equations of one state are solved.
   struct Penalty {
     double length = 0;              // l, m
     double rho = 0;                 // kg/s
@@ -89,7 +89,7 @@ struct ExactContact {
     double gap() const { return -normal_.depth; }  // m
     const Vec& outwards() const { return normal_.n; }
     const Vec& along() const { return along_; }  // U, m/s
-    /// What the laws of a rigid contact are about: w n + U_t, m/s.
+    /// Returns the quantity that the laws of a rigid contact restrict: w n + U_t, m/s.
     Vec excess() const {
       return law_.excess(held_, penalty_, normal_) * normal_.n + slide_;
     }

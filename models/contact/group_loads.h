@@ -8,7 +8,7 @@
 
 namespace tress::models {
 
-/// As many points of one strand are looked at together.
+/// Number of points of one strand that are treated together.
 inline constexpr int points_of_group = 8;
 struct alignas(64) GroupNumbers : std::array<double, points_of_group> {};
 using GroupVectors = Vec3<GroupNumbers>;

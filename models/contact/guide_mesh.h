@@ -9,15 +9,15 @@
 
 namespace tress::models {
 
-/// Pairs of neighbouring roots, the lower index first, in ascending order: those no
-/// farther apart than `width` (m) that have no third root in or on the sphere over their
-/// distance (a graph [Gabriel & Sokal 1969] that is part of the Delaunay triangulation,
-/// so that on a scalp pairs do not cross). O(roots^2).
+/// Returns pairs of neighbouring roots, the lower index first, in ascending order.
+/// Neighbours are no farther apart than `width` (m) and have no third root in or on the
+/// sphere over their distance. This graph [Gabriel & Sokal 1969] is part of the Delaunay
+/// triangulation, so that pairs on a scalp do not cross. O(roots^2).
 std::vector<std::pair<int, int>> neighbouring_roots(const std::vector<Vec>& roots,
                                                     double width);
 
-/// How guides are joined to their neighbours, as they are at rest. Points are those of
-/// all strands, root to tip, strand after strand.
+/// Connections of guides with their neighbours at rest. Points are those of all strands,
+/// root to tip, strand after strand.
 struct GuideMesh {
   /// A point and the nearest one of a neighbour. Neither roots nor tips are linked.
   struct Link {

@@ -47,7 +47,7 @@ void LocalDrift::fill(const SegmentCells& segments, In x, double sight,
   for (const int one : of_part_) ++parts_[static_cast<std::size_t>(one)];
 }
 
-/// Numbers those that parts lie in and those beside them.
+/// Numbers the cells that contain parts, and their neighbours.
 void LocalDrift::number_cells() {
   number_.assign(stride(3), 0);
   for (const int cell : of_part_) number_[static_cast<std::size_t>(cell)] = 1;

@@ -13,11 +13,10 @@
 
 namespace tress::models {
 
-/// How differently what is near a place has moved in one step: hair far away that moves
-/// fast is of no account to lists of what is nearby. A uniform grid; each cell knows a
-/// ball that holds the displacements of all segments in it and in the cells beside it.
-/// Memory is O(segments): of cells where nothing is, a number each. A step is
-/// O(segments).
+/// Relative displacements near a place in one step. Hair far away that moves fast does
+/// not affect lists of nearby segments. A uniform grid; each cell stores a ball that
+/// holds the displacements of all segments in it and in neighbouring cells. Memory is
+/// O(segments); an empty cell takes one number. A step is O(segments).
 class LocalDrift {
  public:
   /// Displacements, m; radius < 0: of nothing.
@@ -33,7 +32,7 @@ class LocalDrift {
   /// does not depend on who runs the loop's parts.
   void move(const SegmentCells& segments, std::span<const Vec> by, const Loop& loop);
 
-  /// Of the step.
+  /// Returns the displacements of the step near this cell.
   const Spread& near(int cell) const {
     const int one = number_[static_cast<std::size_t>(cell)];
     return one < 0 ? nothing : near_[static_cast<std::size_t>(one)];
@@ -51,7 +50,8 @@ class LocalDrift {
   static constexpr Spread nothing{{}, -1};
 
   void number_cells();
-  /// From a cell to the next along an axis; 3: of all cells.
+  /// Returns the distance from a cell to the next along an axis; axis 3: number of all
+  /// cells.
   std::size_t stride(int axis) const;
   template <class Use>
   void each_beside(std::size_t cell, int axis, const Use& use) const;

@@ -10,10 +10,9 @@
 
 namespace tress::models {
 
-/// Which of many points lie in a box. A uniform grid with its cells in a hash table
-/// [Teschner et al. 2003]. Filling is O(points), a query O(cells that the box reaches
-/// into
-/// + points there).
+/// Search for points in a box. A uniform grid with its cells in a hash table [Teschner et
+/// al. 2003]. Filling is O(points), a query O(cells that the box overlaps, and points in
+/// them).
 class PointGrid {
  public:
   /// x: 3 numbers each, m; `cell`: about the size of the boxes, m, > 0. Points that are

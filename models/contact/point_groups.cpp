@@ -48,8 +48,8 @@ void by_packs(Instructions instructions, const F& work) {
   }
 }
 
-/// Sorts them, ascending, but for those that equal an earlier one, which may become -1.
-/// Few are sorted without branches: as many as are less come before.
+/// Sorts the numbers, ascending; duplicates of an earlier one may become -1. Short lists
+/// are sorted without branches: the number of smaller ones is the place of each.
 void sort(std::vector<int>& numbers) {
   using Ints __attribute__((vector_size(32))) = int;
   constexpr std::size_t width = 8, few = 160;
@@ -131,8 +131,9 @@ void PointGroups::ready(In x, In length) {
   }
 }
 
-/// Whether all that is near now is listed. Since points were last looked at, they and
-/// what is near them have moved, but not nearer to each other than by as much as is left.
+/// Tests whether the list contains all segments that are near now. Points and segments
+/// have moved since the list was made, but their distance has shrunk by no more than the
+/// remaining margin.
 bool PointGroups::holds(Group& group, const GroupVectors& x) const {
   const long updates = partners_->updates() - group.update;
   if (group.lists != partners_->lists() || updates > 1) return false;

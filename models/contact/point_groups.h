@@ -10,11 +10,10 @@
 
 namespace tress::models {
 
-/// Points of one strand by eights, each eight with a kept list of the segments of other
-/// strands that may come within reach. A list is made anew when what is near has moved by
-/// its margin relative to its points (StrandPartners). Results do not depend on when that
-/// was. Memory of eight points: 256 bytes and 8 a
-/// strand nearby.
+/// Points of one strand in groups of eight, each with a cached list of the segments of
+/// other strands within reach. A list is rebuilt when its surroundings have moved by its
+/// margin relative to its points (StrandPartners). Results do not depend on the time of
+/// the rebuild. Memory of eight points: 256 bytes, and 8 per strand nearby.
 class PointGroups {
  public:
   /// `partners` must outlive it. The results are the same by any instructions.
@@ -26,10 +25,11 @@ class PointGroups {
   std::size_t groups() const { return groups_.size(); }
   /// False: no segment is near a group made ready, its loads are zero.
   bool feels(std::size_t group) const { return !groups_[group].list.empty(); }
-  /// Of a group made ready, with partners `elapsed` (s) after the last update.
+  /// Computes the loads on a prepared group, with partners `elapsed` (s) after the last
+  /// update.
   void loads(std::size_t group, const ContactLaw& law, In v, double elapsed,
              GroupLoads& to) const;
-  /// How many lists have been made.
+  /// Returns the number of lists made.
   long made() const { return made_; }
 
   std::size_t bytes() const;

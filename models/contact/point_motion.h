@@ -9,14 +9,15 @@
 
 namespace tress::models {
 
-/// Where points are, and how fast they move, as seen by others that do not wait for them.
+/// Positions and velocities of points, as seen by other strands that do not wait for
+/// them.
 class PointMotion {
  public:
   /// The points stay; who wants to know where has to ask another.
   void hold() { moves_ = 0; }
-  /// From x (3 each) and v at time t (s) straight on.
+  /// Extrapolates uniformly from x (3 each) and v at time t (s).
   void extrapolate(double t, In x, In v);
-  /// From (x, v) at t to (y, w) at `end`, along cubics.
+  /// Interpolates by cubics from (x, v) at t to (y, w) at `end`.
   void interpolate(double t, double end, In x, In v, In y, In w);
 
   /// Time since the start, 0 for points that stay.

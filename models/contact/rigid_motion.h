@@ -20,10 +20,10 @@ struct RigidMotion {
   }
 };
 
-/// The rigid motion that takes points `before` to `now` with the least sum of squared
-/// distances: the rotation is the polar factor of sum (now - mean)(before - mean)^T, by
-/// Newton's iteration [Higham 1986]. Where points lie on a line, which does not determine
-/// it, or are not finite: no motion.
+/// Computes the rigid motion that takes points `before` to `now` with the least sum of
+/// squared distances. The rotation is the polar factor of sum (now - mean)(before -
+/// mean)^T, by Newton's iteration [Higham 1986]. Returns no motion where points lie on a
+/// line, which does not determine it, or are not finite.
 RigidMotion rigid_motion(std::span<const Vec> before, std::span<const Vec> now);
 
 }  // namespace tress::models

@@ -19,7 +19,7 @@ inline void in_turn(std::size_t count, const std::function<void(std::size_t)>& w
   for (std::size_t i = 0; i < count; ++i) work(i);
 }
 
-/// Calls work(from, to) for parts of [0, count) of so many at most.
+/// Calls work(from, to) for parts of [0, count) of at most loop_part entries.
 inline constexpr std::size_t loop_part = 8192;
 inline void in_parts(std::size_t count, const Loop& loop,
                      const std::function<void(std::size_t, std::size_t)>& work) {
@@ -27,14 +27,14 @@ inline void in_parts(std::size_t count, const Loop& loop,
        [&](std::size_t i) { work(i * loop_part, std::min(count, (i + 1) * loop_part)); });
 }
 
-/// Broad phase: which segments of many polylines may come within a distance of a given
-/// piece. A segment lies in the cell of its middle alone, one much longer than usual in
-/// parts; cells lie in rows of one uniform grid, in memory one after the other, so that a
-/// search compares the boxes of few runs of consecutive ones. What lies outside the grid,
-/// which spans where most points are, lies in the cells of its border. Long segments,
-/// such as those of a run that fails, are candidates of every search. Memory and filling
-/// are O(segments), up to 500 bytes a segment where the reach is short; a search is
-/// O(parts nearby).
+/// Broad phase: finds segments of many polylines that may come within a distance of a
+/// given piece. A segment lies in the cell of its middle only; one much longer than usual
+/// is divided into parts. Cells lie in rows of one uniform grid, one after the other in
+/// memory, so that a search compares the boxes of few runs of consecutive cells. The grid
+/// spans the region of most points; segments outside lie in the cells of its border. Long
+/// segments, such as those of a run that fails, are candidates of every search. Memory
+/// and filling are O(segments), up to 500 bytes per segment where the reach is short. A
+/// search is O(parts nearby).
 class SegmentCells {
  public:
   /// points[k] >= 2: number of points of polyline k.
@@ -61,11 +61,11 @@ class SegmentCells {
   /// Appends to `found` every segment that reaches into the box, and some others, own
   /// ones too, in some order, some more than once; but no long ones.
   void reaching_into(const Box& box, std::vector<int>& found) const;
-  /// Ascending.
+  /// Returns the long segments in ascending order.
   std::span<const int> long_segments() const { return long_; }
 
-  /// How a segment is divided: its parts' numbers are [first, second), none if it is long
-  /// or not finite.
+  /// Returns the range [first, second) of a segment's parts; empty if it is long or not
+  /// finite.
   std::pair<std::size_t, std::size_t> parts_of(std::size_t segment) const {
     return {static_cast<std::size_t>(part_[segment]),
             static_cast<std::size_t>(part_[segment + 1])};
@@ -74,7 +74,8 @@ class SegmentCells {
   double longest_part() const { return longest_; }  // m
   /// Whether usual segments lie in several.
   bool divided() const { return divided_; }
-  /// Of segments usually as long as that, in searches of about `reach` (m).
+  /// Returns the length of the longest part, for segments of `usual` length in searches
+  /// of about `reach` (m).
   static double longest_part(double usual, double reach);
   /// Calls act(part, middle) at x, the places of fill().
   template <class F>
@@ -87,7 +88,7 @@ class SegmentCells {
       act(p, all.at((static_cast<double>(p - from) + 0.5) * share));
     }
   }
-  /// What the grid spans.
+  /// Returns the box that the grid spans.
   Box extent() const;
 
   std::size_t bytes() const;
@@ -100,10 +101,10 @@ class SegmentCells {
             static_cast<std::size_t>(y)) *
            static_cast<std::size_t>(count_[0]);
   }
-  /// Of a place, some 2^16 across the grid along each axis: no fewer than those of places
-  /// before it.
+  /// Returns the grid steps of a place, about 2^16 across the grid along each axis.
+  /// Monotonic in the place.
   Numbers steps(const Vec& place) const noexcept;
-  /// With the box about it in steps: least, and most negated.
+  /// Part of a segment with its box in steps: least, and most negated.
   struct alignas(16) Part {
     std::array<std::int16_t, 6> box;
     int segment;

@@ -13,8 +13,8 @@ class SegmentTree {
  public:
   explicit SegmentTree(const StrandPartners& strands);
 
-  /// From x to the nearest segment of another strand than `but`, m; infinite if there is
-  /// none. `nearest`: a guess, -1 for none, becomes that segment.
+  /// Returns the distance from x to the nearest segment of another strand than `but`, m;
+  /// infinite if there is none. `nearest`: a guess, -1 for none, becomes that segment.
   double distance(const Vec& x, int but, int& nearest) const;
 
  private:

@@ -8,12 +8,12 @@
 #include "models/contact/contact_law.h"
 #include "models/contact/group_loads.h"
 
-/// How points of one strand, one per lane of a pack P, meet other strands. Strands are
-/// given as runs of their segments; Segments gives a point's place and velocity and a
-/// segment's 1/|edge|^2.
+/// Contacts of points of one strand, one per lane of a pack P, with other strands.
+/// Strands are given as runs of their segments. Segments returns a point's position and
+/// velocity and a segment's 1/|edge|^2.
 namespace tress::models {
 
-/// Of a number in memory: one instruction, without a sum.
+/// Loads a number from memory into all lanes: one instruction, without a sum.
 template <class P>
 [[gnu::always_inline]] inline P all(double x) {
   return [x]<int... lane>(std::integer_sequence<int, lane...>) {
@@ -27,7 +27,7 @@ template <class P>
   return {all<P>(x.x), all<P>(x.y), all<P>(x.z)};
 }
 
-/// Where on a segment is nearest to what is at d from its start.
+/// Returns the position along a segment nearest to the point at d from its start.
 template <class P>
 [[gnu::always_inline]] inline P nearest(const Vec3<P>& d, const Vec3<P>& edge,
                                         const P& inverse) {
@@ -53,8 +53,8 @@ struct Meeting {
   P which;   // number of the segment among those of the runs
 };
 
-/// With the first strand of `runs`, which then are those of the others. `far`: the square
-/// of the reach.
+/// Computes the contact with the first strand of `runs`, and removes that strand from
+/// `runs`. `far`: the square of the reach.
 template <class P, class Segments>
 [[gnu::always_inline]] inline Meeting<P> meet(const Vec3<P>& x, const P& far,
                                               const Segments& segments,

@@ -139,10 +139,10 @@ void StrandPartners::begin_epoch(In x, const Loop& loop) {
   drift_.fill(cells_, x, (1 + 1e-9) * sight, loop);
 }
 
-/// The one of least cost for lists whose surroundings move by d a step, relative to them.
-/// Lists that reach r + m have (1 + m/r)^2 times the candidates of ones that reach r, and
-/// cost their making every m/d steps: using (1 + m/r)^2 + making d/m is least where
-/// (m/r)^2 (1 + m/r) = d/r making/(2 using).
+/// Returns the margin of least cost for lists whose surroundings move by d per step
+/// relative to them. A list of reach r + m has (1 + m/r)^2 times the candidates of one of
+/// reach r and is rebuilt every m/d steps. The cost using (1 + m/r)^2 + making d/m is
+/// least where (m/r)^2 (1 + m/r) = d/r making/(2 using).
 double StrandPartners::best_margin() const {
   const double target = making_over_using * drift_.mean() / reach_;
   double share = std::sqrt(target);

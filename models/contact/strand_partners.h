@@ -12,13 +12,13 @@
 
 namespace tress::models {
 
-/// The polylines of many strands as others see them until the next update, and what is
-/// needed to keep lists of those nearby, since they hardly change from step to step
-/// [Bertails et al. 2006, section 4.1]. How far things have moved is meant relative to
-/// the head, whose rigid motion is that of the strands' first points. A list holds until
-/// what is near it has moved too far relative to it, by drift(); where hair is slow it
-/// holds longer than where it is fast. An epoch ends, and segments are sorted into cells
-/// anew, when some point has moved far from where it was then.
+/// Polylines of many strands as others see them until the next update, with data to keep
+/// lists of neighbours. Neighbours hardly change from step to step [Bertails et al. 2006,
+/// section 4.1]. Displacements are relative to the head, whose rigid motion is that of
+/// the strands' first points. A list is valid until its surroundings have moved too far
+/// relative to it, by drift(); it lasts longer where hair is slow. An epoch ends, and
+/// segments are sorted into cells again, when some point has moved far from its place at
+/// the epoch.
 class StrandPartners {
  public:
   /// points[k] >= 2: of strand k; reach > 0, m.
@@ -37,11 +37,12 @@ class StrandPartners {
   // For lists of what is within reach() + margin() of a place at an update.
   /// The distance that costs least, m.
   double margin() const { return margin_; }
-  /// How far a point goes at most until the next update, m.
+  /// Returns the largest distance that a point moves until the next update, m.
   double range() const { return range_; }
   /// Lists made before it changed hold no longer, whatever has moved.
   long lists() const { return lists_; }
-  /// Where what has moved with the head to x was at the last update but one.
+  /// Returns the position at the last update but one of what has moved with the head to
+  /// x.
   template <class T>
   Vec3<T> before(const Vec3<T>& x) const {
     return step_.back(x);
@@ -49,8 +50,8 @@ class StrandPartners {
   /// Holds the last displacements x - before of all that may have come within a list's
   /// distance of a place in the cell, but for long segments.
   const LocalDrift::Spread& drift(int cell) const { return drift_.near(cell); }
-  /// Of each lane; `at_epoch`: of the place at the last update. Places that are not
-  /// finite have some cell.
+  /// Returns the cell of each lane; `at_epoch`: position at the last update. Positions
+  /// that are not finite have some cell.
   template <class P>
   std::array<int, lanes<P>> cells(const Vec3<P>& at_epoch) const {
     return drift_.cells(at_epoch);
@@ -61,13 +62,14 @@ class StrandPartners {
   Vec3<T> at_epoch(const Vec3<T>& x) const {
     return head_.back(x);
   }
-  /// How far points are from where they were at the epoch.
+  /// Returns the largest displacement of points since the epoch.
   double moved() const { return moved_; }
 
   const SegmentCells& segments() const { return cells_; }
-  /// At any time in its interval.
+  /// Returns the motion of the points at any time in its interval.
   const PointMotion& motion() const { return motion_; }
-  /// At the last update; not of the last point of a strand, which begins none.
+  /// Returns the piece of a segment at the last update; the last point of a strand begins
+  /// none.
   StraightPiece piece(int segment) const {
     const auto i = static_cast<std::size_t>(segment);
     StraightPiece piece;

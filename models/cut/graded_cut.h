@@ -23,19 +23,20 @@ struct GradedCut {
   double error = 0;             // m
 };
 
-/// Elements that share |kappa'|^(2/3) equally, kappa(s) the Darboux vector at rest: for
-/// so many elements the least error of kappa, sum h^3 |kappa'|^2/12, is near that [De
-/// Boor 1973]. kappa' is had without differences, from the balance of moments (N the load
-/// beyond s, R the frame, K = diag(GJ, EI1, EI2), kappa_n the natural curvatures),
+/// Returns `elements` elements that share |kappa'|^(2/3) equally, with kappa(s) the
+/// Darboux vector at rest. The error of kappa, sum h^3 |kappa'|^2/12, is near its minimum
+/// for this number of elements [De Boor 1973]. kappa' follows without differences from
+/// the balance of moments (N the load beyond s, R the frame, K = diag(GJ, EI1, EI2),
+/// kappa_n the natural curvatures),
 ///
 ///     kappa' = kappa_n' + K^-1 (-kappa x K (kappa - kappa_n) + (R^T N) x e0),
 ///
-/// on elements that are at rest themselves: 4 passes, from equal ones on. No element gets
-/// less than .3 of the mean of |kappa'|^(2/3), so none is longer than 3.4 mean ones;
-/// with .15, passes swing about a worse answer where elements are few.
+/// on elements that are at rest themselves, in 4 passes that start from equal elements.
+/// No element gets less than .3 of the mean of |kappa'|^(2/3), so none is longer than 3.4
+/// mean ones. With .15, passes oscillate about a worse mesh where elements are few.
 ///
-/// An element's own shape is off by kappa' h^3/12 at its end, where the tangent is right:
-/// the error is the largest sum of these, as vectors, up to any place. O(elements) per
+/// An element's own shape is off by kappa' h^3/12 at its end, where the tangent is right.
+/// The error is the largest sum of these vectors up to any place. O(elements) per
 /// iteration for the equilibrium. Throws std::runtime_error if there is no equilibrium.
 GradedCut graded_cut(const LoadedRod& rod, int elements);
 

@@ -10,8 +10,8 @@
 
 namespace tress::models {
 
-/// Force on a strand of air that moves with velocity w(t, x), for any law of air_law.h
-/// and any field of wind_field.h: f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All
+/// Force of moving air on a strand, with air velocity w(t, x), for any law of air_law.h
+/// and any field of wind_field.h. f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All
 /// its work counts as power; there is no potential. Law and field are types, so still air
 /// costs nothing. O(points).
 template <class Law, class Wind>

@@ -36,16 +36,16 @@ struct SquareDrag {
   double slope(double) const { return c; }
 };
 
-/// b(u) = rho C(Re) r u of a cylinder of radius r in cross flow, Re = 2 r rho u/mu, with
+/// Drag b(u) = rho C(Re) r u of a cylinder of radius r in cross flow, Re = 2 r rho u/mu.
 /// C = 1 + 10 Re^(-2/3) for 1 < Re < 2e5 [White, Viscous Fluid Flow, curve fit for the
 /// circular cylinder]. The fit has no linear limit for Re -> 0, where C Re of a cylinder
-/// falls slower than any power of Re; we use
+/// falls slower than any power of Re. We use
 ///
 ///     C Re = Re + 10 (Re^2 + Re_0^2)^(1/6),   Re_0 = 0.1,    b = mu C Re/2,
 ///
-/// which is smooth in u, with C Re = 4.6 at Re = 0. It is within 0.2 % of the fit for
-/// Re > 1, and for 0.001 < Re < 0.1 between 0.9 and 1.7 times Lamb's
-/// C Re = 8 pi/(2.002 - ln Re).
+/// which is smooth in u, with C Re = 4.6 at Re = 0. It is within 0.2 % of the fit for Re
+/// > 1, and for 0.001 < Re < 0.1 between 0.9 and 1.7 times Lamb's C Re = 8 pi/(2.002 - ln
+/// Re).
 struct CylinderDrag {
   static constexpr double reynolds_0 = 0.1;
   double half_viscosity = 0;      // mu/2, Pa s
@@ -96,7 +96,8 @@ struct AnisotropicAirLaw {
     }
     return -p.length[i] * slope;
   }
-  /// With du_n = -(u.dt) t - (u.t) dt and d(u_t) = (u.dt) t + (u.t) dt, u.dt = u_n.dt.
+  /// Returns the derivative by the tangent. With du_n = -(u.dt) t - (u.t) dt and d(u_t) =
+  /// (u.dt) t + (u.t) dt, u.dt = u_n.dt.
   Mat3 by_tangent(const Points& p, std::size_t i, const Vec& u) const {
     const Vec t = load3(&p.tangent[3 * i]);
     const double along = dot(u, t), friction = tangential * std::abs(along);

@@ -49,9 +49,8 @@ constexpr Parameter parameters_of_body[] = {
      .help = "motion of the body: none, or that of the head",
      .choices = "fixed|head"},
     {.name = "stiffness_n_m2",
-     .help =
-         "contact force per length and depth; a hair at rest sinks by 6 um at 10, and "
-         "fixed steps of 1 ms bear little more (N/m^2)",
+     .help = "contact force per length and depth (N/m^2). At 10 a hair at rest sinks by "
+             "6 um, and fixed steps of 1 ms allow little more",
      .number = 10,
      .min = 0,
      .max = 1e12},
@@ -67,10 +66,11 @@ constexpr Parameter parameters_of_body[] = {
      .max = 1e3},
     {.name = "friction_law",
      .help =
-         "regularised: sticking contacts creep below slip_speed_m_s; exact: they keep "
-         "their place on the body, moving or not, to the contact tolerance "
-         "(Signorini-Coulomb), for methods that solve at the end of a step; rigid and "
-         "beside [effects.strand_friction] it is solved with the contact of strands",
+         "regularised: sticking contacts creep below slip_speed_m_s; exact "
+         "(Signorini-Coulomb): they keep their place on the body to the contact "
+         "tolerance. exact needs a method that solves at the end of a step. With "
+         "[effects.strand_friction], rigid contacts are solved together with those of "
+         "strands",
      .choices = "regularised|exact"},
     {.name = "normal",
      .help = "friction_law = exact: the surface gives way as stiffness_n_m2 says, or is "

@@ -12,17 +12,17 @@ namespace tress::models {
 
 std::span<const Parameter> body_parameters();
 
-/// What Effect::rigid_contact() gives: per length of strand, `law`.
+/// Result of Effect::rigid_contact(): per length of strand, `law`.
 struct RigidContact {
   RigidBody body;
   BodyContact law;
 };
 
-/// Contact of the strand with a rigid body and regularised friction: per point, l times
-/// the load of BodyContact, a force per length, so the result does not depend on the
-/// number of points; points without length receive no force. The elastic part is the
-/// potential; power is that of damping and friction (<= 0 on a body at rest) plus that of
-/// the body's motion against the elastic part, f_elastic.surface_velocity. O(points).
+/// Contact of the strand with a rigid body and regularised friction. The load on a point
+/// is l times that of BodyContact, a force per length, so the result does not depend on
+/// the number of points. Points without length receive no force. The elastic part is the
+/// potential. power() is that of damping and friction (<= 0 on a body at rest) plus that
+/// of the body's motion against the elastic part, f_elastic.surface_velocity. O(points).
 class Body final : public Effect {
  public:
   /// Throws InputError on numbers that are negative or not finite, and as RigidBody does.
@@ -54,8 +54,9 @@ class Body final : public Effect {
   BodyPose pose(double t) const { return contact_.body.pose(t); }
   const RigidContact& contact_on_points() const { return contact_; }
 
-  /// The same for one strand whose points are met `more` (m, one each) farther from the
-  /// surface than its radius: so that each is as deep at rest as its force there asks.
+  /// Returns a copy for one strand whose points meet the surface `more` (m, one each)
+  /// farther away than its radius. Each point then has the depth at rest that its force
+  /// requires.
   std::shared_ptr<const Body> with_offsets(std::vector<double> more) const;
 
  private:

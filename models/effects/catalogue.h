@@ -27,7 +27,7 @@ struct EffectEntry {
   bool contact = false;  // its load begins where parts meet
 };
 
-/// Those of tress, then those of plug-ins.
+/// Returns the effects of tress, then those of plug-ins.
 std::span<const EffectEntry> effects();
 std::span<const EffectEntry> added_effects();  // those of plug-ins
 

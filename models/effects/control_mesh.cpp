@@ -36,9 +36,9 @@ std::span<const Parameter> control_mesh_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{
         {.name = "width_m",
-         .help = "guides whose roots are farther apart are no neighbours; places of "
-                 "neighbours farther apart at rest have no link, a strip as wide no "
-                 "density (m)",
+         .help = "largest distance of the roots of neighbouring guides (m). Places of "
+                 "neighbours farther apart at rest have no link, and a strip of this "
+                 "width has no density",
          .number = 0.05,
          .min = 1e-6,
          .max = 1e3},

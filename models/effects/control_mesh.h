@@ -16,8 +16,8 @@ namespace tress::models {
 /// The table [effects.control_mesh] of a scene.
 std::span<const Parameter> control_mesh_parameters();
 
-/// Guide hairs tied into a mesh that stands for the dense hair between them [Chang, Jin &
-/// Yu 2002], all of it between the strands' material points:
+/// Guide hairs tied into a mesh that represents the dense hair between them [Chang, Jin &
+/// Yu 2002]. The mesh connects the strands' material points:
 ///
 /// Static links, breakable springs between the points of neighbouring guides (GuideMesh),
 /// d from one to the other and u its rate:
@@ -27,31 +27,33 @@ std::span<const Parameter> control_mesh_parameters();
 /// k and c are per length, times the length that a link stands for. A link that is longer
 /// than at rest by more than the threshold at the end of a step is gone until restart.
 ///
-/// Strips of triangles between neighbouring guides. A point of a third guide near the
-/// triangles of a strip is pushed and dragged by the nearest one, as by a strand
-/// (ContactLaw), d from its nearest place on the triangle, u relative to that place:
+/// Strips of triangles between neighbouring guides. The nearest triangle of a strip
+/// pushes and drags a point of a third guide, as a strand does (ContactLaw). d is the
+/// vector from the nearest place on the triangle, and u the velocity relative to it:
 ///
 ///     F = w (1 - |t.t'|) l ContactLaw(d, u)
 ///
-/// with l the length that the point carries, t and t' the directions of the hair there
-/// and in the strip, along which they merge, and w the strip's density, min(1, e0/e) with
-/// e its width, fading to 0 as e goes from half the largest width to all of it. The
-/// corners take the reaction by the place's weights. What touches, where, and the factor
-/// of ContactLaw are found at every update(), once for all strands.
+/// with l the length that the point carries. t and t' are the directions of the hair
+/// there and in the strip, along which they merge. The strip's density is w = min(1,
+/// e0/e) with e its width. It fades to 0 as e goes from half the largest width to the
+/// largest width. The corners take the reaction by the place's weights. Contacts, their
+/// places and the factor of ContactLaw are computed at every update(), once for all
+/// strands.
 ///
 /// The paper gives springs in the frame of the nearest segments and friction mu F_N; we
-/// have lengths, which conserve angular momentum, and the drag of ContactLaw. Formulas of
-/// density, the default figures and the choice of neighbours are ours.
+/// use lengths, which conserve angular momentum, and the drag of ContactLaw. The formulas
+/// of density, the default values and the choice of neighbours are ours.
 ///
 /// Each strand sees the others where they were at the last update (lagged): exchanged
 /// momentum sums to zero up to the first order in the step. None of the load is in
 /// potential(), as for StrandInteraction.
 ///
-/// A model's points need not be the material ones, whose places are interpolated between
-/// the points around by the lengths that these carry: exact for nodes, within curvature
-/// times 1/300 of a segment's square for four Gauss points; the tip is at the last point.
-/// Derivatives are lumped at the points that hold a place (row sums): exact where one
-/// holds it, else those of a motion that the strand's points share, no softer.
+/// A model's points need not be the material ones. Places of material points are
+/// interpolated between the model's points by the lengths that these carry. That is exact
+/// for nodes, and within curvature times 1/300 of a segment's square for four Gauss
+/// points; the tip is at the last point. Derivatives are lumped at the points that hold a
+/// place (row sums). They are exact where one point holds it, otherwise those of a motion
+/// that the strand's points share, no softer.
 ///
 /// update() is O(points + triangles), a load O(points of the strand + links and contacts
 /// on it).
@@ -75,7 +77,7 @@ class ControlMesh {
   const GuideMesh& mesh() const { return mesh_; }
   std::size_t broken() const { return broken_count_; }
   std::size_t contacts() const { return bonds_.size() - mesh_.links.size(); }
-  /// Of the links that hold, at the last update, J.
+  /// Returns the energy of the links that hold, at the last update, J.
   double energy() const;
 
   /// Numbers of broken links; recall() restores it, and everything else follows from the

@@ -25,8 +25,8 @@ struct Points {
   int held = 0;  // the first so many move as the root prescribes, whatever their load
 };
 
-/// What a model must compute before it calls add_load, add_derivatives or power; the
-/// model computes the union over effects. potential() always reads positions.
+/// Quantities that a model must compute before it calls add_load, add_derivatives or
+/// power. The model computes the union over effects. potential() always reads positions.
 struct Needs {
   bool position = false;
   bool velocity = false;
@@ -81,8 +81,8 @@ class Multipliers {
  public:
   virtual ~Multipliers() = default;
   virtual bool rigid() const = 0;
-  /// Takes points that hold forces or overlap, beside those that are taken. All forces
-  /// are constants until give_back().
+  /// Adds points that hold forces or overlap to those already taken. All forces are
+  /// constants until give_back().
   virtual void take(double t, const Points& p) noexcept = 0;
   /// Appends those of the points that are taken.
   virtual void touches(double t, const Points& p,
@@ -121,8 +121,9 @@ class Effect {
   /// Set if its loads are those of BodyContact on a rigid body, which kernels for many
   /// strands compute by themselves.
   virtual const RigidContact* rigid_contact() const noexcept { return nullptr; }
-  /// Whether it may load some point of the ball at time t, by a test that is cheap beside
-  /// add_load; models need not call that for points in balls which it does not reach.
+  /// Returns whether the effect may load some point of the ball at time t. The test is
+  /// cheap compared with add_load; models may omit that call for points in balls out of
+  /// reach.
   virtual bool reaches(double /*t*/, const Ball& /*ball*/) const noexcept { return true; }
   /// blocks += pos df/dx + vel df/dv, (9 count) row-major 3x3 blocks.
   virtual void add_derivatives(double t, const Points& p, double pos, double vel,
@@ -134,14 +135,15 @@ class Effect {
     add_load(t, p, f);
     add_derivatives(t, p, pos, vel, blocks);
   }
-  /// blocks += factor df/dt with respect to the unit tangent t at fixed x and v, (9
-  /// count) as above; they are applied to changes of t, which are orthogonal to t. The
-  /// model knows how t depends on its coordinates.
+  /// Adds factor df/dt to `blocks`, for the derivative with respect to the unit tangent t
+  /// at fixed x and v, (9 count) as above. The blocks are applied to changes of t, which
+  /// are orthogonal to t. The model knows how t depends on its coordinates.
   virtual void add_direction_derivatives(double /*time*/, const Points& /*p*/,
                                          double /*factor*/,
                                          InOut /*blocks*/) const noexcept {}
-  /// For an effect whose load on a point depends on other points: the full derivative;
-  /// add_derivatives gives only its diagonal blocks. A model calls one or the other.
+  /// Appends the full derivative of an effect whose load on a point depends on other
+  /// points. add_derivatives gives only its diagonal blocks. A model calls one or the
+  /// other.
   virtual void add_couplings(double /*t*/, const Points& /*p*/,
                              std::vector<Coupling>& /*all*/) const {}
   /// J; reads the positions of the points even if needs() does not request them.
@@ -160,8 +162,9 @@ class Effect {
   virtual std::optional<Outline> outline(double /*t*/) const { return {}; }
   /// Whether its loads are forces of contact.
   virtual bool contact() const { return outline(0).has_value(); }
-  /// Set if the load depends on contact forces that the effect holds: a copy for one
-  /// strand with so many points, which must not be shared (see HeldContacts).
+  /// Returns a copy for one strand with this number of points, which must not be shared,
+  /// if the load depends on contact forces that the effect holds (see HeldContacts). Null
+  /// otherwise.
   virtual std::unique_ptr<Effect> for_strand(std::size_t /*points*/) const { return {}; }
   virtual Multipliers* multipliers() { return nullptr; }
   /// Set if its contact may be solved together with that between strands

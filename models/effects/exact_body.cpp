@@ -246,11 +246,12 @@ double ExactBody::drive() const noexcept {
   return fastest;
 }
 
-/// An improvement leaves a part r of the error of a contact's multipliers, by how stiffly
-/// the contact responds: where lambda became f, the law holds near f + r/(1 - r) (f -
-/// lambda) [Aitken's process]. Two changes of multipliers, of which the second is s times
-/// the first, tell that r is s (1 - r) more than was assumed between them. The first r of
-/// a step is remembered for those that follow: later ones are of smaller errors.
+/// Extrapolates the multipliers. An improvement leaves a part r of the error of a
+/// contact's multipliers, which depends on the contact's stiffness. Where lambda became
+/// f, the law is satisfied near f + r/(1 - r) (f - lambda) [Aitken's process]. If the
+/// second of two changes of multipliers is s times the first, r is s (1 - r) more than
+/// was assumed between them. The first r of a step is kept for later ones, whose errors
+/// are smaller.
 void ExactBody::extrapolate() noexcept {
   for (std::size_t i = 0; i < change_.size(); ++i) {
     HeldContact contact = held(i);

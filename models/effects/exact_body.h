@@ -35,7 +35,7 @@ class ExactBody final : public Effect, private Multipliers {
 
   std::unique_ptr<Effect> for_strand(std::size_t points) const override;
   Multipliers* multipliers() override { return this; }
-  /// Of a rigid surface without restitution.
+  /// Returns the obstacle of a rigid surface without restitution.
   std::shared_ptr<const Obstacle> obstacle() const override;
 
  private:

@@ -7,7 +7,8 @@
 
 namespace tress::models {
 
-/// Its strength, for models that bring their own loads and for strands without a scene.
+/// Strength of gravity, for models that bring their own loads and for strands
+/// without a scene.
 inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
                                              .help = "gravity along -z (m/s^2)",
                                              .number = 9.81,

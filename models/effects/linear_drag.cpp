@@ -14,7 +14,7 @@ constexpr Parameter parameters_of_drag[] = {
      .number = 2e-5,
      .min = 0,
      .max = 1e6},
-    {.name = "mass_damping_1_s",
+    {.name = "mass_damping_per_s",
      .help = "force per mass and velocity (1/s)",
      .number = 0,
      .min = 0,
@@ -29,7 +29,7 @@ std::span<const Parameter> linear_drag_parameters() { return parameters_of_drag;
 std::unique_ptr<const Effect> make_linear_drag(const Parameters& parameters,
                                                const RootMotion&) {
   return std::make_unique<LinearDrag>(parameters.number("drag_kg_m_s"),
-                                      parameters.number("mass_damping_1_s"));
+                                      parameters.number("mass_damping_per_s"));
 }
 
 LinearDrag::LinearDrag(double nu, double mass_damping)

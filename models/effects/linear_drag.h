@@ -9,9 +9,9 @@ namespace tress::models {
 std::span<const Parameter> linear_drag_parameters();
 
 /// Viscous drag of still air on a thin strand and mass-proportional damping: f = -r v per
-/// point with r = nu l + c m, l the strand length (m) and m the mass (kg) that the point
-/// carries, nu in kg/(m s) and c in 1/s. Purely dissipative: power = -r |v|^2,
-/// df/dv = -r I. On a uniform strand, c is equivalent to adding c rho A to nu. O(points).
+/// point with r = nu l + c m. The point carries the strand length l (m) and the mass m
+/// (kg); nu is in kg/(m s) and c in 1/s. Purely dissipative: power = -r |v|^2, df/dv = -r
+/// I. On a uniform strand, c is equivalent to adding c rho A to nu. O(points).
 class LinearDrag final : public Effect {
  public:
   /// Throws InputError unless both are finite and >= 0.

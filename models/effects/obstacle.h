@@ -42,9 +42,9 @@ class Obstacle final : public Effect {
   class Step {
    public:
     Step(const Obstacle& of, double t, double h);
-    /// Where a point that moves straight on from x0 to x1 is nearer to the surface at the
-    /// end than `reach`, or was inside on its way: where it came through it, or the place
-    /// under its end.
+    /// Returns the plane of contact of a point that moves straight from x0 to x1, if it
+    /// ends nearer to the surface than `reach` or was inside on its way. The plane is
+    /// where the point entered, or below its end.
     std::optional<Plane> touch(const Vec& x0, const Vec& x1, double reach) const;
 
    private:

@@ -11,8 +11,8 @@
 namespace tress::models {
 
 /// Contact of a sample of one straight piece, (1 - sigma) x_0 + sigma x_1, with the
-/// nearest point of another, (1 - s) x_2 + s x_3: the law's force per length times
-/// `length`. With the weights W = (1 - sigma, sigma, s - 1, -s), which sum to zero,
+/// nearest point of another, (1 - s) x_2 + s x_3. The force is the law's force per length
+/// times `length`. With the weights W = (1 - sigma, sigma, s - 1, -s), which sum to zero,
 ///
 ///     d = sum_a W_a x_a,    u = sum_a W_a v_a,    f_a = length W_a F(d, u),
 ///

@@ -25,11 +25,12 @@ struct BodyPose {
 /// Shape and motion of a body that strands touch.
 class RigidBody {
  public:
-  /// `offset`: radius of the strand (m). `head`: the motion that the body follows; the
-  /// body is at `place` while the head is at rest, and stays there if no head is given.
-  /// Throws InputError on numbers that are negative or not finite, a frame that is not a
-  /// rotation, and a grid whose surface comes within two spacings of contact with its
-  /// second layer, where contact would go undetected.
+  /// Constructs a body at `place`. `offset`: radius of the strand (m). `head`: motion
+  /// that the body follows; the body is at `place` while the head is at rest, and stays
+  /// there without a head. Throws InputError on numbers that are negative or not finite
+  /// and on a frame that is not a rotation. Also throws on a grid whose surface comes
+  /// within two spacings of contact with its second layer, where contact would go
+  /// undetected.
   RigidBody(BodyShape shape, const StrandPlace& place, double offset,
             std::optional<RootMotion> head);
 
@@ -44,9 +45,9 @@ class RigidBody {
   /// Whether points of the ball may be in contact.
   bool reaches(const BodyPose& now, const Ball& ball) const;
 
-  /// Its least radius of curvature where that is known, m; infinity: flat.
+  /// Returns the least radius of curvature where it is known, m; infinity: flat.
   double least_radius() const;
-  /// From a place in its frame, if it is below `reach`.
+  /// Returns the distance from a place in the body's frame, if it is below `reach`.
   std::optional<Distance> distance(const Vec& x, double reach) const;
 
   /// A point of the strand near the surface, in the frame of the body.

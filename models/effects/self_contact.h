@@ -13,15 +13,15 @@ namespace tress::models {
 
 std::span<const Parameter> self_contact_parameters();
 
-/// Self-contact of a strand, as in plectonemes: the polyline through the points that
+/// Self-contact of a strand, as in plectonemes. The polyline through the points that
 /// carry length, in their order along an unbranched strand, repels and drags itself
-/// (ContactLaw). Its samples are at most half the inner radius apart at rest; each
-/// interacts, with half of its length because the other side has samples too, with the
-/// nearest point of the part of the strand that begins `separation` (m, along the arc at
-/// rest) before it, and with that of the part after it. Forces are distributed to the
-/// four points about a contact and sum to zero (PieceContact). If two places are equally
-/// near, as inside a corner of the polyline, the force jumps from one to the other: a
-/// coil of 20 elements came to rest there, and implicit steps are solved on the jump
+/// (ContactLaw). Its samples are at most half the inner radius apart at rest. Each sample
+/// interacts with half of its length, because the other side has samples too. Its
+/// partners are the nearest point of the part that begins `separation` (m, along the arc
+/// at rest) before it, and that of the part after it. Forces are distributed to the four
+/// points about a contact and sum to zero (PieceContact). If two places are equally near,
+/// as inside a corner of the polyline, the force jumps from one to the other. A coil of
+/// 20 elements came to rest there, and implicit steps are solved on the jump
 /// (integrators/stage/stage.h). The repulsion is in potential(). The search along the
 /// strand takes strides too short to skip a contact: O(n) for n points without near
 /// contacts, O(n^2) at worst.

@@ -454,12 +454,13 @@ std::vector<double> StrandFriction::friction_used() const {
   return used;
 }
 
-/// Where the laws were not found it is at most the tolerance (stop_driving()). Where they
-/// were, the forces x and velocities y of contact_violation() are within e = violation/(2
-/// - sqrt 2) of some x', y' that obey the laws [Tseng 1996], so that x_t.y_t <= e (|x_t'|
-/// + |y_t'| + e) - |x_t'| |y_t'| where it slides: positive for forces beyond 3 e only at
-/// |y_t'| < 1.5 e. Smaller ones act at less than 3 e on a slide. Rounding errors of a
-/// violation are those of some sums of velocities.
+/// Returns the drive. Where no forces satisfying the laws were found, it is at most the
+/// tolerance (stop_driving()). Otherwise the forces x and velocities y of
+/// contact_violation() are within e = violation/(2 - sqrt 2) of some x', y' that obey the
+/// laws [Tseng 1996]. Then x_t.y_t <= e (|x_t'| + |y_t'| + e) - |x_t'| |y_t'| where it
+/// slides. For forces beyond 3 e this is positive only at |y_t'| < 1.5 e. Smaller forces
+/// act at less than 3 e on a slide. Rounding errors of a violation are those of sums of a
+/// few velocities.
 double StrandFriction::drive() const {
   constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
   double fastest = 0;

@@ -16,22 +16,22 @@ namespace tress::models {
 std::span<const Parameter> strand_friction_parameters();
 
 /// Exact contact with friction (Signorini and Coulomb) between strands, between parts of
-/// one strand and with rigid bodies, as impulses at the ends of steps [Moreau 1999; Jean
-/// 1999]: strands have moved as if they were alone, and forces are found at which no pair
-/// of segments has passed through another or is nearer than their radii, with the
-/// velocities after them:
+/// one strand and with rigid bodies. Forces act as impulses at the ends of steps [Moreau
+/// 1999; Jean 1999]. Strands have first moved without contact. The forces are such that
+/// no pair of segments has passed through another or is nearer than their radii.
+/// Positions and velocities after them are
 ///
 ///     x = x* + h W r,   u = u* + W r,   W = h J S^-1 J^T   (of each strand)
 ///
 /// S is the matrix of the strand's own step, so forces act as if they had been among its
 /// loads. Each pair of segments has its contact where its axes would cross, or at the
-/// nearest points of their ends of steps (PieceTouch), or where they first touched if an
-/// end has slipped around the other since, and its forces on the four points about it sum
-/// to zero. Places along strands touch obstacles too, at the planes that
-/// are tangent to these (Obstacle::Plane). Where forces drive other pairs into each
-/// other, as seen where points are then (place()), these are added and all are solved
-/// again. What points move off their straight lines within a step is left to the next
-/// one.
+/// nearest points of their ends of steps (PieceTouch). If an end has since slipped around
+/// the other segment, the contact is where they first touched. The forces on the four
+/// points about a contact sum to zero. Places along strands touch obstacles as well, at
+/// the planes that are tangent to these (Obstacle::Plane). Where forces drive other pairs
+/// into each other at the new positions (place()), these pairs are added and all are
+/// solved again. Deviations of points from straight lines within a step are left to the
+/// next step.
 ///
 /// Use: begin(), then while find(): respond() for stale() strands, solve(), and place()
 /// for moved() ones. forces() are then to be applied to touching() ones. O(segments) for
@@ -45,7 +45,7 @@ class StrandFriction {
     double tolerance;  // largest violation, m/s
     int sweeps;        // at most
   };
-  /// Of strands without branches, their material points.
+  /// Constructs the contacts of strands without branches between their material points.
   StrandFriction(const Parameters& parameters,
                  std::span<const PieceSearch::Strand> strands,
                  std::vector<std::shared_ptr<const Obstacle>> obstacles);
@@ -67,24 +67,24 @@ class StrandFriction {
   void solve(const Loop& loop);
   /// Strands on which solve() has found other forces than before, ascending.
   std::span<const std::size_t> moved() const { return moved_; }
-  /// Where all points of a strand are with the forces found, 3 numbers each.
+  /// Sets the positions of all points of a strand with the forces found, 3 numbers each.
   void place(std::size_t strand, In x);
 
-  /// Of the step, or of that which was recalled: strands with contacts, ascending. Of the
-  /// step: the forces (N) on points_of().
+  /// Returns the strands with contacts in the step, or in the recalled state, ascending.
+  /// forces() returns the forces (N) on points_of() in the step.
   std::span<const std::size_t> touching() const { return touching_; }
   In forces(std::size_t strand) const { return strands_[strand].forces; }
   /// f += the forces on all points of a strand, 3 numbers each, N.
   void add_loads(std::size_t strand, InOut f) const;
 
-  /// How much of the friction that its contacts can bear each point of all strands uses:
-  /// 0 without any, below 1 where it sticks, 1 where it slides.
+  /// Returns the part of the available friction that the contacts of each point use, for
+  /// all strands: 0 without any, below 1 where it sticks, 1 where it slides.
   std::vector<double> friction_used() const;
 
-  /// Of the step: sweeps, and by how much the law was violated at last, m/s.
+  /// Returns the outcome of the step: sweeps, and the final violation of the laws, m/s.
   const ContactProblem::Outcome& outcome() const { return outcome_; }
   double tolerance() const { return law_.tolerance; }
-  /// Where strands touched in the step, and the force on the first one (N).
+  /// Place where strands touched in the step, and the force on the first one (N).
   struct Touch {
     std::size_t first_strand, second_strand;
     double first, second;  // arc length at the start of the step, m
@@ -100,8 +100,8 @@ class StrandFriction {
   /// Pairs of segments that touched in the step.
   std::size_t contacts() const { return known_.all.size(); }
 
-  /// How far strands that touched have been in each other at the ends of steps so far, m;
-  /// more than the thickness if they have passed through each other.
+  /// Returns the largest overlap of touching strands at the ends of steps so far, m. It
+  /// exceeds the thickness if they have passed through each other.
   double deepest() const { return deepest_; }
 
   /// deepest() and the forces of the last step, from which the next one starts: pairs and
@@ -120,7 +120,7 @@ class StrandFriction {
 
     void start_from(const Vec& last, const Vec& normal);
   };
-  /// A piece is looked at in so many parts at most, at the end of each.
+  /// Largest number of parts of a piece that are tested, at the end of each.
   static constexpr int most_parts = 15;
   static int code(std::size_t obstacle, int part) {
     return -1 - (most_parts + 1) * static_cast<int>(obstacle) - part;

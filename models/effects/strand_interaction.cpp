@@ -31,9 +31,9 @@ std::span<const Parameter> strand_interaction_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{
         {.name = "coupling",
-         .help = "lagged: a strand meets the others as they were after the last step, "
-                 "with a tolerance as they move between two exchanges; "
-                 "monolithic: as they are, all strands solved for at once",
+         .help = "lagged: a strand meets the others at their positions after the last "
+                 "step; with a tolerance they move between two exchanges. monolithic: at "
+                 "their present positions, all strands in one system",
          .choices = "lagged|monolithic"}};
     const std::span<const Parameter> law = contact_parameters();
     list.insert(list.end(), law.begin(), law.end());

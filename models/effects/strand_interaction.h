@@ -14,14 +14,15 @@ namespace tress::models {
 /// The table [effects.strand_interaction] of a scene: `coupling` and the contact law.
 std::span<const Parameter> strand_interaction_parameters();
 
-/// Many strands, each a separate System, that repel and drag each other (ContactLaw). The
-/// effect of a strand pushes its points, each by the force per length times the length it
-/// carries, away from the polylines of all other strands' material points, whose motion
-/// is given (lagged partners): after update() they are where they were then, after
-/// extrapolate() they move straight on, after interpolate() to known places. It is a pure
-/// function between two of these, for any caller and thread. Only the nearest point of
-/// every other strand counts, even if a second arc of that strand is near: counting
-/// segments, a joint would push twice and a finer discretisation would push more.
+/// Interaction of many strands, each a separate System, that repel and drag each other
+/// (ContactLaw). The effect of a strand pushes its points away from the polylines of all
+/// other strands' material points. The load on a point is the force per length times the
+/// length that the point carries. The motion of the other strands is given (lagged
+/// partners). After update() they stay in place, after extrapolate() they move uniformly,
+/// after interpolate() to known places. The effect is a pure function between two of
+/// these calls, for any caller and thread. Only the nearest point of every other strand
+/// counts, even if a second arc of that strand is near. Otherwise a joint would push
+/// twice and a finer discretisation would push more.
 ///
 /// Derivatives are with respect to the strand's own point; partners are fixed. None of
 /// the load is in potential(); power() counts all of it. Action and reaction differ by
@@ -29,10 +30,10 @@ std::span<const Parameter> strand_interaction_parameters();
 /// of the two strands. Contacts are resolved only if points are closer to each other than
 /// the inner radius.
 ///
-/// Eight points of a strand share a kept list of the segments that may come near
-/// (PointGroups), made when first asked for by whoever asks; load and derivatives at the
-/// same state come from one search. Cost: O(points in reach), whatever the number of
-/// strands; update() is O(points).
+/// Eight points of a strand share a cached list of the segments that may come near
+/// (PointGroups), which the first caller makes. Load and derivatives at the same state
+/// come from one search. Cost: O(points in reach), whatever the number of strands;
+/// update() is O(points).
 class StrandInteraction {
  public:
   /// points[k]: material points of strand k, a polyline. Throws InputError if a strand
@@ -44,14 +45,15 @@ class StrandInteraction {
   /// its last search: one thread at a time per effect; other threads may use others.
   std::unique_ptr<const Effect> effect(std::size_t strand) const;
 
-  /// At the start and after every step: positions and velocities (3 each) of all strands'
-  /// material points, strand after strand. The loop may share its parts among threads:
-  /// the results are the same.
+  /// Updates positions and velocities (3 each) of all strands' material points, strand
+  /// after strand; call it at the start and after every step. The loop may share its
+  /// parts among threads: the results are the same.
   void update(In x, In v, const Loop& loop = in_turn);
-  /// As above at t, for an interval up to `end` (s) in which the points keep their
+  /// Updates the points at t for an interval up to `end` (s) in which they keep their
   /// velocities; `end` is a breakpoint of the effects.
   void extrapolate(double t, double end, In x, In v, const Loop& loop = in_turn);
-  /// As above; they move along cubics to y with the velocities w.
+  /// Updates the points for an interval in which they move along cubics to y with the
+  /// velocities w.
   void interpolate(double t, double end, In x, In v, In y, In w,
                    const Loop& loop = in_turn);
   /// Longest distance (m) at which strands feel each other.

@@ -9,17 +9,18 @@ namespace tress::models {
 
 std::span<const Parameter> tether_parameters();
 
-/// Pulls one point of the strand towards a moving place X(t) = target + amplitude
-/// sin(2 pi frequency t), with d = X - x and the strength s(t) in [0, 1]:
+/// Pulls one point of the strand towards a moving place X(t) = target + amplitude sin(2
+/// pi frequency t). With d = X - x and the strength s(t) in [0, 1]:
 ///
 ///     f = s (k d + P d/sqrt(|d|^2 + soft^2) + c (X' - v))
 ///     E = s (k |d|^2/2 + P sqrt(|d|^2 + soft^2)),  power = s c (X' - v).v + dE/dt at
 ///     fixed x
 ///
-/// a spring k (N/m), a damper c (N s/m), and a pull of P (N) that fades within `soft` of
-/// the target. s rises from 0 to 1 in `ramp` seconds from t_on and falls back from t_off
-/// as 3 y^2 - 2 y^3, C^1. The tethered point carries the arc position `at` (0 root, 1
-/// tip) along the accumulated lengths of the points; finding it is O(points).
+/// with a spring k (N/m), a damper c (N s/m), and a pull of P (N) that fades within
+/// `soft` of the target. The strength s rises from 0 to 1 in `ramp` seconds from t_on and
+/// falls back from t_off as 3 y^2 - 2 y^3, C^1. The tethered point carries the arc
+/// position `at` (0 root, 1 tip) along the accumulated lengths of the points; finding it
+/// is O(points).
 class Tether final : public Effect {
  public:
   struct Settings {
@@ -58,7 +59,8 @@ class Tether final : public Effect {
   double strength_rate(double t) const;
   double soft_length(const Vec& d) const;
   Vec attraction(const Vec& d) const;  // load of spring and pull at s = 1
-  double energy(const Vec& d) const;   // at s = 1
+  /// Returns the energy at s = 1, J.
+  double energy(const Vec& d) const;
 
   Settings s_;
 };

@@ -45,7 +45,8 @@ struct SineWind {
 
 /// Gusts carried along by a mean wind U: w = U + curl psi, so that div w = 0 exactly
 /// [Bridson, Houriham & Nordenstam 2007, Curl-noise for procedural fluid flow, section
-/// 2], with a smooth noise psi made of random waves [Kraichnan 1970, Phys. Fluids 13, 22]
+/// 2]. The smooth noise psi consists of random waves [Kraichnan 1970, Phys. Fluids 13,
+/// 22]
 ///
 ///     psi = sum_m (e_m x k_m)/|k_m|^2 sin a_m,    w = U + sum_m e_m cos a_m,
 ///     a_m = k_m.(x - U t) + omega_m t + phase_m,  e_m.k_m = 0
@@ -65,14 +66,16 @@ class Gusts {
     Mat3 gradient(const Vec& x) const { return gusts->gradient(t, x); }
   };
 
-  /// `rms`: root mean square of |w - U| over space (m/s); `length`: typical wave length
-  /// (m, > 0); `time`: turnover time of an eddy of that length in the frame of the mean
-  /// wind (s, > 0). Equal seeds give equal fields on every machine.
+  /// Constructs a field of gusts. `rms`: root mean square of |w - U| over space (m/s).
+  /// `length`: typical wave length (m, > 0). `time`: turnover time of an eddy of that
+  /// length in the frame of the mean wind (s, > 0). Equal seeds give equal fields on
+  /// every machine.
   Gusts(Vec mean, double rms, double length, double time, std::uint64_t seed);
 
   Flow at(double t) const { return {this, t}; }
   Vec velocity(double t, const Vec& x) const;
-  Mat3 gradient(double t, const Vec& x) const;  // dw_i/dx_j
+  /// Returns the velocity gradient dw_i/dx_j, 1/s.
+  Mat3 gradient(double t, const Vec& x) const;
 
  private:
   struct Wave {

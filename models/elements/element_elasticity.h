@@ -9,7 +9,7 @@ namespace tress::models {
 
 /// Sum of the energies of elements over the nodes z = (x_0, ..., x_n) of a strand. Node
 /// -1 belongs to the clamp: it lies `behind` (m) the root on the clamp's tangent and
-/// moves with the clamp, so that an element over nodes -1, 0, 1 holds the direction of
+/// moves with the clamp. An element over nodes -1, 0, 1 therefore holds the direction of
 /// the strand. O(elements).
 class ElementElasticity final : public Elasticity, private StrainForm {
  public:

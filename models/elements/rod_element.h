@@ -14,8 +14,8 @@
 ///     /// s: the strains of the element at the positions x of its nodes, m.
 ///     template <class T> void strain(const Vec3<T>* x, T* s) const;
 ///
-/// An element is free of stress at the strains s of the strand's rest shape, unless the
-/// law maps these to others, as where it rounds off a kink at 0:
+/// An element is free of stress at the strains s of the strand's rest shape. A law may
+/// map these to others, as where it rounds off a kink at 0:
 ///
 ///     void natural(double* s) const;
 ///
@@ -100,7 +100,7 @@ struct LawPart {
   }
 };
 
-/// What ElementElasticity needs of an element. x and rate are the positions and
+/// Element in the form that ElementElasticity uses. x and rate are the positions and
 /// velocities of its nodes, three numbers each; matrices are row-major.
 class RodElement {
  public:
@@ -117,12 +117,13 @@ class RodElement {
   virtual void tangent(const double* x, const double* rate, double pos, double vel,
                        const StressOrigin* origin, const double* from,
                        double* h) const noexcept = 0;
-  virtual double energy(const double* x) const noexcept = 0;  // J
+  /// Returns the elastic energy, J.
+  virtual double energy(const double* x) const noexcept = 0;
   /// Power (W) of friction, and that of the first `led` coordinates, which are
   /// prescribed.
   virtual double power(const double* x, const double* rate, int led) const noexcept = 0;
   virtual ComplianceForm::Block block(std::vector<int> coordinates) const = 0;
-  /// As StrainForm, with the first `led` coordinates prescribed.
+  /// Computes strains as StrainForm does, with the first `led` coordinates prescribed.
   virtual void strain(const double* x, const double* rate, int led,
                       ComplianceForm::Value& value) const noexcept = 0;
   virtual void add_second(const double* x, const double* stress, int led,

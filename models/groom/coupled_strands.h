@@ -20,16 +20,17 @@ namespace tress::models {
 ///
 ///     r = (r_1, ..., r_S) - P^T f,    x = P q + prescribed(t)
 ///
-/// with f the contact forces on the material points x (StrandContacts), in both
-/// directions at the current state and exactly opposite, so linear momentum is conserved;
-/// drag acts across the gap, not along it, so angular momentum is not. The tangent has
-/// the strands' tangents on its diagonal and those of the contacts between strands, and
-/// is factored sparse by KLU; the mass alone (w.vel = w.pos = 0) couples no strands, and
-/// each strand solves with its own. The pattern follows the pairs of segments that may
-/// touch: accept() returns true if they have changed, since the factors are then invalid;
-/// there is no SparseForm, whose pattern would be fixed. Contacts of points that move
-/// more than an eighth of the law's reach within one step may be missed in that step.
-/// Before a start from a state other than the initial one, accept() it.
+/// with f the contact forces on the material points x (StrandContacts). The forces act in
+/// both directions at the current state and are exactly opposite, so linear momentum is
+/// conserved. Drag acts across the gap, not along it, so angular momentum is not
+/// conserved. The tangent has the strands' tangents on its diagonal and those of the
+/// contacts between strands, and is factored sparse by KLU. The mass alone (w.vel = w.pos
+/// = 0) couples no strands, and each strand solves with its own. The pattern follows the
+/// pairs of segments that may touch. accept() returns true if they have changed, since
+/// the factors are then invalid. There is no SparseForm, whose pattern would be fixed.
+/// Contacts of points that move more than an eighth of the law's reach within one step
+/// may be missed in that step. Before a start from a state other than the initial one,
+/// accept() it.
 class CoupledStrands final : public StrandBlock,
                              private MovingHistory,
                              private ContactForm,
@@ -39,7 +40,7 @@ class CoupledStrands final : public StrandBlock,
   /// constraints (their multipliers need a fixed pattern) and material points that are
   /// fixed means of coordinates (MaterialPoints::mean).
   CoupledStrands(std::vector<std::unique_ptr<System>> strands, const ContactLaw& law);
-  /// From the values of strand_interaction_parameters().
+  /// Constructs the system from the values of strand_interaction_parameters().
   CoupledStrands(std::vector<std::unique_ptr<System>> strands,
                  const Parameters& parameters);
 

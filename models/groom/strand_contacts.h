@@ -11,11 +11,10 @@
 namespace tress::models {
 
 /// Contacts between the polylines of many strands, in both directions. Every segment has
-/// samples, initially at most half the inner radius apart; each interacts with the
+/// samples, initially at most half the inner radius apart. Each sample interacts with the
 /// nearest point of every other strand within reach, with half of its length because the
-/// other strand has samples too. Only listed pairs of segments interact; the list holds
-/// all that may come within reach while no point has moved more than a quarter of the
-/// reach since the list was made.
+/// other strand has samples too. Only listed pairs of segments interact. The list is
+/// complete while no point has moved more than a quarter of the reach since it was made.
 class StrandContacts {
  public:
   /// points[k] >= 2: material points of strand k. x: initial positions of all points (3

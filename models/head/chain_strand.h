@@ -7,7 +7,7 @@
 namespace tress::models {
 
 /// Rigid links behind ball joints whose rotation vectors are the unknowns (rad) [Hadap,
-/// Magnenat-Thalmann 2001; Hadap 2006]: a Kind of models/head/reduced_kernel.h, with the
+/// Magnenat-Thalmann 2001; Hadap 2006]. A Kind of models/head/reduced_kernel.h, with the
 /// equations of models/reduced/articulated_chain.h. A joint of rotation vector theta
 /// turns like an element of length 1 that winds by theta (models/head/helix_element.h):
 /// with K = [theta]x
@@ -15,10 +15,10 @@ namespace tress::models {
 ///     E = I + S K + A K^2      from the link's axes to those of the link before
 ///     W = I + A K + B K^2      angular velocity = W theta', in the latter
 ///
-/// regular for |theta| < 2 pi. Its axes are those of the link: in them all of it lies on
-/// e0 and does not move, so sums over its points are closed, carrying a wrench from one
-/// end to the other takes a few products, and the unknowns enter by E^T W = W^T alone.
-/// Cost: O(elements), whatever the points, at which effects act.
+/// regular for |theta| < 2 pi. The axes are those of the link: in them the link lies on
+/// e0 and does not move. Sums over its points are therefore closed, carrying a wrench
+/// from one end to the other takes a few products, and the unknowns enter by E^T W = W^T
+/// alone. Cost: O(elements), whatever the number of points, at which effects act.
 template <class T>
 struct ChainKind {
   using Real = T;
@@ -131,16 +131,17 @@ struct ChainKind {
     to.unknown = Vec{} - e.turn * all.moment;
   }
 
-  /// In the axes of the link before.
+  /// Adds `sum` in the axes of the link before.
   static void pass(const Material& /*m*/, const T& /*acc*/, const Kept& e, Sum& sum) {
     const Matrix& r = e.rotation;
     sum = {r * sum.force, r * sum.moment, congruent(r, sum.ll), congruent(r, sum.aa),
            r * sum.la * r.transposed()};
   }
 
-  /// With the turn y = W^T x of the link by the joint, in the link's axes, as its
-  /// unknown, x = D y, K and b the joint's stiffness in S and its moment, the link, which
-  /// answers accelerations (l, a + y) with the wrench (f, m) + [ll la; la^T aa], needs
+  /// Eliminates the joint's unknown from the articulated inertia. The unknown is the turn
+  /// y = W^T x of the link by the joint, in the link's axes, with x = D y. K and b are
+  /// the joint's stiffness in S and its moment. The link responds to accelerations (l, a
+  /// + y) with the wrench (f, m) + [ll la; la^T aa]. It needs
   ///
   ///     y = -P (m + D^T b + la^T l + aa a),    P = (aa + D^T K D)^-1
   ///
@@ -150,12 +151,13 @@ struct ChainKind {
   ///     la' = la P D^T K D       f' = f - la P (m + D^T b)
   ///     ll' = ll - la P la^T
   ///
-  /// A joint that is soft beside the inertia of its step passes on little but its own
-  /// stiffness. As I - H H_kk^-1 H^T that is a difference of numbers larger by aa/K, in
-  /// which rounding of the links' spin, whose inertia is smaller by the square of their
-  /// slenderness, leaves no digit; here nothing cancels, however soft or stiff the joint.
-  /// Without twist y is normal to n, about which the joint is stiff without bound: with
-  /// any stiffness about n in Q = (aa + D^T K D + k n n^T)^-1, and m_n = Q n/(n.Q n),
+  /// A joint that is soft compared with the inertia of its step passes on little but its
+  /// own stiffness. In the form I - H H_kk^-1 H^T that is a difference of numbers larger
+  /// by aa/K. Rounding of the links' spin, whose inertia is smaller by the square of
+  /// their slenderness, would leave no digit. Here nothing cancels, however soft or stiff
+  /// the joint. Without twist y is normal to n, about which the joint is infinitely
+  /// stiff. With any stiffness about n in Q = (aa + D^T K D + k n n^T)^-1, and m_n = Q
+  /// n/(n.Q n),
   ///
   ///     P = Q - Q n m_n^T,    I - aa P = D^T K D P + n m_n^T
   template <class Bending, class Element>

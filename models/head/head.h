@@ -18,7 +18,7 @@
 
 namespace tress::models {
 
-/// What acts on every strand of a head, and how strands are discretised.
+/// Effects on every strand of a batch, and discretisation of the strands.
 struct LaneOptions {
   int elements = 10;           // of every strand
   int points = 4;              // Gauss-Legendre points of an element: quadrature_points()
@@ -52,16 +52,16 @@ Options with_uniform_effects(Options options) {
   return options;
 }
 
-/// What holds the numbers of a head: strands side by side in packs. Wider packs and
-/// shorter numbers are faster on machines with registers of that size; the lanes of a
-/// kind of number give the same bits.
+/// Number type of a batch, whose strands lie in SIMD lanes. Wider packs and single
+/// precision are faster on machines with registers of that size. Results are
+/// bit-identical for any number of lanes of one type.
 enum class HeadNumber { float64, float32 };
 struct HeadPack {
   HeadNumber number = HeadNumber::float64;
   int lanes = 4;                                  // 1, 4, 8; of float32 8, 16
   std::optional<Instructions> instructions = {};  // none: the widest of the machine
 };
-/// As many lanes as the machine's registers have.
+/// Returns the widest pack that the machine's registers hold.
 inline HeadPack widest_pack(HeadNumber number) {
   const bool wide = widest_instructions() == Instructions::avx512;
   if (number == HeadNumber::float64) return {number, wide ? 8 : 4};
@@ -78,7 +78,7 @@ struct HeadLoss {
 
 using HeadWork = NewtonWork;
 
-/// Of a strand at one instant.
+/// Energies of a strand at one instant.
 struct HeadEnergy {
   double kinetic = 0, elastic = 0;  // J
   double gravity = 0;               // J, its potential, 0 at the origin of the world
@@ -89,15 +89,15 @@ struct HeadEnergy {
 
 class HelixSource;
 
-/// Many strands of equal discretisation whose roots move with one head: blocks of
-/// strands, each advanced by itself, by as many threads as there are. In SIMD lanes a
-/// strand takes its state, its rest shape and some twenty numbers of memory; replicated,
-/// a System and an Integrator. Units of all that goes in and out are SI.
+/// Batch of strands of equal discretisation whose roots move with one head. Blocks of
+/// strands advance independently, each by one thread at a time. In SIMD lanes a strand
+/// takes the memory of its state, its rest shape and about twenty numbers; replicated,
+/// that of a System and an Integrator. All inputs and outputs are in SI units.
 class Head {
  public:
   virtual ~Head() = default;
 
-  /// Memory for so many strands.
+  /// Reserves memory for this number of strands.
   virtual void reserve(std::size_t strands) = 0;
   /// `own`: effects on this strand alone, as StrandInteraction::effect(k); they must not
   /// be shared, as blocks advance on several threads. Throws InputError unless the strand
@@ -119,75 +119,74 @@ class Head {
   };
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
-  /// One step of a block, from t to t + h (s), with a tolerance as many as each strand
-  /// needs, one at least. A strand without a solution, or whose
-  /// result is not finite, stays as it was, at rest, from then on; others are the same
-  /// bits with and without it. Effects cost where they reach: a body a test for each
-  /// block, then one for each element, before any point is looked at. Safe for different
+  /// Advances a block by one step from t to t + h (s). With a tolerance each strand takes
+  /// its own number of steps, at least one. A strand without a solution, or with a result
+  /// that is not finite, stays at rest in its last state from then on. Others are
+  /// bit-identical with and without it. Effects cost only where they act: a body is
+  /// tested against each block, then each element, before any point. Safe for different
   /// blocks at once, each thread with its own scratch.
   virtual void step(std::size_t block, double t, double h, Scratch& scratch) = 0;
-  /// The same of blocks first to last - 1: methods that iterate fill the lanes of strands
-  /// that are done with the next strands, and so waste less on many blocks than on one.
-  /// The results are the same bits.
+  /// Advances blocks first to last - 1 by one step. Methods that iterate refill the lanes
+  /// of converged strands with the next strands, which wastes less on many blocks than on
+  /// one. The results are bit-identical.
   virtual void step(std::size_t first, std::size_t last, double t, double h,
                     Scratch& scratch) {
     for (std::size_t block = first; block < last; ++block) step(block, t, h, scratch);
   }
-  /// With so many blocks in a call few lanes are without a strand.
+  /// Returns the number of blocks per call with which few lanes are empty.
   virtual std::size_t blocks_at_once() const { return 12; }
   virtual bool lost(std::size_t strand) const = 0;
   /// All but the first `known` that were found, by strand.
   virtual std::vector<HeadLoss> losses(std::size_t known) const = 0;
   std::vector<HeadLoss> losses() const { return losses(0); }
-  /// The same for a strand whose state somebody else takes for impossible.
+  /// Marks a strand as failed whose state the caller finds impossible.
   virtual void lose(std::size_t strand) = 0;
 
-  /// Of the strands of a block: root and tips of elements (m), strand after strand,
-  /// `numbers` each = 3 (elements + 1).
+  /// Returns how many numbers positions() writes for one strand, 3 (elements + 1): root
+  /// and tips of elements (m). Strands of a block follow each other.
   virtual std::size_t numbers() const = 0;
   virtual std::size_t strands_of(std::size_t block) const = 0;
   virtual void positions(std::size_t block, double t, std::span<double> x) const = 0;
-  /// The same with their velocities (m/s).
+  /// Computes the positions (m) and velocities (m/s) of root and tips of elements.
   virtual void motion(std::size_t block, double t, std::span<double> x,
                       std::span<double> v) const = 0;
-  /// Where the step from t to t + h looks for what touches the strands, beyond which it
-  /// does not: the same points when coordinates have gone on by h times their rates, and
-  /// of each strand how far points between them are from the straight lines that join
-  /// them at most (m).
+  /// Predicts the points at t + h: coordinates advance by h times their rates. The step
+  /// looks for contacts there only. `bulge`: largest distance (m) of a strand's points
+  /// from the straight lines that join its root and tips, one per strand.
   virtual void ahead(std::size_t block, double t, double h, std::span<double> x,
                      std::span<double> bulge) const = 0;
   /// Coordinates and their rates of a strand, in the order of its elements: see the
   /// functions below.
   virtual void state(std::size_t strand, std::span<double> q,
                      std::span<double> v) const = 0;
-  /// Of the bits of all strands' states, in their order (StateHash); equal for all
-  /// numbers of lanes.
+  /// Returns the hash of the bits of all strands' states in their order (StateHash);
+  /// equal for all numbers of lanes.
   std::size_t hash() const;
 
-  /// Of each strand of a block: as Energetics of the strand by itself. O(elements
-  /// points).
+  /// Computes the energies of each strand of a block, as Energetics does for one strand.
+  /// O(elements points).
   virtual void energies(std::size_t block, double t,
                         std::span<HeadEnergy> each) const = 0;
 
-  /// What steps change of the strands of a block, `kept` numbers each: exact, in units of
-  /// the head's own. A head of the same strands that recalls them goes on with the same
-  /// bits, for any number of lanes.
+  /// Returns how many numbers keep() writes per strand: the data that steps change,
+  /// exact, in the units of the batch. A batch of the same strands that recalls them
+  /// continues bit-identically, for any number of lanes.
   virtual std::size_t kept() const = 0;
-  /// So many of these, the first, are its coordinates and rates.
+  /// Returns how many of these numbers are coordinates and rates; they come first.
   virtual std::size_t kept_of_state() const = 0;
   virtual void keep(std::size_t block, std::span<double> x) const = 0;
   virtual void recall(std::size_t block, std::span<const double> x) = 0;
 
-  /// What a device needs to take its steps (models/head/helix_source.h); null: there is
-  /// no such code.
+  /// Returns the data that a device needs to step the strands
+  /// (models/head/helix_source.h); null: there is no device code.
   virtual const HelixSource* source() const { return nullptr; }
 };
 
 /// Heads of super-helices (models/head/helix_strand.h) and of chains of rigid links
-/// (models/head/chain_strand.h) whose steps are one linear solve with the stiff tangent,
-/// fused with the motion of the strand. Coordinates are Darboux vectors (1/m), or the
-/// rotation vectors of joints (rad), 3 per element. They throw InputError if the options
-/// or the pack make no sense.
+/// (models/head/chain_strand.h) whose steps are one linear solve with the elastic
+/// Jacobian, fused with the motion of the strand. Coordinates are Darboux vectors (1/m),
+/// or the rotation vectors of joints (rad), 3 per element. They throw InputError if the
+/// options or the pack make no sense.
 std::unique_ptr<Head> stiff_helix_head(const LaneOptions& options, const HeadPack& pack);
 std::unique_ptr<Head> stiff_chain_head(const LaneOptions& options, const HeadPack& pack);
 

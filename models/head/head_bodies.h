@@ -10,11 +10,11 @@
 
 namespace tress::models {
 
-/// Which of a head's bodies reach its strands: looked for in the ball that holds all of
-/// them, once at a time, and then by block.
+/// Bodies that may reach the strands of a batch. They are searched in the ball that holds
+/// all strands, once for each time, and then by block.
 class HeadBodies {
  public:
-  /// What is near at one time; of one thread.
+  /// Bodies found for one time; memory of one thread.
   struct Near {
     double t = std::numeric_limits<double>::quiet_NaN();
     Vec head;                             // its position, m
@@ -33,8 +33,8 @@ class HeadBodies {
     near.head = head.at(t).x;
     bodies_around(bodies_, t, {near.head, radius_}, near.around);
   }
-  /// Of these, those that reach a block of strands with roots there, seen from the head's
-  /// position, of such lengths (m).
+  /// Returns those of the bodies in `near` that reach a block of strands with these
+  /// roots, seen from the head's position, and these lengths (m).
   template <class T>
   static std::span<const NearBody> reached(Near& near, const Vec3<T>& roots,
                                            const T& lengths) {

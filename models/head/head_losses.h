@@ -10,10 +10,11 @@
 
 namespace tress::models {
 
-/// What several threads find.
+/// Failed strands that several threads report.
 class HeadLosses {
  public:
-  /// In the step from t to t + h (s), after this part of it.
+  /// Reports a strand that failed in the step from t to t + h (s), after the fraction
+  /// `part` of the step.
   void add(std::size_t strand, double t, double h, std::string_view reason,
            double part = 0) {
     const std::scoped_lock lock(guard_);

@@ -11,7 +11,7 @@ struct HeadMotion {
   Vec a, alpha;  // acceleration minus g, angular acceleration
 };
 
-/// That of roots that are fixed to it.
+/// Returns the motion of roots that are fixed to the head.
 template <class T>
 [[gnu::always_inline]] inline ReducedMotion<T> root_motion(const LaneRoot<T>& root,
                                                            const HeadMotion& head) {

@@ -6,15 +6,16 @@
 
 namespace tress::models {
 
-/// A head's units of length, time and mass per length in SI: in them 1 is a long hair,
-/// the time in which it falls by its length, and its mass. Numbers of any size then fit
-/// into 32 bits.
+/// Units of length, time and mass per length of a batch, in SI. In these units 1 is a
+/// long hair, the time in which it falls by its length, and its mass. Numbers of any size
+/// then fit into single precision.
 struct HeadUnits {
   double length, time, density;  // m, s, kg/m
   static HeadUnits of(double longest) {
     return {longest, std::sqrt(longest / earth_gravity), 0};
   }
-  /// By the first strand added: `given`, if there is such a number, or its own (kg/m).
+  /// Sets the unit of mass per length (kg/m) by the first strand added: `given` if it is
+  /// positive, else the strand's own.
   void weigh(double given, double first) {
     if (density == 0) density = given > 0 ? given : first;
   }

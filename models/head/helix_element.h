@@ -8,10 +8,10 @@
 
 namespace tress::models {
 
-/// math/helix.h's functions at arc length s <= length, for kernels whose lanes are
-/// strands: which formula a lane takes, and by which code, does not depend on its
-/// neighbours, so results are the same bits for any number of lanes. Series of 9 terms,
-/// or 6 in 32 bits, for elements that wind by 1.5 rad at most; beyond it
+/// Functions of math/helix.h at arc length s <= length, for kernels whose lanes are
+/// strands. The formula of a lane, and its code, do not depend on its neighbours, so
+/// results are bit-identical for any number of lanes. The series have 9 terms, or 6 in
+/// single precision, for elements that wind by 1.5 rad at most; beyond it
 /// models/head/long_windings.h.
 template <class T>
 class LaneFunctions {
@@ -42,8 +42,9 @@ class LaneFunctions {
   static constexpr int few = sizeof(typename T::Scalar) == sizeof(double) ? 9 : 6;
   static constexpr auto most = static_cast<typename T::Scalar>(helix::short_end);
 
-  /// For lanes that wind by more. Apart, with arguments by value: what a call might
-  /// change could not stay in registers. As arrays, which all instructions pass alike
+  /// Computes the functions for lanes that wind by more. A separate function with
+  /// arguments by value, since variables that a call might change could not stay in
+  /// registers. Arguments are arrays, which all instruction sets pass in the same way
   /// (math/instructions.h). Defined in models/head/long_windings.h.
   [[gnu::noinline]] static HelixFunctions<Numbers> longer(Numbers arc, Numbers squared,
                                                           Numbers angle);
@@ -61,25 +62,26 @@ struct AlongHelix {
     return one + arc * s + f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 +
            f.B2 * B2;
   }
-  /// at() less what is constant or linear.
+  /// Computes at() without its constant and linear parts.
   Vec3<T> by_functions(const HelixFunctions<T>& f) const {
     return f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 + f.B2 * B2;
   }
-  /// at() changes by this times kappa . dkappa through the functions.
+  /// Returns the vector by which at() changes, times kappa . dkappa, through the
+  /// functions.
   Vec3<T> slope(const HelixFunctions<T>& f) const {
     return f.A1 * A + f.B1 * B + f.A2 * A1 + f.B2 * B1 + f.A3 * A2 + f.B3 * B2;
   }
 };
 
-/// An element of constant Darboux vector kappa that changes at the rate kappa', in the
-/// components of its start: what models/reduced/helix.h states for one strand, with the
+/// Element of constant Darboux vector kappa that changes at the rate kappa', in the
+/// components of its start. Implements models/reduced/helix.h for lanes, with the
 /// products of e0 = (1, 0, 0) written out. With u = kappa x e0 and z = kappa x u
 ///
 ///     P = s e0 + A u + B z,    dP/dkappa_j = kappa_j r + B l_j + A m_j,
 ///     r = A1 u + B1 z,  l_j = e_j x u + kappa x (e_j x e0),  m_j = e_j x e0.
 ///
-/// So everything that is summed over an element is a combination of constant vectors;
-/// only the functions and their products have to be summed over its points.
+/// All sums over an element are therefore combinations of constant vectors. Only the
+/// functions and their products have to be summed over its points.
 template <class T>
 class HelixElement {
  public:
@@ -149,7 +151,7 @@ class HelixElement {
     return all;
   }
 
-  /// What kappa'' adds to the former, rho times P_kappa kappa''.
+  /// Adds the contribution of kappa'' to `all`: rho times P_kappa kappa''.
   void add_second(const Number& rho, const Vec& second, AlongHelix<T>& all) const {
     const T along = rho * dot(k_, second);
     all.A = all.A + rho * Vec{T(0), second.z, -second.y};
@@ -250,8 +252,8 @@ template <class T>
 struct HelixForces {
   Vec3<T> s, A, B, A1, B1;
 };
-/// Their moment about the start, and what they do to the unknowns: sum P x f, sum d_j . f
-/// with d_j = dP/dkappa_j.
+/// Moment of the forces about the start, sum P x f, and their work on the unknowns, sum
+/// d_j . f with d_j = dP/dkappa_j.
 template <class T>
 struct HelixWork {
   Vec3<T> moment, unknown;
@@ -266,8 +268,8 @@ struct HelixWork {
   }
 };
 
-/// What the equations need of them. With d_j = dP/dkappa_j: moments of inertia w =
-/// weight.
+/// Sums over an element that the equations need, with d_j = dP/dkappa_j. For moments of
+/// inertia w = weight.
 template <class T>
 struct HelixMoments {
   Vec3<T> first;            // sum w P

@@ -8,7 +8,7 @@
 /// This header is compiled for the host and for the device (helix_kernel.cu).
 namespace tress::models {
 
-/// What steps do not change of a strand, before the rest shape of its elements.
+/// Data of a strand that steps do not change, before the rest shape of its elements.
 template <class T>
 struct HelixFixed {
   ReducedMaterial<T> material;
@@ -43,7 +43,7 @@ struct HelixLaunch {
 static_assert(sizeof(HelixLaunch<PackOf<double, 1>>) == 320);
 static_assert(sizeof(HelixLaunch<PackOf<float, 1>>) == 320);
 
-/// What a device keeps of a strand's elements is of fixed size: two kernels.
+/// Sizes of the two device kernels, whose memory of elements is fixed.
 inline constexpr int few_elements = 16, most_elements = 64;
 
 /// All steps of strand s. A strand whose result is not finite stays as it was before the
@@ -73,8 +73,8 @@ void helix_steps(const HelixLaunch<T>& launch, long s) {
     for (int i = 0; i < n; ++i) before[i] = q[i];
     const ReducedMotion<T> root = root_motion(fixed.root, now.motion);
     const auto end = launch.kernel.move(fixed.material, root, now.h, q, v, scratch);
-    launch.kernel.semi_implicit_step(fixed.material, end, nullptr, rest, now.h, q, v,
-                                     scratch);
+    launch.kernel.linearly_implicit_step(fixed.material, end, nullptr, rest, now.h, q, v,
+                                         scratch);
     T finite(0);  // 0 or NaN
     for (int i = 0; i < n; ++i) {
       const T all = q[i].x + q[i].y + q[i].z;

@@ -9,14 +9,14 @@
 
 namespace tress::models {
 
-/// A head of super-helices as a device is told of it, in the head's own units. Its state
-/// is what Head::keep() says: of each element the unknowns, then their rates.
+/// Description of a batch of super-helices for a device, in the units of the batch. Its
+/// state is that of Head::keep(): the unknowns of each element, then their rates.
 class HelixSource {
  public:
   virtual ~HelixSource() = default;
 
-  /// What acts on its strands and is not in the device's code; nothing if it can step
-  /// them.
+  /// Returns the effects or options that the device's code lacks; nothing if it can step
+  /// the strands.
   virtual std::optional<HeadRefusal> refused_by_device() const = 0;
 
   struct Shape {
@@ -25,7 +25,7 @@ class HelixSource {
     HeadNumber number;
   };
   virtual Shape shape() const = 0;
-  /// Of each strand of a block helix_fixed(elements) numbers.
+  /// Writes helix_fixed(elements) numbers for each strand of a block.
   virtual void fixed(std::size_t block, std::span<double> each) const = 0;
   virtual HeadMotion motion_at(double t) const = 0;
   virtual double time_unit() const = 0;  // s

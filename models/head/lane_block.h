@@ -161,7 +161,7 @@ class ModelLanes final : public LaneKernel<typename Model::Real::Scalar> {
   HeadBodies bodies_;
 };
 
-/// Its strands as a Block.
+/// Block of the model's strands.
 template <LaneModel Model>
 class ModelLanes<Model>::OfThread final : public Block<N> {
  public:

@@ -14,7 +14,7 @@
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
 
-/// What all heads of hair have in common, whatever their kernel.
+/// Common code of all batches, whatever their kernel.
 namespace tress::models {
 
 inline constexpr const char* place_of_head = "head of hair";
@@ -61,8 +61,8 @@ inline void check_for_head(const Effect& effect) {
 template <class T>
 inline constexpr double rounded_up = 1 + (sizeof(typename T::Scalar) == 8 ? 1e-12 : 1e-5);
 
-/// How far points of elements of so much length (m) are from the chords of these points
-/// at most.
+/// Returns an upper bound of the distance between points of elements of this length (m)
+/// and the chords of the points x.
 inline double largest_bulge(std::span<const double> x, double length) {
   double square = 0;
   for (std::size_t i = 0; i + 3 < x.size(); i += 3) {
@@ -72,8 +72,8 @@ inline double largest_bulge(std::span<const double> x, double length) {
   return 0.5 * std::sqrt(square);
 }
 
-/// What made<T>(instructions) is for the type T of this pack's numbers. Throws InputError
-/// if there is no such pack. `short_numbers`: whether there are those of 32 bits.
+/// Returns made<T>(instructions) for the number type T of this pack. Throws InputError if
+/// the pack does not exist. `short_numbers`: whether single precision is supported.
 template <class Result, bool short_numbers = true, class Made>
 Result on_pack(const HeadPack& pack, Made made) {
   const Instructions set = pack.instructions.value_or(widest_instructions());

@@ -5,14 +5,14 @@
 #include <variant>
 
 #include "contract/block.h"
-#include "contract/tangent_choice.h"
+#include "contract/jacobian_choice.h"
 #include "models/head/head.h"
 
 namespace tress::models {
 
-/// A model of strands in lanes: makes their memory and Blocks, and reads their states. q
-/// and v are those of a block, in the block's units; all else is SI. `strands`: how many
-/// of the lanes are read. Safe for several threads once all strands are there.
+/// Model of strands in lanes: makes their memory and Blocks, and reads their states. q
+/// and v are those of a block, in the block's units; all else is SI. `strands`: number of
+/// lanes to read. Safe for several threads once all strands are added.
 template <class N>
 class LaneKernel {
  public:
@@ -22,7 +22,7 @@ class LaneKernel {
   virtual std::size_t elements() const = 0;  // of a strand
   virtual std::size_t unknowns() const = 0;  // of a strand
   virtual std::unique_ptr<StrandMemory> memory() const = 0;
-  /// Of one thread; the kernel must outlive it.
+  /// Makes a block for one thread; the kernel must outlive it.
   virtual std::unique_ptr<Block<N>> block() const = 0;
 
   /// Throws InputError on a strand or effects that it cannot have, as Head::add(); else
@@ -31,7 +31,7 @@ class LaneKernel {
   virtual void describe(const Strand& strand, LanePlace to, StrandMemory& memory, N* q,
                         N* v) const = 0;
 
-  /// As Head::positions(), motion() and ahead().
+  /// Computes positions as Head::positions(); the next two as motion() and ahead().
   virtual void positions(const StrandMemory& memory, std::size_t block, double t,
                          const N* q, std::size_t strands, std::span<double> x) const = 0;
   virtual void velocities(const StrandMemory& memory, std::size_t block, double t,
@@ -58,12 +58,12 @@ using AnyLaneKernel =
 /// with gravity, linear drag and bodies.
 AnyLaneKernel helix_lanes(const LaneOptions& options, const HeadPack& pack);
 AnyLaneKernel chain_lanes(const LaneOptions& options, const HeadPack& pack);
-/// Discrete elastic rods; of 64 bits or 32.
+/// Makes a kernel of discrete elastic rods, in double or single precision.
 AnyLaneKernel der_lanes(const LaneOptions& options, const HeadPack& pack,
-                        Tangent tangent);
-/// Point masses and springs: with bodies; of 64 bits.
+                        Jacobian jacobian);
+/// Makes a kernel of point masses and springs, with bodies, in double precision.
 AnyLaneKernel spring_lanes(const LaneOptions& options, const HeadPack& pack,
-                           Tangent tangent);
+                           Jacobian jacobian);
 /// Rods of quaternions, corde and xpbd_cosserat, exact: with gravity, linear drag and
 /// bodies.
 AnyLaneKernel corde_lanes(const LaneOptions& options, const HeadPack& pack);

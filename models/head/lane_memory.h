@@ -9,7 +9,7 @@
 
 namespace tress::models {
 
-/// What a LaneModel knows of strands.
+/// Memory of the strands of a LaneModel.
 template <LaneModel Model>
 class LaneMemory final : public StrandMemory {
  public:

@@ -2,7 +2,7 @@
 
 namespace tress::models {
 
-/// What a Block steps (models/head/lane_block.h). A Model has
+/// Model whose strands a Block steps (models/head/lane_block.h). A Model has
 ///
 ///     Real                                  // PackOf
 ///     Strand, Element                       // Real only: what is known of them
@@ -44,7 +44,7 @@ namespace tress::models {
 ///
 ///     unit(HeadUnits, k)                    // of unknown k
 ///
-/// all without units; poses are HeadUnits' multiples.
+/// All numbers are without units; poses are multiples of HeadUnits.
 template <class Model>
 concept LaneModel = requires {
   typename Model::Real;

@@ -4,7 +4,7 @@
 
 namespace tress::models {
 
-/// Where a strand's root is in the head at rest.
+/// Root of a strand in the axes of the head at rest.
 template <class T>
 struct LaneRoot {
   Vec3<T> from;  // the motion's position

@@ -2,10 +2,10 @@
 
 #include "models/head/helix_element.h"
 
-/// What LaneFunctions needs of elements that wind by more than 1.5 rad: series of 16
+/// Functions of LaneFunctions for elements that wind by more than 1.5 rad: series of 16
 /// terms up to 4.5 rad, closed forms beyond. Only long_windings.cpp and device code
-/// include it: which products the compiler fuses depends on a source's options, so there
-/// must not be one more definition for the linker to choose from.
+/// include this file. The products that the compiler fuses depend on a source's options,
+/// so the linker must not find a second definition.
 namespace tress::models {
 
 template <class T>

@@ -20,7 +20,7 @@ struct NearBody {
   BodyPose pose;
 };
 
-/// Those that reach the ball in which all strands are at t, seen from its centre.
+/// Finds the bodies that reach the ball of all strands at t, seen from its centre.
 inline void bodies_around(std::span<const RigidContact* const> all, double t,
                           const Ball& ball, std::vector<NearBody>& around) {
   around.clear();
@@ -37,8 +37,8 @@ Vec3<T> in_body(const BodyPose& pose, const Vec3<T>& x) {
   return FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2}.back(x);
 }
 
-/// Those of them that reach a ball about `from` (m, from the head's position) in some
-/// lane.
+/// Finds those of `around` that reach a ball about `from` (m, from the head's position)
+/// in some lane.
 template <class T>
 void bodies_near(std::span<const NearBody> around, const Vec3<T>& from, const T& radius,
                  std::vector<NearBody>& near) {
@@ -75,16 +75,17 @@ class BodyTouch {
                   {-(T(pos_) * turns_.z), T(h), T(pos_) * turns_.x},
                   {T(pos_) * turns_.y, -(T(pos_) * turns_.x), T(h)}} {}
 
-  /// From `frame` to the axes of the body.
+  /// Returns the rotation from `frame` to the axes of the body.
   const Matrix3<T>& turn() const { return turn_; }
   /// A place (m) that is seen from the head's position, in the axes of the body.
   Vec3T in_body(const Vec3T& x) const {
     return models::in_body(pose_, x - Vec3T(pose_.x));
   }
 
-  /// Adds to the load of a point at x (m, in_body) that stands for `to_force` metres of
-  /// strand over a unit of force, and over one of mass; `some`: 1 in lanes with a load.
-  /// velocity(): of the point, m/s, asked for if it may be touched.
+  /// Adds to the load of a point at x (m, in_body). The point stands for `to_force`
+  /// metres of strand per unit of force, and `to_block` per unit of mass. `some`: 1 in
+  /// lanes with a load. velocity(): velocity of the point, m/s, evaluated only if the
+  /// point may be touched.
   template <class Velocity>
   void touch(const Vec3T& x, const Velocity& velocity, const T& to_force,
              const T& to_block, PointLoad<T>& load, T& some) const {
@@ -105,7 +106,7 @@ class BodyTouch {
       some = where_less(outside, o, T(1), some);
     });
   }
-  /// The same with derivatives by units of length and speed.
+  /// Adds the load of a point with its derivatives in units of length and speed.
   template <class Velocity>
   void touch(const Vec3T& x, const Velocity& velocity, const T& to_force,
              const HeadUnits& units, ExactLoad<T>& load, T& some) const {

@@ -13,14 +13,14 @@ struct PointLoad {
   Symmetric3<T> block;
 };
 
-/// The same with both derivatives apart, of any symmetry: -df/dx, where the velocity
-/// stays, and -df/du.
+/// Load on a point with separate derivatives of any symmetry: -df/dx at constant
+/// velocity, and -df/du.
 template <class T>
 struct ExactLoad {
   Vec3<T> force;
   Matrix3<T> by_x, by_u;
 };
-/// At a point p of an element; `some`: 1 in lanes with a load, 0 in others.
+/// Load at a point p of an element; `some`: 1 in lanes with a load, 0 in others.
 template <class T, class Load>
 struct LoadedPoint {
   Vec3<T> p;  // from the start, in the element's axes
@@ -51,8 +51,8 @@ Matrix3<T> where_less(const T& x, const T& y, const Matrix3<T>& yes,
            where_less(x, y, yes.row[2], no.row[2])}};
 }
 
-/// Their sums over an element: sum J^T f and sum J^T B J with the motion of a point J =
-/// [1, -[P]x, d], d_j = dP/dq_j, in the components of the element's axes.
+/// Sums of loads over an element, sum J^T f and sum J^T B J, in the components of the
+/// element's axes. J = [1, -[P]x, d] is the motion of a point, d_j = dP/dq_j.
 template <class T>
 struct LoadSums {
   T some{};  // 1 in lanes with a load, 0 in others
@@ -61,7 +61,7 @@ struct LoadSums {
   Matrix3<T> la;
   Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
 
-  /// Where the unknowns do not move the point.
+  /// Adds the load on a point that the unknowns do not move.
   void add(const Vec3<T>& p, const PointLoad<T>& load) {
     force = force + load.force;
     moment = moment + cross(p, load.force);
@@ -70,7 +70,7 @@ struct LoadSums {
     la = la - turned;
     aa = aa - upper(cross_times(p, turned));
   }
-  /// What is missing if they move it by d.
+  /// Adds the remaining terms of a point that the unknowns move by d.
   void add_unknowns(const Vec3<T>& p, const Matrix3<T>& d, const PointLoad<T>& load) {
     const Matrix3<T> own = load.block * d;
     unknown = unknown + d.back(load.force);

@@ -60,7 +60,7 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 }
 
 /// Newton's step of a clamped strand of equal elements of three unknowns each, with the
-/// stiff tangent:
+/// elastic Jacobian:
 ///
 ///     delta = -S(w)^-1 r(q, v, a),   S = w.acc M + w.vel C + w.pos K
 ///
@@ -144,9 +144,9 @@ class ReducedKernel {
   double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
   double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
 
-  /// One linear solve per step h (SemiImplicitStep) in two parts, between which loads of
-  /// effects are found: motion at q + h v and v in `scratch`; then q and v (elements) are
-  /// updated. The first returns what the second needs.
+  /// One linear solve per step h (LinearlyImplicitStep) in two parts, between which loads
+  /// of effects are found: motion at q + h v and v in `scratch`; then q and v (elements)
+  /// are updated. The first returns what the second needs.
   TRESS_FLATTEN Motion move(const Material& m, const Motion& root, double h, const Vec* q,
                             const Vec* v, Scratch* scratch) const {
     const T step(h);
@@ -159,10 +159,10 @@ class ReducedKernel {
   }
   /// `end`: what move() returned. `loads`: of an element null or its loads; null if there
   /// are none.
-  TRESS_FLATTEN void semi_implicit_step(const Material& m, const Motion& end,
-                                        const LoadSums<T>* const* loads, const Vec* rest,
-                                        double h, Vec* q, Vec* v,
-                                        Scratch* scratch) const {
+  TRESS_FLATTEN void linearly_implicit_step(const Material& m, const Motion& end,
+                                            const LoadSums<T>* const* loads,
+                                            const Vec* rest, double h, Vec* q, Vec* v,
+                                            Scratch* scratch) const {
     const T step(h);
     backward(
         m, [&](int i) { return rest[i]; }, v, {1, h, h * h}, end, loads, scratch);

@@ -7,14 +7,14 @@
 
 namespace tress::models {
 
-/// b without its negative eigenvalues, the nearest positive semidefinite matrix [Higham
-/// 1988], in the lanes where `some` > 0; lanes whose b is definite keep it as it is. No
-/// iteration depends on the numbers: of b = q + p c, where tr c = 0 and |c|^2 = 6, the
-/// eigenvalue of c that is farther from the others, cos(arccos(|det c|/2)/3) times 2,
-/// comes from three Newton steps, and its vector from a cross product [Eberly 2014, A
-/// Robust Eigensolver for 3x3 Symmetric Matrices]; in the plane across the other two
-/// follow from a square root, and their projection from Cayley and Hamilton. Error: some
-/// eps of the largest entry.
+/// Returns b without its negative eigenvalues, in the lanes where `some` > 0: the nearest
+/// positive semidefinite matrix [Higham 1988]. Lanes whose b is definite return b. The
+/// iteration count does not depend on the numbers. Let b = q + p c with tr c = 0 and
+/// |c|^2 = 6. The eigenvalue of c that is farther from the others, 2 cos(arccos(|det
+/// c|/2)/3), comes from three Newton steps. Its vector comes from a cross product [Eberly
+/// 2014, A Robust Eigensolver for 3x3 Symmetric Matrices]. In the plane normal to it the
+/// other two follow from a square root, and their projection from Cayley and Hamilton.
+/// Error: a few eps of the largest entry.
 template <class T>
 Symmetric3<T> semidefinite(const Symmetric3<T>& b, const T& some) {
   const T o(0), one(1);

@@ -14,7 +14,8 @@ class HeldContacts final : private ContactForm {
  public:
   using PointsAt = TakenContacts::PointsAt;
 
-  /// Replaces such effects in `effects` by copies for this strand of so many points.
+  /// Replaces effects that hold contact forces in `effects` by copies for this strand
+  /// with `points` points.
   HeldContacts(Effects& effects, std::size_t points, PointsAt points_at);
 
   /// Null if there are none.

@@ -32,7 +32,7 @@ class TakenContacts final : public Complementarity {
   void let_go(bool found) noexcept override;
 
  private:
-  /// At the state that its laws are linear about.
+  /// Contact at the state about which its laws are linear.
   struct Taken {
     Multipliers* of;
     std::size_t point;

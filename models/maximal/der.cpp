@@ -1,4 +1,4 @@
-#include "contract/tangent_choice.h"
+#include "contract/jacobian_choice.h"
 #include "models/entry.h"
 #include "models/maximal/der_elasticity.h"
 #include "models/maximal/joint_strain.h"
@@ -17,28 +17,28 @@ namespace {
 ///     l)
 ///       + sum_edges EA l (|e|/l - 1)^2/2,    friction = gamma/l per integrated strain.
 ///
-/// The clamp is a wall half an edge before the first edge's middle: a joint of length l/2
-/// between the clamp's frame and edge 0, which makes the scheme second order. Rest
-/// strains are those between the chords of the natural shape. Mass is lumped at the
-/// nodes, rho (I1 + I2) l at the angles. A joint's twist counts its whole turns, from
-/// within half a turn of its rest on (wound(), joint_strain.h); that of a head's strand
+/// The clamp is a wall half an edge before the first edge's middle. A joint of length l/2
+/// between the clamp's frame and edge 0 makes the scheme second order. Rest strains are
+/// those between the chords of the natural shape. Mass is lumped at the nodes, rho (I1 +
+/// I2) l at the angles. A joint's twist starts within half a turn of its rest and counts
+/// whole turns from then on (wound(), joint_strain.h). The twist of a batch's strand
 /// (models/head/maximal/der_strand.h) stays between -pi and pi.
 ///
 /// Frames are functions of q relative to reference frames, which are fixed until an edge
-/// has turned by more than 60 degrees from its reference; accept() then takes the current
+/// has turned by more than 60 degrees from its reference. accept() then takes the current
 /// frame as the reference and adds to theta' the turning of the old one, so neither
 /// frames nor spins jump.
 ///
-/// The kinetic energy of the angles uses theta' in place of the section's spin,
-/// theta' + c . e' with c of rod_edge.h, which keeps M constant; the difference grows
-/// with the angle from the reference. The angular momentum of a free strand therefore
-/// drifts by some (r/L)^2 of itself per radian for any step size, and a new reference
-/// changes the energy by as much (tests/models/maximal/test_framed_spline.cpp). The
+/// The kinetic energy of the angles uses theta' in place of the section's spin, theta' +
+/// c . e' with c of rod_edge.h, which keeps M constant. The difference grows with the
+/// angle from the reference. The angular momentum of a free strand therefore drifts by
+/// about (r/L)^2 of itself per radian for any step size. A new reference changes the
+/// energy by the same fraction (tests/models/maximal/test_framed_spline.cpp). The
 /// quaternions of corde do not have this error.
 struct DerOptions {
-  bool inextensible = false;         // |e| = l by constraints with multipliers
-  bool quasi_static_twist = false;   // angles have no inertia
-  Tangent tangent = Tangent::exact;  // stiff: no second derivatives of strains
+  bool inextensible = false;            // |e| = l by constraints with multipliers
+  bool quasi_static_twist = false;      // angles have no inertia
+  Jacobian jacobian = Jacobian::exact;  // elastic: no second derivatives of strains
   LinearKind solver = LinearKind::automatic;
 };
 
@@ -72,11 +72,11 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
     joints.push_back(rod_joint(strand.material, before, strand.segments[i], rest));
   }
   parts.elasticity = std::make_unique<DerElasticity>(std::move(edges), std::move(joints),
-                                                     parts.clamped, options.tangent);
+                                                     parts.clamped, options.jacobian);
   if (options.inextensible) parts.constraints = inextensible(parts, strand);
   parts.effects = std::move(effects);
   parts.solver = options.solver;
-  parts.tangent = options.tangent;
+  parts.jacobian = options.jacobian;
   return std::make_unique<MaximalSystem>(std::move(parts));
 }
 
@@ -88,7 +88,7 @@ std::span<const Parameter> der_parameters() {
       Parameter{.name = "twist",
                 .help = "angles with the section's inertia, or without",
                 .choices = "dynamic|quasi_static"},
-      tangent_parameter, maximal_solver_parameter};
+      jacobian_parameter, maximal_solver_parameter};
   return all;
 }
 
@@ -97,7 +97,7 @@ std::unique_ptr<System> make_der(const Strand& strand, const Parameters& paramet
   DerOptions options;
   options.inextensible = parameters.word("stretch") == "inextensible";
   options.quasi_static_twist = parameters.word("twist") == "quasi_static";
-  options.tangent = tangent_choice(parameters);
+  options.jacobian = jacobian_choice(parameters);
   options.solver = maximal_solver(parameters);
   return der(strand, options, std::move(effects));
 }

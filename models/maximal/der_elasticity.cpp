@@ -71,12 +71,12 @@ void to_nodes(const Pack (&h)[4 * edges][edges], Pack (&m)[4 * (edges + 1)][edge
 }  // namespace
 
 DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints,
-                             bool walled, Tangent tangent)
+                             bool walled, Jacobian jacobian)
     : edges_at_start_(std::move(edges)),
       edge_data_(edges_at_start_),
       joint_data_(std::move(joints)),
       walled_(walled),
-      tangent_(tangent),
+      jacobian_(jacobian),
       friction_(std::ranges::any_of(
           joint_data_,
           [](const RodJoint& j) { return dot(j.friction, j.friction) > 0; })),
@@ -85,8 +85,8 @@ DerElasticity::DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> 
       angles_(3 * (edge_data_.size() + 1)),
       factored_(edge_data_.size()),
       now_(edge_data_.size()),
-      stiff_factors_(tangent == Tangent::exact ? 0 : edge_data_.size()),
-      exact_factors_(tangent == Tangent::exact ? edge_data_.size() : 0) {
+      stiff_factors_(jacobian == Jacobian::exact ? 0 : edge_data_.size()),
+      exact_factors_(jacobian == Jacobian::exact ? edge_data_.size() : 0) {
   forget_turns();
 }
 
@@ -162,7 +162,7 @@ TRESS_FLATTEN void DerElasticity::place_as(const Placement& p, Weights w,
 }
 
 void DerElasticity::place(const Placement& p, Weights w, Placed& to) noexcept {
-  if (tangent_ == Tangent::exact) {
+  if (jacobian_ == Jacobian::exact) {
     place_as<true, true>(p, w, to);
   } else {
     place_as<true, false>(p, w, to);
@@ -203,7 +203,7 @@ void DerElasticity::joint_tangent(const Edges& edges, std::size_t i,
                                   Matrix& s) const noexcept {
   const Edge& e = edges[i];
   const Rows own = rotation_of(e);
-  const bool exact = tangent_ == Tangent::exact;
+  const bool exact = jacobian_ == Jacobian::exact;
   const auto add = [&](const Rows& a, const Matrix3<double>& f, const Rows& b, int side_a,
                        int side_b) {
     Pack h[4] = {};
@@ -242,7 +242,7 @@ void DerElasticity::add_edge_tangent(const Placement& p, const Edges& edges,
   const Edge& e = edges[i];
   const Pack lengthening = row(e.frame.e0, 0);
   add_dyad(pos * edge_data_[i].stretch * lengthening, lengthening, h);
-  if (tangent_ != Tangent::exact) return;
+  if (jacobian_ != Jacobian::exact) return;
   const DerEdgeForm<double> second(e.p, e.inverse_length, pos * moment(edges, i));
   Matrix3<double> by_omega = full(second.omega);
   const double pull = pos * tension(p, edges, i) * e.length;
@@ -282,8 +282,8 @@ TRESS_FLATTEN bool DerElasticity::eliminate(
 
 bool DerElasticity::factor(const Placement& p, Weights w, const Others& others) noexcept {
   place(p, w, factored_);
-  return tangent_ == Tangent::exact ? eliminate<Exact>(p, w, others, exact_factors_)
-                                    : eliminate<Stiff>(p, w, others, stiff_factors_);
+  return jacobian_ == Jacobian::exact ? eliminate<Exact>(p, w, others, exact_factors_)
+                                      : eliminate<Stiff>(p, w, others, stiff_factors_);
 }
 
 /// x += sign times the solution for the right sides in `factors`. Returns the largest
@@ -346,7 +346,7 @@ TRESS_FLATTEN void DerElasticity::correct(double most, InOut x) noexcept {
 }
 
 void DerElasticity::solve(In b, Out x) noexcept {
-  if (tangent_ == Tangent::exact) {
+  if (jacobian_ == Jacobian::exact) {
     solve_by<Exact>(exact_factors_, b, x);
   } else {
     solve_by<Stiff>(stiff_factors_, b, x);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contract/tangent_choice.h"
+#include "contract/jacobian_choice.h"
 #include "math/pack.h"
 #include "models/maximal/edge_reference.h"
 #include "models/maximal/elasticity.h"
@@ -25,7 +25,7 @@ class DerElasticity final : public Elasticity,
   };
   /// `joints`: between neighbouring edges; if `walled`, the clamp's joint comes first.
   DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints, bool walled,
-                Tangent tangent);
+                Jacobian jacobian);
 
   std::vector<std::vector<int>> groups() const override;
   void add_force(const Placement& p, InOut f) noexcept override;
@@ -42,7 +42,7 @@ class DerElasticity final : public Elasticity,
   void recall(In memory) override;
   StrandElimination* elimination() override { return walled_ ? this : nullptr; }
   NaturalStrains* natural_strains() override { return this; }
-  bool takes_stresses() const override { return tangent_ == Tangent::exact && stiff_; }
+  bool takes_stresses() const override { return jacobian_ == Jacobian::exact && stiff_; }
 
  private:
   std::vector<double> natural() const override {
@@ -93,11 +93,11 @@ class DerElasticity final : public Elasticity,
   /// The edges at a placement, computed unless they are known: Newton's method needs
   /// matrix and force of the same.
   const Edges& place(const Placement& p) noexcept;
-  /// Those of a matrix.
+  /// Computes the edges that a matrix needs.
   void place(const Placement& p, Weights w, Placed& to) noexcept;
   template <bool with_tangent, bool exact>
   void place_as(const Placement& p, Weights w, Placed& to) noexcept;
-  /// Of all joints on an edge.
+  /// Returns the moment of all joints on an edge.
   Vec moment(const Edges& edges, std::size_t i) const;
   void forget();
   void forget_turns();
@@ -125,7 +125,7 @@ class DerElasticity final : public Elasticity,
   std::vector<double> twist_;  // of the joint before every edge, after the last accepted
                                // step: see wound()
   bool walled_;
-  Tangent tangent_;
+  Jacobian jacobian_;
   bool friction_, stiff_;  // whether joints have friction, edges stretch
   std::size_t angles_;     // first angle in z
   Placed factored_, now_;  // of factor(), and of anything else

@@ -21,9 +21,10 @@ inline Vec rate_of_c(const EdgeTurn& turn, const Vec& de) {
   return (1 / (turn.length * along)) * (cross(turning, turn.a) - rate * turn.c);
 }
 
-/// Replaces the reference of an edge's angle along a motion: theta and its derivatives
-/// become those relative to `to`, with the same frame, spin and rate of the spin. e, de
-/// and dde are the edge's vector and its derivatives; theta is within half a turn of 0.
+/// Replaces the reference of an edge's angle along a motion. The angle theta and its
+/// derivatives become those relative to `to`, with the same frame, spin and rate of the
+/// spin. The edge's vector and its derivatives are e, de and dde. On return theta is
+/// within half a turn of 0.
 inline void refer(const Frame& from, const Frame& to, const Vec& e, const Vec& de,
                   const Vec& dde, double& theta, double& theta_rate,
                   double& theta_second) {

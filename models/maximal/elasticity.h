@@ -16,8 +16,8 @@ struct StressOrigin {
   std::vector<double> z;
   StressForm::Stresses stresses = StressForm::Stresses::held;
 
-  /// Of a stiffness whose strain is `strain` there, with a gradient whose product with
-  /// the change of z since is `change`.
+  /// Returns the stress of a stiffness whose strain at the origin is `strain`. `change`
+  /// is the product of the gradient there with the change of z since.
   double stress(double stiffness, double strain, double change) const {
     const bool follow = stresses == StressForm::Stresses::followed;
     return stiffness * (follow ? strain + change : strain);
@@ -29,7 +29,7 @@ struct StressOrigin {
 struct Placement {
   const RootPose& root;
   In z, rate;
-  /// For tangents: the origin of stresses in terms of second order; null: this state.
+  /// Origin of stresses in the second-order terms of tangents; null: this state.
   const StressOrigin* origin = nullptr;
 };
 
@@ -55,10 +55,11 @@ class StrainForm {
   /// a turning clamp.
   virtual void strain(std::size_t k, const RootPose& root, const double* z,
                       ComplianceForm::Value& value) noexcept = 0;
-  /// As ComplianceForm::add_second, over all coordinates of the block.
+  /// Adds second derivatives as ComplianceForm::add_second, over all coordinates of the
+  /// block.
   virtual void add_second(std::size_t k, const RootPose& root, const double* z, In stress,
                           ComplianceForm::Second& h) noexcept = 0;
-  /// As the ComplianceForm's; coordinates are indices into z.
+  /// Returns the orientations of the ComplianceForm; coordinates are indices into z.
   virtual std::vector<ComplianceForm::Orientation> orientations() const { return {}; }
   /// z, origin: the coordinates of orientation k. `q`: its four of z, to be moved.
   virtual void orient(std::size_t /*k*/, const RootPose& /*root*/, double /*h*/,
@@ -80,7 +81,8 @@ class Elasticity {
   /// s += pos df/dz + vel df/d(rate).
   virtual void add_tangent(const Placement& p, double pos, double vel,
                            GroupSum& s) noexcept = 0;
-  virtual double energy(const Placement& p) noexcept = 0;  // J
+  /// Returns the elastic energy, J.
+  virtual double energy(const Placement& p) noexcept = 0;
   /// Power (W) of friction (negative) and of a turning clamp.
   virtual double power(const Placement& p) noexcept = 0;
   /// Angular momentum (kg m^2/s) of coordinates other than positions, with this inertia;
@@ -95,7 +97,7 @@ class Elasticity {
   virtual bool rebase(const RootPose& /*root*/, InOut /*z*/, InOut /*rate*/) {
     return false;
   }
-  /// As MovingHistory::carry(), of all coordinates.
+  /// Carries all coordinates, as MovingHistory::carry().
   virtual void carry(InOut /*z*/, InOut /*rate*/, InOut /*second*/) const {}
   /// Jumps of forces that rebase() has seen since reset().
   struct Jumps {

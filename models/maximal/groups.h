@@ -50,8 +50,8 @@ class GroupSum {
       if (place[k] >= 0) values_[static_cast<std::size_t>(place[k])] += matrix[k];
     }
   }
-  /// The same for rows of packs and a group with one coordinate fewer than rows; the last
-  /// row and column are omitted.
+  /// Adds a matrix given as rows of packs, for a group with one coordinate fewer than
+  /// rows. The last row and column are omitted.
   template <std::size_t rows, std::size_t packs>
   void add(std::size_t group, const Pack (&matrix)[rows][packs]) {
     constexpr std::size_t size = rows - 1;

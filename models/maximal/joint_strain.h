@@ -30,17 +30,18 @@ Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
           (dot(plus.e0, minus.e1) - dot(minus.e0, plus.e1)) / c};
 }
 
-/// The frames of a joint tell its twist up to whole turns: the one of these angles that
-/// is nearest to `near`, the twist a short time before. A joint that turns on past half a
-/// turn is twisted by more, as in [Bergou 2008], where the angles of the edges count the
-/// turns; between -pi and pi its force would jump to the other side there.
+/// Returns the twist with whole turns counted. The frames of a joint determine its twist
+/// up to whole turns; the angle nearest to `near`, the twist a short time before, is
+/// chosen. A joint that turns on past half a turn is twisted by more, as in [Bergou
+/// 2008], where the angles of the edges count the turns. Between -pi and pi its force
+/// would jump to the other side there.
 inline double wound(double twist, double near) {
   constexpr double turn = 2 * std::numbers::pi;
   return twist + turn * std::round((near - twist) / turn);
 }
 
-/// A quadratic form of two vectors: f(u, w) = uu:(u u) + uw:(u w) + ww:(w w), stored as
-/// the symmetric matrix over (u, w): six rows of one pack for u and one for w, whose last
+/// Quadratic form of two vectors, f(u, w) = uu:(u u) + uw:(u w) + ww:(w w). Stored as the
+/// symmetric matrix over (u, w): six rows of one pack for u and one for w, whose last
 /// lanes are 0.
 struct TwoVectorForm {
   Pack rows[6][2] = {};
@@ -66,7 +67,7 @@ struct TwoVectorForm {
     add_both(1, pack({0, factor, 0}));
     add_both(2, pack({0, 0, factor}));
   }
-  /// += factor w . (u x a).
+  /// Adds factor w . (u x a).
   void add_triple(double factor, const Vec& a) {
     // u x a = -[a]x u
     const Vec h = 0.5 * factor * a;

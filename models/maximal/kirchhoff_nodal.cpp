@@ -1,5 +1,5 @@
 #include "contract/input_error.h"
-#include "contract/tangent_choice.h"
+#include "contract/jacobian_choice.h"
 #include "math/quaternion.h"
 #include "models/entry.h"
 #include "models/maximal/nodal_strand.h"
@@ -15,15 +15,15 @@ namespace {
 ///     m' + t x F = rho P ((omega . t) t)_t,     rho S x_tt = F' + f,     |t| = 1,
 ///
 /// with primes for d/ds and P = I1 + I2; the section's inertia across t is neglected.
-/// Moments follow from the curvatures, N and omega_t . t from the balance of moments, and
-/// the tension T from t . t_tt = -|t_t|^2, a boundary-value problem along the rod with
-/// T = 0 at the tip; then t_tt and omega_t give the acceleration of the curvatures.
+/// Moments follow from the curvatures, N and omega_t . t from the balance of moments. The
+/// tension T follows from t . t_tt = -|t_t|^2, a boundary-value problem along the rod
+/// with T = 0 at the tip. Then t_tt and omega_t give the acceleration of the curvatures.
 ///
-/// The grid is staggered: positions x_i, masses M_i and loads f_i (N) at nodes 0
-/// (clamped) to n; frames D_j, omega_j, F_j on the edges j of length l between nodes j
-/// and j + 1; moments and curvatures kappa_j = phi_j/d at the joints of arc length d
-/// between edges j - 1 and j, the first between the clamp and edge 0 with d = l/2. With
-/// Cayley's map, c = 1/(1 + |phi|^2/4),
+/// The grid is staggered. Positions x_i, masses M_i and loads f_i (N) are at nodes 0
+/// (clamped) to n. Frames D_j, omega_j, F_j are on the edges j of length l between nodes
+/// j and j + 1. Moments and curvatures kappa_j = phi_j/d are at the joints of arc length
+/// d between edges j - 1 and j. The first joint is between the clamp and edge 0 with d =
+/// l/2. With Cayley's map, c = 1/(1 + |phi|^2/4),
 ///
 ///     D_j = D_{j-1} (1 + c ([phi]x + [phi]x^2/2))
 ///     omega_j = omega_{j-1} + D_{j-1} c (phi_t + phi x phi_t/2)
@@ -40,26 +40,26 @@ namespace {
 /// differentiating the second line.
 ///
 /// Error O(h^2). The energy of the grid changes exactly by the power of friction, loads
-/// and the clamp; in a plane the grid is that of der without stretch. No constraints:
-/// r = a - a(t, q, v), M = 1, O(n).
+/// and the clamp; in a plane the grid is that of der without stretch. No constraints: r =
+/// a - a(t, q, v), M = 1, O(n).
 ///
-/// The exact tangent, by derivative numbers, is dense, O(n^2), factored in O(n^3). The
-/// stiff tangent is our reconstruction of the small-scale decomposition of [Hou, Klapper,
-/// Si 1998], the terms of highest order,
+/// The exact Jacobian, by derivative numbers, is dense, O(n^2), factored in O(n^3). The
+/// elastic Jacobian is our reconstruction of the small-scale decomposition of [Hou,
+/// Klapper, Si 1998], the terms of highest order,
 ///
 ///     kappa_tt = -(EI/rho S) kappa_ssss,   twist_tt = (GJ/rho P) twist_ss
 ///
 /// and the corresponding friction terms: on the grid, the linear equations of a straight
 /// strand at rest, constant and banded. With one solve per step, as in
-/// linearly_implicit_midpoint or semi_implicit_euler, they are implicit; tension,
-/// geometry and loads are explicit, and so is the twist that bending causes in a
-/// naturally curved strand, EI kappa/(rho P): the splitting is meant for naturally
-/// straight strands.
+/// linearly_implicit_midpoint or linearly_implicit_euler, they are implicit. Tension,
+/// geometry and loads are explicit. So is the twist that bending causes in a naturally
+/// curved strand, EI kappa/(rho P): the splitting is intended for naturally straight
+/// strands.
 ///
 /// Rest strains are those between the chords of the natural shape. Neighbouring edges
 /// turn by less than pi.
 struct KirchhoffNodalOptions {
-  Tangent tangent = Tangent::exact;
+  Jacobian jacobian = Jacobian::exact;
 };
 
 /// The vector of Cayley's map that turns one frame into the other: 2 tan(angle/2) along
@@ -110,19 +110,19 @@ std::unique_ptr<System> kirchhoff_nodal(const Strand& strand,
   parts.root = strand.root;
   parts.curvature = 1 / strand.length();
   parts.rate = typical_rate(strand);
-  parts.tangent = options.tangent;
+  parts.jacobian = options.jacobian;
   parts.effects = std::move(effects);
   return std::make_unique<NodalSystem>(std::move(parts));
 }
 
 std::span<const Parameter> kirchhoff_nodal_parameters() {
-  return {&tangent_parameter, 1};
+  return {&jacobian_parameter, 1};
 }
 
 std::unique_ptr<System> make_kirchhoff_nodal(const Strand& strand,
                                              const Parameters& parameters,
                                              Effects effects) {
-  return kirchhoff_nodal(strand, {.tangent = tangent_choice(parameters)},
+  return kirchhoff_nodal(strand, {.jacobian = jacobian_choice(parameters)},
                          std::move(effects));
 }
 

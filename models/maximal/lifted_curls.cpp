@@ -6,7 +6,7 @@
 namespace tress::models {
 namespace {
 
-/// A strand of points without frames, of energies that are quadratic in lengths and
+/// Strand of points without frames, with energies that are quadratic in lengths and
 /// angles [Shi et al. 2023], for tight curls. With edges of rest length l:
 ///
 ///     stretch   EA/l (|e| - l)^2/2
@@ -19,21 +19,22 @@ namespace {
 ///
 /// A reconstruction: the three energies are those of the authors' published code (files
 /// QUADRATIC_STRETCHING, QUADRATIC_UNIT_BENDING and TET_STRAND_TWIST of HOBAK). There the
-/// weights are free: bending times its length, torsion times the volume of a tetrahedron;
-/// here they are a rod's, EI that of both axes, l of joints the mean of their edges. The
-/// clamp is mass_spring's. The code leaves out the torsion of edges that are nearly
-/// parallel; here it fades there. The angle is counted from its rest value, so that it
-/// jumps where it has turned by half a turn, not where it is half a turn.
+/// weights are free: bending times its length, torsion times the volume of a tetrahedron.
+/// Here they are a rod's, with EI that of both axes and l of joints the mean of their
+/// edges. The clamp is mass_spring's. The code leaves out the torsion of edges that are
+/// nearly parallel; here it fades there. The angle is counted from its rest value, so
+/// that it jumps where it has turned by half a turn, not where it is half a turn.
 ///
-/// As with mass_spring's altitudes torsion of the centre line stands for twist, so the
-/// section cannot roll, and a joint that is straight at rest has no torsion: the limit of
-/// small l is Kirchhoff's rod for a straight rest shape only; a curly hair under its
-/// weight rests 5.3 % of L beside it (tests/models/maximal/test_spring_statics.cpp). A
-/// joint that is pulled straight loses its torsion, and one that bends the other way has
-/// it half a turn off: a strand much softer than its load has no smooth motion there.
+/// As with mass_spring's altitudes, torsion of the centre line replaces twist, so the
+/// section cannot roll. A joint that is straight at rest has no torsion. The limit of
+/// small l is therefore Kirchhoff's rod for a straight rest shape only. A curly hair
+/// under its weight rests 5.3 % of L away from Kirchhoff's rod
+/// (tests/models/maximal/test_spring_statics.cpp). A joint that is pulled straight loses
+/// its torsion, and one that bends the other way has it half a turn off. A strand much
+/// softer than its load therefore has no smooth motion there.
 std::span<const Parameter> lifted_curls_parameters() {
   static constexpr std::array all{
-      Parameter{.name = "tangent",
+      Parameter{.name = "jacobian",
                 .help = "Jacobian of the springs: exact, or positive semidefinite",
                 .choices = "exact|filtered"},
       maximal_solver_parameter};
@@ -49,9 +50,9 @@ std::unique_ptr<System> make_lifted_curls(const Strand& strand,
   builder.add_dihedrals();
   MaximalStrand& parts = nodal.parts;
   parts.elasticity = std::make_unique<SpringElasticity>(
-      std::move(builder.springs), parameters.word("tangent") == "filtered"
-                                      ? SpringTangent::filtered
-                                      : SpringTangent::exact);
+      std::move(builder.springs), parameters.word("jacobian") == "filtered"
+                                      ? SpringJacobian::filtered
+                                      : SpringJacobian::exact);
   parts.effects = std::move(effects);
   parts.solver = maximal_solver(parameters);
   return std::make_unique<MaximalSystem>(std::move(parts));

@@ -6,7 +6,7 @@
 namespace tress::models {
 namespace {
 
-/// A strand of point masses at the segments' ends and springs between them [Rosenblum,
+/// Strand of point masses at the segments' ends and springs between them [Rosenblum,
 /// Carlson & Tripp 1991]. With edges e of rest length l:
 ///
 ///     stretch   EA/l (|e| - l)^2/2
@@ -34,23 +34,23 @@ namespace {
 ///   strand that happens to be straight has no bending direction (Hinge::delta).
 /// - second_neighbour has no linear stiffness against bending from straight: k angle^4,
 ///   EI l^2 curvature^4/8 per length, which vanishes as l^2. The strand converges to a
-///   rope: a cantilever of weight w hangs (4/3) (3 EI l^2/(8 w))^(1/4) beside its clamp,
-///   4.9 % of L for w L^2/EI = 10 and N = 160, where a rod has 65.6 %. A rest angle a is
-///   held with sin(a)^2 of the stiffness.
-/// - altitude holds the direction of curls. For rest angles below some 4e-3 rad there is
+///   rope: a cantilever of weight w hangs at a horizontal distance of (4/3) (3 EI l^2/(8
+///   w))^(1/4) from its clamp. That is 4.9 % of L for w L^2/EI = 10 and N = 160, where a
+///   rod has 65.6 %. A rest angle a is held with sin(a)^2 of the stiffness.
+/// - altitude holds the direction of curls. For rest angles below about 4e-3 rad there is
 ///   no tetrahedron and no spring. The limit of small l is not Kirchhoff's rod: torsion
 ///   of the centre line replaces twist, so the section cannot roll. A curly hair under
 ///   its weight differs from the rod by 3.7 % of L, its energy by 2 %.
 ///
-/// Selle et al. switch between the altitudes of a tetrahedron and add particles beside a
-/// straight strand to form tetrahedra; the single fixed altitude, its stiffness and the
+/// Selle et al. switch between the altitudes of a tetrahedron and add particles next to a
+/// straight strand to form tetrahedra. The single fixed altitude, its stiffness and the
 /// wall's are our reconstruction.
 struct MassSpringOptions {
   Bending bending = Bending::angular;
   bool altitude = false;      // torsion springs
   bool inextensible = false;  // |e| = l by constraints with multipliers
   bool stretch = true;        // springs along edges, also allowed with constraints
-  SpringTangent tangent = SpringTangent::exact;
+  SpringJacobian jacobian = SpringJacobian::exact;
   LinearKind solver = LinearKind::automatic;
 };
 
@@ -69,7 +69,7 @@ std::unique_ptr<System> mass_spring(const Strand& strand, const std::string& mod
   builder.add_bending(options.bending);
   if (options.altitude) builder.add_altitudes();
   parts.elasticity =
-      std::make_unique<SpringElasticity>(std::move(builder.springs), options.tangent);
+      std::make_unique<SpringElasticity>(std::move(builder.springs), options.jacobian);
   parts.effects = std::move(effects);
   parts.solver = options.solver;
   return std::make_unique<MaximalSystem>(std::move(parts));
@@ -81,7 +81,7 @@ std::span<const Parameter> mass_spring_parameters() {
                 .help = "springs on angles, or to the next node but one",
                 .choices = "angular|second_neighbour"},
       torsion_parameter,
-      Parameter{.name = "tangent",
+      Parameter{.name = "jacobian",
                 .help = "Jacobian of the springs: exact, or positive semidefinite",
                 .choices = "exact|filtered"},
       maximal_solver_parameter};
@@ -95,7 +95,8 @@ std::unique_ptr<System> make_mass_spring(const Strand& strand,
     options.bending = Bending::second_neighbour;
   }
   options.altitude = parameters.word("torsion") == "altitude";
-  if (parameters.word("tangent") == "filtered") options.tangent = SpringTangent::filtered;
+  if (parameters.word("jacobian") == "filtered")
+    options.jacobian = SpringJacobian::filtered;
   options.solver = maximal_solver(parameters);
   return mass_spring(strand, "mass_spring", options, std::move(effects));
 }

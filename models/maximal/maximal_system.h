@@ -15,8 +15,8 @@
 #include "contract/forms/moving_history.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/forms/stress_form.h"
+#include "contract/jacobian_choice.h"
 #include "contract/pattern.h"
-#include "contract/tangent_choice.h"
 #include "linear/kkt.h"
 #include "linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
@@ -54,20 +54,20 @@ struct MaximalStrand {
   /// other coordinates.
   std::unique_ptr<ConstraintSet> constraints;
   LinearKind solver = LinearKind::automatic;
-  Tangent tangent = Tangent::exact;  // stiff: loads as if the strand's tangent were fixed
+  Jacobian jacobian =
+      Jacobian::exact;  // elastic: loads as if the strand's tangent were fixed
 };
 
-/// A strand of redundant coordinates behind the contract of contract/system.h:
+/// Strand of redundant coordinates behind the contract of contract/system.h:
 ///
 ///     r = M a + dE/dz + friction - loads,   M = sum m_p w_p w_p^T + diag(inertia)
 ///
 /// M is constant. Loads of effects act on the mass points. linearize eliminates along the
 /// strand if its elasticity does (StrandElimination) and nothing else couples coordinates
-/// beyond a node; otherwise it assembles S in a fixed sparse pattern and factors it with
-/// `solver`. O(nodes) for a strand. Couplings of
-/// distant points (Coupling) are in linearize and solve only; SparseForm has only their
-/// diagonal blocks per point. If mass points are nodes and the elasticity has a
-/// StrainForm, the system has a ComplianceForm.
+/// beyond a node. Otherwise it assembles S in a fixed sparse pattern and factors it with
+/// `solver`. O(nodes) for a strand. Couplings of distant points (Coupling) are in
+/// linearize and solve only; SparseForm has only their diagonal blocks per point. If mass
+/// points are nodes and the elasticity has a StrainForm, the system has a ComplianceForm.
 class MaximalSystem final : public System,
                             public NaturalStrains,
                             private SparseForm,
@@ -158,7 +158,9 @@ class MaximalSystem final : public System,
   Points points(Needs wanted) noexcept;
   bool eliminate(double t, Weights w) noexcept;
   void find_blocks(double t, Weights w, bool coupled_apart) noexcept;
-  bool directed() const { return needs_.directions && strand_.tangent == Tangent::exact; }
+  bool directed() const {
+    return needs_.directions && strand_.jacobian == Jacobian::exact;
+  }
   void add_directions(double t, const Points& p, double pos, Out s) noexcept;
   Status assemble(double t, In q, In v, Weights w, Out s, bool coupled_apart) noexcept;
   void add_mass(Weights w, GroupSum& sum) noexcept;

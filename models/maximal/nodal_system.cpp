@@ -13,12 +13,12 @@ namespace {
 /// A fourth difference couples a joint with two on either side.
 constexpr int reach = 2;
 
-Pattern pattern(int joints, Tangent tangent) {
+Pattern pattern(int joints, Jacobian jacobian) {
   const int n = 3 * joints;
   std::vector<std::vector<int>> columns(static_cast<std::size_t>(n));
   for (int j = 0; j < n; ++j) {
     std::vector<int>& column = columns[static_cast<std::size_t>(j)];
-    if (tangent == Tangent::exact) {
+    if (jacobian == Jacobian::exact) {
       column.resize(static_cast<std::size_t>(n));
       std::iota(column.begin(), column.end(), 0);
     } else {  // twist and curvatures do not mix
@@ -62,14 +62,14 @@ NodalSystem::NodalSystem(NodalParts parts)
       needs_(needs(parts_.effects)),
       motion_(parts_.rod),
       moved_(parts_.rod),
-      pattern_(pattern(static_cast<int>(parts_.rod.edges()), parts_.tangent)) {
+      pattern_(pattern(static_cast<int>(parts_.rod.edges()), parts_.jacobian)) {
   const std::size_t n = parts_.start.size(), nodes = motion_.x.size();
   for (auto* numbers : {&q_, &v_, &a_}) numbers->resize(n);
   for (auto* x : {&x_, &u_, &tangent_, &load_}) x->resize(3 * nodes);
   for (auto* slopes : {&load_by_x_, &load_by_v_, &load_by_t_}) slopes->resize(9 * nodes);
   zero_.resize(n);
   values_.resize(static_cast<std::size_t>(pattern_.nonzeros()));
-  const bool dense = parts_.tangent == Tangent::exact;
+  const bool dense = parts_.jacobian == Jacobian::exact;
   solver_ =
       make_linear_solver(dense ? LinearKind::dense : LinearKind::automatic, pattern_);
   if (!dense) find_leading_terms();
@@ -217,7 +217,7 @@ void NodalSystem::find_leading_terms() {
   }
 }
 
-/// Constant: factored anew for other weights only.
+/// Factors the constant stiff tangent; repeats that for other weights only.
 Status NodalSystem::stiff_tangent(Weights w) noexcept {
   const Weights& last = factored_;
   if (w.acc == last.acc && w.vel == last.vel && w.pos == last.pos) return Status::ok;
@@ -236,7 +236,7 @@ Status NodalSystem::stiff_tangent(Weights w) noexcept {
 }
 
 Status NodalSystem::linearize(double t, In q, In v, In, Weights w) noexcept {
-  if (parts_.tangent == Tangent::stiff) return stiff_tangent(w);
+  if (parts_.jacobian == Jacobian::elastic) return stiff_tangent(w);
   exact_tangent(t, q, v, w);
   return all_finite(values_) ? solver_->factor(values_) : Status::retry;
 }

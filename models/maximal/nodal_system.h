@@ -7,9 +7,9 @@
 #include "contract/forms/energetics.h"
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/material_points.h"
+#include "contract/jacobian_choice.h"
 #include "contract/pattern.h"
 #include "contract/system.h"
-#include "contract/tangent_choice.h"
 #include "linear/linear_solver.h"
 #include "math/dual.h"
 #include "models/effects/effect.h"
@@ -25,7 +25,7 @@ struct NodalParts {
   std::vector<double> node_length;  // length seen by effects, m
   std::vector<double> start;        // curvatures at t = 0
   double curvature = 1, rate = 1;   // typical sizes, 1/m and 1/s
-  Tangent tangent = Tangent::exact;
+  Jacobian jacobian = Jacobian::exact;
   Effects effects;
 };
 
@@ -90,9 +90,9 @@ class NodalSystem final : public System,
   std::vector<double> zero_;
   Pattern pattern_;
   std::vector<double> leading_by_q_,
-      leading_by_v_;  // derivatives of -a on the pattern, stiff tangent
+      leading_by_v_;  // derivatives of -a on the pattern, elastic Jacobian
   std::vector<double> values_;
-  Weights factored_;  // weights of the stiff tangent in solver_
+  Weights factored_;  // weights of the elastic Jacobian in solver_
   std::unique_ptr<LinearSolver> solver_;
 };
 

@@ -26,9 +26,9 @@ struct NodeMean {
   }
 };
 
-/// Unit tangents of a strand at its mass points, t_i = d/|d| with d from the point before
-/// to the one behind (at the ends from or to the point itself), and the contribution of
-/// their derivatives
+/// Unit tangents of a strand at its mass points, t_i = d/|d|, with d from the point
+/// before to the next one. At the ends d starts or ends at the point itself. Also adds
+/// the contribution of their derivatives
 ///
 ///     dt_i = (I - t_i t_i^T) (dx_behind - dx_before)/|d|
 ///

@@ -9,7 +9,7 @@
 namespace tress::models {
 
 /// Material frame of the edge e (m) of a discrete rod at angle theta from its reference
-/// direction: with a = reference.e0 and t = e/|e|, the reference is turned by the minimal
+/// direction. With a = reference.e0 and t = e/|e|, the reference is turned by the minimal
 /// rotation from a to t [Bergou 2010], then by theta about t. Not defined for t = -a.
 template <class T>
 FrameOf<T> edge_frame(const Frame& reference, const Vec3<T>& e, const T& theta) {
@@ -83,9 +83,9 @@ struct EdgeTurn {
   Vec c;
 };
 
-/// If an edge has turned by more than 60 degrees from its reference, takes the current
-/// frame as the new reference and adds to theta' the turning of the old one, so neither
-/// the frame nor its spin jumps. False if nothing changed.
+/// Renews the reference of an edge that has turned by more than 60 degrees from it. Takes
+/// the current frame as the new reference and adds to theta' the turning of the old one,
+/// so that neither the frame nor its spin jumps. Returns false if nothing changed.
 inline bool renew_reference(Frame& reference, const Vec& e, const Vec& de, double& theta,
                             double& theta_rate) {
   constexpr double far_turned = 0.5;  // cosine

@@ -5,7 +5,7 @@
 
 namespace tress::models {
 
-/// What bends a joint: mass_spring.cpp for the first two, lifted_curls.cpp.
+/// Bending springs of a joint: mass_spring.cpp for the first two, lifted_curls.cpp.
 enum class Bending { angular, second_neighbour, angle };
 
 /// The springs of one strand at its rest shape, with the stiffness of its sections.

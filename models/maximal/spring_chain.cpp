@@ -112,7 +112,8 @@ class Chain final : public SpringChain {
 
 }  // namespace
 
-std::unique_ptr<SpringChain> spring_chain(const Springs& springs, SpringTangent tangent) {
+std::unique_ptr<SpringChain> spring_chain(const Springs& springs,
+                                          SpringJacobian jacobian) {
   const auto& lengths = std::get<std::vector<Spring<Chord<1>>>>(springs);
   const auto& hinges = std::get<std::vector<Spring<Hinge>>>(springs);
   const auto& wall = std::get<std::vector<Spring<WallBend>>>(springs);
@@ -132,7 +133,7 @@ std::unique_ptr<SpringChain> spring_chain(const Springs& springs, SpringTangent 
                      i == 0 ? wall[0].rest : hinges[i - 1].rest,
                      i == 0 ? wall[1].rest : 0});
   }
-  if (tangent == SpringTangent::exact)
+  if (jacobian == SpringJacobian::exact)
     return std::make_unique<Chain<true>>(std::move(edges));
   return std::make_unique<Chain<false>>(std::move(edges));
 }

@@ -18,6 +18,7 @@ class SpringChain : public StrandElimination {
 /// Null unless the springs are those of the kernel: of edges, of the joints between them,
 /// and of the wall. Others, of which altitudes and dihedral angles couple three edges,
 /// and chords over two their lengths, and strands without a wall are assembled.
-std::unique_ptr<SpringChain> spring_chain(const Springs& springs, SpringTangent tangent);
+std::unique_ptr<SpringChain> spring_chain(const Springs& springs,
+                                          SpringJacobian jacobian);
 
 }  // namespace tress::models

@@ -15,9 +15,9 @@ template <class Strain>
 constexpr bool at_wall = requires(Strain s, Frame f) {
   s.place(f);
 };
-/// Only lengths take stresses from elsewhere: second derivatives of angles grow without
-/// bound where a strand is straight, and so does their product with a stress that is not
-/// that of the same state.
+/// Tests for strains that are lengths. Only lengths take stresses from another state.
+/// Second derivatives of angles grow without bound where a strand is straight, and so
+/// does their product with a stress of another state.
 template <class Strain>
 constexpr bool is_length = false;
 template <int n>
@@ -163,10 +163,10 @@ void at_number(All& springs, std::size_t number, Act act) {
 
 }  // namespace
 
-SpringElasticity::SpringElasticity(Springs springs, SpringTangent tangent)
+SpringElasticity::SpringElasticity(Springs springs, SpringJacobian jacobian)
     : springs_(std::move(springs)),
-      tangent_(tangent),
-      chain_(spring_chain(springs_, tangent)) {
+      jacobian_(jacobian),
+      chain_(spring_chain(springs_, jacobian)) {
   std::vector<std::size_t> middle;  // in half edges
   for_each(springs_, [&]<class Strain>(const Spring<Strain>& spring, std::size_t number) {
     along_.push_back(number);
@@ -209,7 +209,7 @@ void SpringElasticity::add_tangent(const Placement& p, double pos, double vel,
     EdgeMatrix<Strain::edges> of_edges;
     of_edges.add_product(pos * spring.stiffness + vel * spring.friction, now.slope,
                          now.slope);
-    if (tangent_ == SpringTangent::exact) {
+    if (jacobian_ == SpringJacobian::exact) {
       add_exact(spring, now, p, pos, of_edges);
     } else {
       add_filtered(now, pos, of_edges);

@@ -37,13 +37,13 @@ using Springs =
 ///
 /// filtered drops the transverse term of a spring under compression, and with it all
 /// terms that could make the matrix indefinite or, with friction, unsymmetric.
-enum class SpringTangent { exact, filtered };
+enum class SpringJacobian { exact, filtered };
 
 class SpringChain;
 
 class SpringElasticity final : public Elasticity, private StrainForm {
  public:
-  SpringElasticity(Springs springs, SpringTangent tangent);
+  SpringElasticity(Springs springs, SpringJacobian jacobian);
   ~SpringElasticity() override;
 
   std::vector<std::vector<int>> groups() const override;
@@ -53,8 +53,8 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
   /// Moves no frames, but compares angles with those of the last call. The force of a
-  /// joint that is bent at rest has no limit where the joint is straight, and that of a
-  /// dihedral angle none where the angle is half a turn from rest: both jump there.
+  /// joint that is bent at rest has no limit where the joint is straight. That of a
+  /// dihedral angle has none where the angle is half a turn from rest. Both jump there.
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
   Jumps jumps() const override { return jumps_; }
   void reset() override {
@@ -65,7 +65,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   StrandElimination* elimination() override;
   StrainForm* strain_form() override { return this; }
   bool takes_stresses() const override {
-    return tangent_ == SpringTangent::exact &&
+    return jacobian_ == SpringJacobian::exact &&
            !(std::get<0>(springs_).empty() && std::get<1>(springs_).empty());
   }
 
@@ -77,7 +77,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
                   ComplianceForm::Second& h) noexcept override;
 
   Springs springs_;
-  SpringTangent tangent_;
+  SpringJacobian jacobian_;
   std::unique_ptr<SpringChain> chain_;  // null: springs that the kernel does not have
   /// A strain that can jump, at the last rebase().
   struct Angle {

@@ -7,8 +7,8 @@
 
 namespace tress::models {
 
-/// A clamped rod discretised for kirchhoff_nodal.cpp: n edges between nodes 0 (at the
-/// clamp) to n; joint j turns edge j relative to edge j - 1, joint 0 relative to the
+/// Clamped rod discretised for kirchhoff_nodal.cpp: n edges between nodes 0 (at the
+/// clamp) to n. Joint j turns edge j relative to edge j - 1, joint 0 relative to the
 /// clamp.
 struct StaggeredRod {
   std::vector<double> length,

@@ -102,7 +102,7 @@ struct Strained {
     }
   }
 
-  /// W, <= 0.
+  /// Returns the power of friction, W, <= 0.
   double friction_power() const {
     double sum = 0;
     for (int k = 0; k < strains; ++k) sum -= part.friction[k] * speed[k] * speed[k];

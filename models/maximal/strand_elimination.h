@@ -15,16 +15,16 @@ namespace tress::models {
 class StrandElimination {
  public:
   virtual ~StrandElimination() = default;
-  /// Terms of S beside those of the Elasticity.
+  /// Terms of S in addition to those of the Elasticity.
   struct Others {
     In mass;     // kg, of all nodes
     In inertia;  // of the coordinates that are not positions
     In blocks;   // of the loads on all nodes, 3 x 3 by rows; empty: none
   };
-  /// Factors S. False if elimination without exchange of rows is inaccurate, or does not
-  /// take these terms: S must then be assembled.
+  /// Factors the matrix S. Returns false if elimination without pivoting is inaccurate or
+  /// does not take these terms: S must then be assembled.
   virtual bool factor(const Placement& p, Weights w, const Others& others) noexcept = 0;
-  /// Of the coordinates that are not prescribed; b and x may be the same.
+  /// Solves for the coordinates that are not prescribed; b and x may be the same.
   virtual void solve(In b, Out x) noexcept = 0;
 };
 

@@ -43,14 +43,16 @@ class Signal {
 Signal sine(double amplitude, double frequency);
 /// amplitude (1 - cos(2 pi frequency t)): starts from rest
 Signal one_minus_cosine(double amplitude, double frequency);
-/// From 0 to `height` between t0 and t0 + duration (s, > 0, else InputError), C^2:
-/// height (6 x^5 - 15 x^4 + 10 x^3).
+/// Returns a step from 0 to `height` between t0 and t0 + duration (s, > 0, else
+/// InputError), C^2: height (6 x^5 - 15 x^4 + 10 x^3).
 Signal smooth_step(double height, double t0, double duration);
-/// Moves at `speed`, passes 0 at t0 and comes to rest at t0 + duration (s, > 0, else
-/// InputError) after a further speed duration/2, C^2: rate speed (1 - 3 x^2 + 2 x^3).
+/// Returns a motion at `speed` that passes 0 at t0 and stops at t0 + duration (s, > 0,
+/// else InputError), after a further speed duration/2. C^2: rate speed (1 - 3 x^2 + 2
+/// x^3).
 Signal stop(double speed, double t0, double duration);
 Signal sum(Signal a, Signal b);
-/// To `height` and back, each in `duration`, from t = 0 on: two smooth_steps.
+/// Returns a motion to `height` and back, each in `duration`, from t = 0 on: two
+/// smooth_steps.
 Signal there_and_back(double height, double duration);
 
 /// A cross-section of a strand in space: centre (m) and material frame, e0 the tangent.
@@ -88,7 +90,8 @@ struct RootMotion {
   std::vector<Part> rotations;
 
   bool fixed() const { return translations.empty() && rotations.empty(); }
-  RootPose at(double t) const;  // never allocates
+  /// Returns the pose at time t (s); never allocates.
+  RootPose at(double t) const;
   /// The first of its signals' breakpoints after t, or infinity.
   double next_breakpoint(double t) const;
 };

@@ -27,10 +27,11 @@ struct Oscillator {
 /// without bound.
 Signal driven_oscillator(const Oscillator& body, double t0);
 
-/// Through `values` at `times` (s, ascending, at least two), C^2 everywhere: at rest
-/// until the first time and after the last. A cubic spline whose first and last interval
-/// is halved by an additional knot (a single interval is divided in three), to satisfy
-/// the rest conditions x' = x'' = 0 at either end. Throws InputError on other times.
+/// Returns a signal through `values` at `times` (s, ascending, at least two), C^2
+/// everywhere: at rest until the first time and after the last. A cubic spline. Its first
+/// and last interval are halved by an additional knot (a single interval is divided in
+/// three), to satisfy the rest conditions x' = x'' = 0 at either end. Throws InputError
+/// on other times.
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
 
 }  // namespace tress::models

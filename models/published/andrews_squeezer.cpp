@@ -5,7 +5,7 @@
 //
 // q = (beta, Theta, gamma, Phi, delta, Omega, epsilon) in rad; g in m (two components of
 // each closure); lambda in N, with the opposite sign to the Test Set's. Published end
-// values at t = 0.03 s in references.h. Tangent::stiff keeps M and the spring.
+// values at t = 0.03 s in references.h. Jacobian::elastic keeps M and the spring.
 // Source: Mazzia & Magherini, Test Set for IVP Solvers, release 2.4, problem "andrews";
 // Hairer & Wanner, Solving Ordinary Differential Equations II, section VII.7.
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include <cmath>
 
 #include "contract/forms/energetics.h"
-#include "contract/tangent_choice.h"
+#include "contract/jacobian_choice.h"
 #include "models/entry.h"
 #include "models/published/dense_system.h"
 #include "models/published/loop_closure.h"
@@ -151,8 +151,8 @@ constexpr std::array<double, coordinates> speed_size = {1e3, 1e3, 20, 20,
 class AndrewsSqueezer final : public DenseSystem<coordinates, Mechanism>,
                               public Energetics {
  public:
-  explicit AndrewsSqueezer(Tangent tangent)
-      : DenseSystem(Mechanism{}, tangent),
+  explicit AndrewsSqueezer(Jacobian jacobian)
+      : DenseSystem(Mechanism{}, jacobian),
         closure_(coordinates, closure, closure_targets, /*typical_length=*/ss) {}
 
   Layout layout() const override { return {coordinates, closure_.count()}; }
@@ -178,10 +178,10 @@ class AndrewsSqueezer final : public DenseSystem<coordinates, Mechanism>,
   LoopClosure closure_;
 };
 
-constexpr std::array<Parameter, 1> andrews_squeezer_table = {{tangent_parameter}};
+constexpr std::array<Parameter, 1> andrews_squeezer_table = {{jacobian_parameter}};
 
 std::unique_ptr<System> make_andrews_squeezer(const Parameters& parameters) {
-  return std::make_unique<AndrewsSqueezer>(tangent_choice(parameters));
+  return std::make_unique<AndrewsSqueezer>(jacobian_choice(parameters));
 }
 
 }  // namespace

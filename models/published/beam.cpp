@@ -25,8 +25,8 @@
 #include "contract/forms/energetics.h"
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/material_points.h"
+#include "contract/jacobian_choice.h"
 #include "contract/system.h"
-#include "contract/tangent_choice.h"
 #include "math/banded_lu.h"
 #include "models/entry.h"
 
@@ -50,11 +50,11 @@ class Beam final : public System,
                    public Energetics,
                    public MaterialPoints {
  public:
-  Beam(int segments, double load, Tangent tangent)
+  Beam(int segments, double load, Jacobian jacobian)
       : n_(segments),
         s_(1.0 / segments),
         load_(load),
-        tangent_(tangent),
+        jacobian_(jacobian),
         axis_(size()),
         internal_(size()),
         axial_(size()),
@@ -88,7 +88,7 @@ class Beam final : public System,
   // Rows of segment l: torque balance over s^3, then the two force balances of its joints
   // differenced along the rod, ends * dN_l - dN_{l-1} - dN_{l+1} = s^2 weight_l x_l.
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
-    const bool exact = tangent_ == Tangent::exact;
+    const bool exact = jacobian_ == Jacobian::exact;
     sweep_internal_forces(t, q, v, a);
     lu_.clear();
     const double bend = w.pos / (s_ * s_ * s_ * s_);  // bending stiffness over s^3
@@ -238,7 +238,7 @@ class Beam final : public System,
   int n_;
   double s_;     // segment length (m)
   double load_;  // N
-  Tangent tangent_;
+  Jacobian jacobian_;
   // Scratch, rewritten by each call that reads it; lu_ alone lives from linearize to
   // solve.
   std::vector<Vec2> axis_;        // (n) e_l
@@ -257,10 +257,11 @@ constexpr std::array<Parameter, 3> beam_table = {
       .max = 1e6,
       .whole = true},
      {.name = "load", .help = "amplitude of the force on the tip (N)", .number = 1.5},
-     tangent_parameter}};
+     jacobian_parameter}};
 
 std::unique_ptr<System> make_beam(const Parameters& p) {
-  return std::make_unique<Beam>(p.whole("segments"), p.number("load"), tangent_choice(p));
+  return std::make_unique<Beam>(p.whole("segments"), p.number("load"),
+                                jacobian_choice(p));
 }
 
 }  // namespace

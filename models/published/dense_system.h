@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "contract/forms/sparse_form.h"
+#include "contract/jacobian_choice.h"
 #include "contract/pattern.h"
 #include "contract/system.h"
-#include "contract/tangent_choice.h"
 #include "math/dual.h"
 
 namespace tress::models {
@@ -17,7 +17,8 @@ namespace tress::models {
 ///
 ///     kernel.residual(t, q, v, a, r)   r = M a - f
 ///     kernel.inertia(q, x, r)          r = M(q) x
-///     kernel.elastic(q, r)             r += dV/dq of its springs (Tangent::stiff only)
+///     kernel.elastic(q, r)             r += dV/dq of its springs (Jacobian::elastic
+///     only)
 ///
 /// S(w) follows exactly: column k is the derivative of the residual along (a_k, v_k, q_k)
 /// = (w.acc, w.vel, w.pos), taken with derivative numbers. Cost: O(n) residuals to
@@ -25,8 +26,8 @@ namespace tress::models {
 template <int n, class Kernel>
 class DenseSystem : public System, public SparseForm {
  public:
-  explicit DenseSystem(Kernel kernel, Tangent tangent = Tangent::exact)
-      : kernel_(std::move(kernel)), tangent_(tangent) {
+  explicit DenseSystem(Kernel kernel, Jacobian jacobian = Jacobian::exact)
+      : kernel_(std::move(kernel)), jacobian_(jacobian) {
     full_.rows = full_.cols = n;
     for (int k = 0; k <= n; ++k) full_.start.push_back(n * k);
     for (int k = 0; k < n * n; ++k) full_.row.push_back(k % n);
@@ -62,7 +63,7 @@ class DenseSystem : public System, public SparseForm {
     using D = Dual<n>;
     std::array<D, n> r;
     if constexpr (requires(const D* x, D* y) { kernel_.elastic(x, y); }) {
-      if (tangent_ == Tangent::stiff) {
+      if (jacobian_ == Jacobian::elastic) {
         std::array<D, n> force;
         kernel_.inertia(q.data(), seeded(a, w.acc).data(), r.data());
         kernel_.elastic(seeded(q, w.pos).data(), force.data());
@@ -111,7 +112,7 @@ class DenseSystem : public System, public SparseForm {
   }
 
   Kernel kernel_;
-  Tangent tangent_;
+  Jacobian jacobian_;
   Pattern full_;
   Matrix s_;
   Eigen::PartialPivLU<Matrix> lu_;

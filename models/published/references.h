@@ -8,15 +8,15 @@ namespace tress::models {
 
 /// State at the end time of a published problem, at its default parameters (SI).
 ///
-/// `digits` indicate how far the printed numbers can be trusted: the error of the worst
-/// entry, relative to its size or its System::scale if that is larger, against runs of
+/// `digits` indicate the accuracy of the printed numbers: the error of the worst entry,
+/// relative to its size or its System::scale if that is larger. The reference are runs of
 /// this library that are converged to 1e-12 (tests/models/published). The printed run is
 /// the limit:
-/// - andrews_squeezer: the printed velocities violate G v = 0 by 2e-9 m/s, and
-///   T + V - torque beta by 2e-10 J; converged runs keep both to 1e-13.
+/// - andrews_squeezer: the printed velocities violate G v = 0 by 2e-9 m/s, and T + V -
+///   torque beta by 2e-10 J; converged runs keep both to 1e-13.
 /// - slider_crank: rigid and lateral coordinates agree to 9 and 6 digits. The
 ///   longitudinal modes (7e3 and 2.5e4 rad/s, undamped in the problem) were damped in the
-///   printed run: Radau IIA of order 5 shows the same loss at steps near 2e-5 s.
+///   printed run. Radau IIA of order 5 shows the same loss at steps near 2e-5 s.
 struct PublishedEnd {
   std::string_view model;  // catalogue id
   double t;                // s

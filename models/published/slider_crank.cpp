@@ -22,7 +22,7 @@
 #include <numbers>
 
 #include "contract/forms/constraint_form.h"
-#include "contract/tangent_choice.h"
+#include "contract/jacobian_choice.h"
 #include "models/entry.h"
 #include "models/published/dense_system.h"
 
@@ -222,8 +222,8 @@ enum class Start { smooth, rigid };
 
 class SliderCrank final : public DenseSystem<coordinates, CrankWithFlexibleRod> {
  public:
-  SliderCrank(Start start, Tangent tangent)
-      : DenseSystem(CrankWithFlexibleRod{}, tangent), start_(start) {}
+  SliderCrank(Start start, Jacobian jacobian)
+      : DenseSystem(CrankWithFlexibleRod{}, jacobian), start_(start) {}
 
   Layout layout() const override { return {coordinates, 3}; }
 
@@ -263,11 +263,11 @@ constexpr std::array<Parameter, 2> slider_crank_table = {
     {{.name = "start",
       .help = "close to smooth motion, or rigid motion: the rod rings",
       .choices = "smooth|rigid"},
-     tangent_parameter}};
+     jacobian_parameter}};
 
 std::unique_ptr<System> make_slider_crank(const Parameters& p) {
   return std::make_unique<SliderCrank>(
-      p.word("start") == "rigid" ? Start::rigid : Start::smooth, tangent_choice(p));
+      p.word("start") == "rigid" ? Start::rigid : Start::smooth, jacobian_choice(p));
 }
 
 }  // namespace

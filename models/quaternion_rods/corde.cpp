@@ -14,19 +14,19 @@ namespace {
 ///     w = 2 vec(conj(q_j) q_{j+1}) = l 2 B_k((q_j + q_{j+1})/2) . (q_{j+1} - q_j)/l,
 ///
 /// l of a joint is the mean of its edges, |w| = 2 sin(angle/2). The paper's K ~ E r^2 is
-/// replaced by the section's EI ~ E r^4. kappa (N) couples frames to edges, and nu (N)
-/// keeps norms near 1 where the paper projects, so the model has no constraints and a
-/// constant mass matrix. The clamp is a wall half an edge before the first edge's middle:
-/// a joint of length l/2 between its frame and q_0 (second order).
+/// replaced by the section's EI ~ E r^4. The coupling kappa (N) ties frames to edges, and
+/// nu (N) keeps norms near 1 where the paper projects. The model therefore has no
+/// constraints and a constant mass matrix. The clamp is a wall half an edge before the
+/// first edge's middle: a joint of length l/2 between its frame and q_0 (second order).
 ///
 /// Both penalties are in units of EI/l^2 and cause smaller errors than the scheme, at the
 /// same order 2. A joint's moment is EI sin(u l)/l: softer by (u l)^2/6 in bending of
-/// curvature u, where the norm, |q|^2 = 1 - (u l)^2/(coupling + norm), softens it by
-/// twice that. A light cantilever of length L bends lower by (l/L)^2 of its deflection,
-/// and by 4/coupling of that because edges lag behind frames by V/kappa, V the shear
-/// force. The defaults thus add 4 and 6 per cent to the errors. The stiffest oscillations
-/// are those of the norms, sqrt((coupling + norm) E/(2 rho))/l, five times the 2
-/// sqrt(E/rho)/l of stretch waves.
+/// curvature u. The norm, |q|^2 = 1 - (u l)^2/(coupling + norm), softens it by twice
+/// that. A light cantilever of length L bends lower by (l/L)^2 of its deflection. It
+/// bends lower by 4/coupling of that because edges lag behind frames by V/kappa, V the
+/// shear force. The defaults thus add 4 and 6 per cent to the errors. The stiffest
+/// oscillations are those of the norms, with sqrt((coupling + norm) E/(2 rho))/l. That is
+/// five times the 2 sqrt(E/rho)/l of stretch waves.
 ///
 /// Inertia: mass lumped at the nodes, 4 rho (I1 + I2) l |q'|^2/2 = rho (I1 + I2) l
 /// |omega|^2/2 (omega = 2 q' conj(q)). This is exact about the tangent; across it, where

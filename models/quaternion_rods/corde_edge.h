@@ -32,7 +32,7 @@ struct CordeEdgeOf {
     store3((U(1) / now) * e - first_axis(q), s + 1);
     s[4] = dot(q, q) - U(1);
   }
-  /// With t = e/|e|, dt/de = (1 - t t^T)/|e|.
+  /// Computes the gradients of the strains. With t = e/|e|, dt/de = (1 - t t^T)/|e|.
   void gradient(const T* x, T (&g)[strains][coordinates]) const {
     const Edge e(x);
     T t[3], slope[3][4];
@@ -51,7 +51,7 @@ struct CordeEdgeOf {
       g[4][3 + l] = T(2) * x[3 + l];
     }
   }
-  /// Of the rate of stretch.
+  /// Computes the slopes of the rate of stretch.
   void slope_of_speed(const T* x, const T* rate,
                       T (&g)[with_friction][coordinates]) const {
     const Edge e(x);
@@ -61,8 +61,8 @@ struct CordeEdgeOf {
   }
   /// J: the energy is const - pull . t(q) for q of norm 1 and fixed e.
   Vec3<T> pull(const T* x) const { return (stiffness[1] * Edge(x).inverse) * load3(x); }
-  /// With P = 1 - t t^T, s . t has the second derivative
-  /// -(P s t^T + t (P s)^T + (s . t) P)/|e|^2; that of s . t(q) is twice the matrix of a
+  /// Adds second derivatives. With P = 1 - t t^T, s . t has the second derivative -(P s
+  /// t^T + t (P s)^T + (s . t) P)/|e|^2. That of s . t(q) is twice the matrix of a
   /// quadratic form.
   void add_second(const T* x, const T* stress, T (&h)[coordinates][coordinates]) const {
     const Edge e(x);
@@ -89,7 +89,7 @@ struct CordeEdgeOf {
   }
 
  private:
-  /// Of dual numbers, too.
+  /// Returns the square root, also of dual numbers.
   template <class U>
   static U root(const U& x) {
     if constexpr (std::is_same_v<U, T>) {

@@ -46,16 +46,22 @@ struct CosseratEdgeOf {
     }
     for (int l = 0; l < 4; ++l) g[3][3 + l] = T(2) * x[3 + l];
   }
-  /// J: for q of norm 1, fixed e and d = e/l, the energy is
-  /// l (kGA |d|^2 - 2 EA d . t + (EA - kGA) (d . t)^2)/2 + const with t = t(q), whose
-  /// derivative by t at x is -pull. Shear is the same along both axes.
+  /// Returns the pull, J. For q of norm 1, fixed e and d = e/l, the energy is
+  ///
+  ///     l (kGA |d|^2 - 2 EA d . t + (EA - kGA) (d . t)^2)/2 + const,   t = t(q).
+  ///
+  /// Its derivative by t at x is -pull. Shear is the same along both axes.
   Vec3<T> pull(const T* x) const {
     const Vec3<T> d = (T(1) / length) * load3(x);
     const T along = dot(d, first_axis(load_quaternion(x + 3)));
     return (stiffness[0] + (stiffness[1] - stiffness[0]) * along) * d;
   }
-  /// With f = s . N/D and B the matrix of the form s . N, by q
-  /// 2 (B - f)/D - 2 (q f'^T + f' q^T)/D, and by e and q f' of a unit vector.
+  /// Adds second derivatives. With f = s . N/D and B the matrix of the form s . N, that
+  /// by q is
+  ///
+  ///     2 (B - f)/D - 2 (q f'^T + f' q^T)/D,
+  ///
+  /// and that by e and q is f' of a unit vector.
   void add_second(const T* x, const T* stress, T (&h)[coordinates][coordinates]) const {
     const Vec3<T> e = load3(x), s = load3(stress);
     const QuaternionOf<T> q = load_quaternion(x + 3);

@@ -4,28 +4,28 @@
 
 namespace tress::models {
 
-/// The orientation of one edge, q of norm 1, at which the edge's pull and its joints are
-/// balanced with all others held and no inertia [Hsu et al. 2025, Stable Cosserat Rods].
-/// With joints of the isotropic energy 2 K |conj(p) q - r|^2, r at rest, q is the least
-/// of
+/// Orientation of one edge, q of norm 1, at which the edge's pull and its joints are
+/// balanced with all others held and without inertia [Hsu et al. 2025, Stable Cosserat
+/// Rods]. With joints of the isotropic energy 2 K |conj(p) q - r|^2, r at rest, q
+/// minimises
 ///
 ///     -pull . t(q) - b . q,    b = sum 4 K p r.
 ///
-/// The first term is -q^T B q, B of eigenvalues +-|pull|, so (lambda - 2 B) q = b and, by
-/// the projections b+ and b- of b on the eigenspaces,
+/// The first term is -q^T B q, where B has the eigenvalues +-|pull|. Then (lambda - 2 B)
+/// q = b and, by the projections b+ and b- of b on the eigenspaces,
 ///
 ///     q = b+/m + b-/(m + 4 |pull|),    |b+|^2/m^2 + |b-|^2/(m + 4 |pull|)^2 = 1,
 ///
-/// for which the paper takes the bound m = |b|. Joints of other energies, of different
-/// stiffness about different axes and with friction at rate stiffness c/h, enter with
-/// their largest K, b . q as above and their own slope across q for b: a step whose fixed
-/// point is the balance of the energy that is given.
+/// for which the paper takes the bound m = |b|. Joints of other energies have different
+/// stiffness about different axes, and friction at rate stiffness c/h. They enter with
+/// their largest K, b . q as above and their own slope across q for b. The fixed point of
+/// the step is the balance of the given energy.
 class OrientationStep {
  public:
   /// The edge of q is behind the joint, or before it.
   enum class Side { before, behind };
 
-  /// From `now`, of norm 1; pull (J): see Edge::pull.
+  /// Constructs a step from `now`, of norm 1; pull (J): see Edge::pull.
   OrientationStep(const Quaternion& now, const Vec& pull) : now_(now), pull_(pull) {}
   /// x, rate: both quaternions of the joint, of norm 1, and their rates.
   void add(const QuaternionJoint& joint, double h, const double* x, const double* rate,

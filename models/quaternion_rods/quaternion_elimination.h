@@ -4,14 +4,16 @@
 
 namespace tress::models {
 
-/// S of a clamped rod with a quaternion for every edge by elimination from the tip to the
-/// root: 7 unknowns of each edge, the change y = (e, q) of the vector along it and of its
-/// quaternion. With x the change of the node before the edge and p that of the quaternion
-/// before it, and what is beyond the edge a matrix over its end and its own quaternion,
+/// Factors S of a clamped rod with a quaternion for every edge by elimination from the
+/// tip to the root. Each edge has 7 unknowns: the change y = (e, q) of the vector along
+/// it and of its quaternion. The change of the node before the edge is x, and that of the
+/// quaternion before it is p. All that follows the edge is a matrix over its end and its
+/// own quaternion:
 ///
 ///     (own + beyond) y + [beyond_x, joint_p] (x, p) = r.
 ///
-/// Changes of edges, not of nodes: masses would be lost beside the stiffness of edges.
+/// Unknowns are changes of edges, not of nodes: masses would be lost next to the
+/// stiffness of edges.
 template <class T>
 struct QuaternionElimination {
   static constexpr int size = 7;
@@ -28,11 +30,11 @@ struct QuaternionElimination {
     T joint[4][4];     // of that on the quaternion before, by q
     T solution[size];  // where the edge before does not move
   };
-  /// Over the end of an edge and its quaternion.
+  /// Matrix over the end of an edge and its quaternion.
   struct Beyond {
     T matrix[size][size] = {};
 
-    /// Of the node at the end: inertia and loads.
+    /// Adds the block of the node at the end: inertia and loads.
     void add_block(const Matrix3<T>& m) {
       for (int k = 0; k < 3; ++k) {
         matrix[k][0] += m.row[k].x;

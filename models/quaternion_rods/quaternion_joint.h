@@ -40,7 +40,7 @@ struct QuaternionJointOf {
   void slope_of_speed(const T* /*x*/, const T* rate, T (&g)[strains][coordinates]) const {
     gradient(rate, g);
   }
-  /// stress . 2 vec(conj(p) q) = 2 p^T form q.
+  /// Adds second derivatives of stress . 2 vec(conj(p) q) = 2 p^T form q.
   void add_second(const T* /*x*/, const T* stress,
                   T (&h)[coordinates][coordinates]) const {
     const Vec3<T> s = T(2) * load3(stress);

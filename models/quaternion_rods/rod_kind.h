@@ -19,7 +19,7 @@ struct QuaternionRodKind {
   std::function<Edge(const Material&, const Segment&)> edge_of;
   double rotary = 0;
 };
-/// With options of the model; null: those by default.
+/// Returns the kind with options of the model; null: default options.
 template <class Edge>
 QuaternionRodKind<Edge> rod_kind(const Parameters* options);
 template <>

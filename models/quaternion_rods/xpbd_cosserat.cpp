@@ -6,7 +6,7 @@
 namespace tress::models {
 namespace {
 
-/// The Cosserat rod of position-based methods [Kugelstadt & Schoemer 2016, with the
+/// Cosserat rod of position-based methods [Kugelstadt & Schoemer 2016, with the
 /// compliances of Deul et al. 2018]: n edges between nodes x_i, a quaternion q_i for the
 /// material frame R of each. With e an edge and l its length at rest,
 ///
@@ -16,7 +16,7 @@ namespace {
 ///       + sum_joints C_b^T diag(GJ, EI1, EI2) C_b/(2 l),
 ///
 /// l of a joint is the mean of its edges. The papers measure C_s in world axes, with one
-/// stiffness, and normalise quaternions after each correction; here C_s is in the
+/// stiffness, and normalise quaternions after each correction. Here C_s is in the
 /// section's axes, R is the frame of q/|q|, and nu keeps the norms as in corde.cpp. The
 /// whole model thus derives from an energy: xpbd uses its ComplianceForm, every other
 /// integrator the general contract, and the two can be compared. Joints, wall at the
@@ -32,16 +32,17 @@ namespace {
 ///
 /// Quaternions have the section's inertia, (r/l)^2 of a node's, plus edge_inertia rho A
 /// l^3, by default none. The papers' weights are free parameters comparable to a node's,
-/// and xpbd needs such weights: with the section's inertia all corrections of shear go
-/// into quaternions, convergence takes thousands of sweeps, and because quaternions turn
+/// and xpbd needs such weights. With the section's inertia all corrections of shear go
+/// into quaternions and convergence takes thousands of sweeps. Because quaternions turn
 /// far on the way, the limit is not the motion of this energy. With 1/2, nodes and
 /// quaternions of an edge have equal weights. It slows swinging and bending in the order
-/// l^2 of the scheme (the error of a release becomes 1.7 times as large) and twisting
-/// most: waves of twist run at sqrt(GJ/(rho A edge_inertia))/l instead of sqrt(G/rho).
+/// l^2 of the scheme (the error of a release becomes 1.7 times as large). It slows
+/// twisting most: waves of twist run at sqrt(GJ/(rho A edge_inertia))/l instead of
+/// sqrt(G/rho).
 ///
-/// The stiffest oscillations turn edges against their shear, with the section's inertia
-/// at sqrt(k GA/(2 rho I)) for any l: explicit methods need steps below the time of a
-/// shear wave across the section.
+/// The stiffest oscillations turn edges against their shear. With the section's inertia
+/// their frequency is sqrt(k GA/(2 rho I)) for any l: explicit methods need steps below
+/// the time of a shear wave across the section.
 ///
 /// Rotations between neighbours stay below 180 degrees, tensions below k GA (beyond it
 /// edges turn out of their frames).

@@ -9,7 +9,7 @@
 
 namespace tress::models {
 
-/// Contribution of a contact to an exact tangent (ExactTangent): derivatives of the
+/// Contribution of a contact to an exact Jacobian (ExactTangent): derivatives of the
 /// positions and velocities of its points by their segments' states and unknowns, and the
 /// effect of a force on them, at the motion held by Kinematics. O(1) per contact.
 template <class Kernel, int modes>

@@ -117,11 +117,11 @@ std::span<const Parameter> force_transport_parameters() {
     for (Parameter p : reduced_parameters()) {
       if (p.name == "solver") {
         p.help =
-            "solver of the stiff tangent; the exact tangent is always a dense matrix";
+            "solver of the elastic Jacobian; the exact Jacobian is always a dense matrix";
         p.choices = "sweep|composite";
-      } else if (p.name == "tangent") {
+      } else if (p.name == "jacobian") {
         p.help = "terms of dr/dq, dr/dv: all; mass, friction, elastic stiffness";
-        p.choices = "exact|stiff";
+        p.choices = "exact|elastic";
       }
       own.push_back(p);
     }

@@ -50,8 +50,8 @@ namespace tress::models {
 /// these equations have none. Passing on only the axial part of the force from beyond
 /// would cause some, but the surviving text does not say how, so it is not implemented.
 ///
-/// The stiff tangent is block lower triangular, one sweep from the root, O(n), unless
-/// options.method is `composite`, which makes it dense; the exact tangent is always
+/// The elastic Jacobian is block lower triangular, one sweep from the root, O(n), unless
+/// options.method is `composite`, which makes it dense; the exact Jacobian is always
 /// dense. Throws InputError unless the strand is a clamped chain (see reduced_strand).
 std::unique_ptr<System> force_transport(const Strand& strand,
                                         const ReducedOptions& options, Effects effects);

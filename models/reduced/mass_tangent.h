@@ -134,10 +134,10 @@ bool like_masses(const Kinematics<Kernel, modes>& kinematics, std::size_t i,
 }
 
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
-/// tangent of the semi-implicit step. The motion of its points and tip is linear in the
-/// acceleration of its start and in its unknowns, J = [I, -[P]x, dP/dq]; the matrix is
-/// sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times minus the
-/// derivatives of the loads, (9) per point, or empty. Expects tip to be zero or the
+/// tangent of the linearly implicit step. The motion of its points and tip is linear in
+/// the acceleration of its start and in its unknowns, J = [I, -[P]x, dP/dq]; the matrix
+/// is sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times minus
+/// the derivatives of the loads, (9) per point, or empty. Expects tip to be zero or the
 /// result of an earlier call.
 template <class Kernel, int modes>
 void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, Weights w,

@@ -21,7 +21,7 @@ namespace tress::models {
 /// Rounding makes L unsymmetric, and near a straight rod, where rotation about its own
 /// axis moves almost no mass, every segment amplifies the asymmetry: after some twenty
 /// segments no digit is left (tests/models/reduced/test_solvers.cpp measures it).
-/// Averaging L with L^T, or eliminating without using symmetry as for exact tangents,
+/// Averaging L with L^T, or eliminating without using symmetry as for exact Jacobians,
 /// also prevents it.
 ///
 /// A pivot may be nearly singular although the whole matrix is far from it: of exact
@@ -92,8 +92,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
  private:
   using Real = typename Shape::Real;
-  // A loss of up to two digits is accepted: of exact tangents it occurs in a third to two
-  // thirds of the states of hard cases, and does not affect Newton's iteration.
+  // A loss of up to two digits is accepted: of exact Jacobians it occurs in a third to
+  // two thirds of the states of hard cases, and does not affect Newton's iteration.
   static constexpr bool refines = !Shape::symmetric || method == TreeMethod::recursive;
   static constexpr double most_growth = 100, most_of_one_sweep = 1e6;
   static constexpr bool may_be_free = lanes<Real> == 1;
@@ -407,7 +407,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
     multiply<1, false>(e.inverse, r_of_s, e.z);
     Square used = e.inverse;
-    if constexpr (method == TreeMethod::less_implicit) {
+    if constexpr (method == TreeMethod::elastic_local) {
       // Friction and stiffness of distal segments are not passed on.
       Square bare;
       copy(pivot, bare);

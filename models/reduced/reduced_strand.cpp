@@ -20,10 +20,10 @@ constexpr Parameter own_parameters[] = {
     {.name = "solver",
      .help = "linear solver; recursive_plain is the textbook update (loses digits)",
      .choices = "recursive|composite|sparse|recursive_plain"},
-    {.name = "tangent",
+    {.name = "jacobian",
      .help = "terms of dr/dq, dr/dv: all; mass, friction, elastic stiffness; the latter "
              "with those of distal segments left out of the recursion",
-     .choices = "exact|stiff|less_implicit"},
+     .choices = "exact|elastic|elastic_local"},
     {.name = "rotary_inertia",
      .help = "rotational inertia of the section about the tangent",
      .choices = "on|off"},
@@ -136,16 +136,16 @@ std::span<const Parameter> reduced_parameters() { return own_parameters; }
 
 ReducedOptions reduced_options(const Parameters& p) {
   const std::string_view modes = p.word("modes"), solver = p.word("solver"),
-                         tangent = p.word("tangent");
+                         jacobian = p.word("jacobian");
   ReducedOptions options;
   options.dofs = modes == "bend_twist" ? 3 : modes == "bend" ? 2 : 1;
   options.method = solver == "composite"    ? TreeMethod::composite
                    : solver == "sparse"     ? TreeMethod::sparse
                    : solver == plain_solver ? TreeMethod::recursive_plain
                                             : TreeMethod::recursive;
-  options.tangent = tangent == "exact"   ? ReducedTangent::exact
-                    : tangent == "stiff" ? ReducedTangent::stiff
-                                         : ReducedTangent::less_implicit;
+  options.jacobian = jacobian == "exact"     ? ReducedJacobian::exact
+                     : jacobian == "elastic" ? ReducedJacobian::elastic
+                                             : ReducedJacobian::elastic_local;
   options.rotary_inertia = p.word("rotary_inertia") == "on";
   options.quadrature = p.whole("quadrature");
   return options;
@@ -239,9 +239,9 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   reduced.root = strand.root;
   reduced.free_root = strand.free_root;
   reduced.effects = std::move(effects);
-  reduced.tangent = options.tangent;
-  reduced.method = options.tangent == ReducedTangent::less_implicit
-                       ? TreeMethod::less_implicit
+  reduced.jacobian = options.jacobian;
+  reduced.method = options.jacobian == ReducedJacobian::elastic_local
+                       ? TreeMethod::elastic_local
                        : options.method;
   double winding = 0;
   for (const Segment& segment : strand.segments) {

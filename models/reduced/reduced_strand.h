@@ -59,13 +59,13 @@ struct ReducedSegmentOf {
 };
 using ReducedSegment = ReducedSegmentOf<double>;
 
-/// Terms of the tangent. less_implicit: the stiff tangent, solved by our reconstruction
-/// of a recursion that is "less implicit" than the composite matrix.
-enum class ReducedTangent { exact, stiff, less_implicit };
+/// Terms of the Jacobian. elastic_local: the elastic Jacobian, solved by our
+/// reconstruction of a recursion that is "less implicit" than the composite matrix.
+enum class ReducedJacobian { exact, elastic, elastic_local };
 
 struct ReducedOptions {
   int dofs = 3;  // 3: bend_twist, 2: bend, 1: bend_planar
-  ReducedTangent tangent = ReducedTangent::exact;
+  ReducedJacobian jacobian = ReducedJacobian::exact;
   TreeMethod method = TreeMethod::recursive;
   /// The section's rotational inertia about the tangent, rho (I1 + I2) per length, lumped
   /// at the ends of helices (trapezoidal rule), for a rigid link as a whole. Without it
@@ -92,7 +92,7 @@ struct ReducedStrand {
   double root_rotor = 0;  // as ReducedSegment::rotor, of the root
   Frame to_tip;  // from the frame of the last segment's tip to its section's, at rest
   Effects effects;
-  ReducedTangent tangent = ReducedTangent::exact;
+  ReducedJacobian jacobian = ReducedJacobian::exact;
   TreeMethod method = TreeMethod::recursive;
   double unknown_scale = 1;  // reduced_scale()
   double length = 1;         // m

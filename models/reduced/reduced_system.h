@@ -35,7 +35,7 @@ class ReducedSystem : public System,
                       protected History {
  public:
   explicit ReducedSystem(ReducedStrand strand)
-      : exact_(strand.tangent == ReducedTangent::exact),
+      : exact_(strand.jacobian == ReducedJacobian::exact),
         regular_mass_(strand.regular_mass),
         unknown_scale_(strand.unknown_scale),
         length_(strand.length),

@@ -26,7 +26,7 @@ std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& 
 /// are ordered strand after strand; effects of a strand see only its own points. All use
 /// the largest number of quadrature points that any strand needs. Throws InputError
 /// unless all strands are clamped and of equal discretisation, and options select the
-/// stiff tangent and `recursive`.
+/// elastic Jacobian and `recursive`.
 std::unique_ptr<System> super_helix_batch(std::span<const Strand> strands,
                                           const ReducedOptions& options,
                                           std::vector<Effects> effects);

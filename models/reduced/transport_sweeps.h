@@ -5,7 +5,7 @@
 
 namespace tress::models {
 
-/// The equations of ForceTransport and their stiff tangent, in O(n).
+/// The equations of ForceTransport and their elastic Jacobian, in O(n).
 template <class Kernel, int dofs>
 class TransportSweeps {
  public:

@@ -21,8 +21,8 @@ std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
       return std::make_unique<RecursiveSolver<Shape, TreeMethod::recursive_plain>>(
           structure);
     }
-    if (method == TreeMethod::less_implicit) {
-      return std::make_unique<RecursiveSolver<Shape, TreeMethod::less_implicit>>(
+    if (method == TreeMethod::elastic_local) {
+      return std::make_unique<RecursiveSolver<Shape, TreeMethod::elastic_local>>(
           structure);
     }
   }

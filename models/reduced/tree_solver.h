@@ -9,13 +9,13 @@
 
 namespace tress::models {
 
-/// Solver for the linear problem of a tree; all but `less_implicit` give the same x.
+/// Solver for the linear problem of a tree; all but `elastic_local` give the same x.
 enum class TreeMethod {
   recursive,        // two sweeps, O(N); stays definite for symmetric problems
   composite,        // dense matrix in O(N^2), Cholesky or LU in O(N^3)
   sparse,           // states, unknowns and wrenches in one system, KLU
   recursive_plain,  // two sweeps by the textbook update, which loses digits (a pitfall)
-  less_implicit,    // our reconstruction of a recursion that leaves the friction and
+  elastic_local,    // our reconstruction of a recursion that leaves the friction and
                     // stiffness of distal segments out of the elimination
 };
 
@@ -43,7 +43,7 @@ class TreeSolver {
   virtual bool respond(std::span<const Load>, Out /*blocks*/) noexcept { return false; }
 };
 
-/// The last two methods exist for symmetric shapes; exact tangents get `recursive`.
+/// The last two methods exist for symmetric shapes; exact Jacobians get `recursive`.
 template <class Shape>
 std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
                                                     const TreeTangent<Shape>& structure);

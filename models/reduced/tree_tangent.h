@@ -11,7 +11,7 @@ namespace tress::models {
 /// Size of a reduced-coordinate linear problem. Every segment passes `states` numbers
 /// from its start to its tip, returns a wrench of `wrench` numbers, and has `dofs`
 /// unknowns of its own. Symmetric problems (mass, friction and stiffness only) have
-/// states == wrench: the acceleration of the frame. The exact tangent carries
+/// states == wrench: the acceleration of the frame. The exact Jacobian carries
 /// displacement, velocity and acceleration: states == 3 wrench. Real = Pack: four
 /// problems side by side.
 template <int states_, int wrench_, int dofs_, class Real_ = double>
@@ -86,8 +86,8 @@ auto with_hanging(
   return full;
 }
 
-/// Tangent of a free root: its 6 unknowns y give the state s = transfer y at the start of
-/// the first segments, and local y + lift (sum of their w) = b.
+/// Jacobian of a free root: its 6 unknowns y give the state s = transfer y at the start
+/// of the first segments, and local y + lift (sum of their w) = b.
 template <class Shape>
 struct RootTangent {
   template <int r, int c>

@@ -7,9 +7,9 @@
 
 namespace tress::models {
 
-/// A cubic B-spline r(s) = sum_k N_k(s) P_k, C^2, over given spans (m, arc length at
-/// rest) with fourfold end knots: n spans and n + 3 control points; r and r' at an end
-/// depend only on its first two control points. Span i uses control points i to i + 3.
+/// Cubic B-spline r(s) = sum_k N_k(s) P_k, C^2, over given spans (m, arc length at rest)
+/// with fourfold end knots: n spans and n + 3 control points. At an end r and r' depend
+/// only on the first two control points. Span i uses control points i to i + 3.
 class CubicSpline {
  public:
   explicit CubicSpline(const std::vector<double>& spans);

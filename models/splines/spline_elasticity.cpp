@@ -8,8 +8,8 @@ namespace {
 
 using Point = SplineElasticity::Point;
 
-/// The energy as a function of A = a . a, B = b . b and C = a . b, its derivatives:
-/// stretch (sqrt A - l)^2/2 + bend (B/A - C^2/A^2)/2, of which the first is given by its
+/// Energy as a function of A = a . a, B = b . b and C = a . b, and its derivatives:
+/// stretch (sqrt A - l)^2/2 + bend (B/A - C^2/A^2)/2. The stretch is given by its
 /// tension.
 struct Slopes {
   Slopes(const Point& point, const Vec& a, const Vec& b, double tension) {

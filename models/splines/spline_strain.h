@@ -16,8 +16,8 @@ double value_of(const Dual<n, T>& x) {
 }
 
 /// Twist over the span (rad): that of joint_strain.h between the frames of its knots,
-/// less `rest`, with the whole turns that bring it nearest to `near`. x = (r'-, theta-,
-/// r'+, theta+).
+/// less `rest`. The whole turns are those that bring it nearest to `near`. x = (r'-,
+/// theta-, r'+, theta+).
 struct SplineTwist {
   static constexpr int strains = 1, coordinates = 8;
   const Frame* reference = nullptr;  // of the knots, two
@@ -43,7 +43,7 @@ struct SplineTwist {
 ///     kappa_j = kappa . ((1 - part) e_j- + part e_j+).
 ///
 /// Rotation about a normal to the curve's plane has no effect, so this is exact for plane
-/// bending; otherwise the error is the squared rotation between the frames. x = (r'-,
+/// bending. Otherwise the error is the squared rotation between the frames. x = (r'-,
 /// theta-, r'+, theta+, r', r'').
 struct SplineBend {
   static constexpr int strains = 2, coordinates = 14;

@@ -10,7 +10,7 @@ namespace tress::models {
 /// frame at 0.
 Frame helix_turn(const Vec& darboux, double s);
 
-/// Which of a strand's two shapes: Segment::natural or Segment::initial.
+/// Choice between a strand's two shapes: Segment::natural or Segment::initial.
 enum class ShapeOf { natural, initial };
 
 /// The n + 1 sections at the root (located at `root`) and at the tips of all segments of

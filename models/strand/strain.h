@@ -4,9 +4,9 @@
 
 namespace tress::models {
 
-/// Twist and curvatures (about e0, e1, e2) of a segment that vary linearly along it, from
-/// mean - half at its start to mean + half at its tip: with x the arc length over the
-/// segment's,
+/// Twist and curvatures (about e0, e1, e2) of a segment that vary linearly along it. They
+/// go from mean - half at its start to mean + half at its tip. With x the arc length over
+/// the segment's,
 ///
 ///     kappa(x) = mean + (2 x - 1) half.
 ///
@@ -27,7 +27,7 @@ struct LinearStrainOf {
   friend LinearStrainOf operator*(const T& s, const LinearStrainOf& a) {
     return {s * a.mean, s * a.half};
   }
-  /// Over all entries.
+  /// Returns the dot product over all entries.
   friend T dot(const LinearStrainOf& a, const LinearStrainOf& b) {
     return dot(a.mean, b.mean) + dot(a.half, b.half);
   }

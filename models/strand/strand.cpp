@@ -21,8 +21,9 @@ constexpr GaussPoint gauss8[] = {{0.18343464249564980, 0.36268378337836198},
                                  {0.79666647741362674, 0.22238103445337447},
                                  {0.96028985649753623, 0.10122853629037626}};
 
-/// The linear function nearest to a shape in the mean square: its mean, and the slope
-/// that 3 times the mean of (2 x - 1) shape gives; that of a constant is zero exactly.
+/// Returns the linear function nearest to a shape in the mean square. Its mean is that of
+/// the shape, its slope 3 times the mean of (2 x - 1) shape; the slope of a constant is
+/// exactly zero.
 LinearStrain projection(const Shape& shape, double from, double length) {
   const double half = length / 2;
   LinearStrain sum;

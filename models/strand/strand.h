@@ -48,9 +48,10 @@ struct Strand {
 /// length s in [0, length], 1/m.
 using Shape = std::function<Vec(double s)>;
 Shape uniform_shape(Vec darboux);
-/// A helix of given radius and pitch (rise per turn, m): curvature radius/(radius^2 +
-/// c^2) about e1 and twist c/(radius^2 + c^2) with c = pitch/(2 pi); right-handed for
-/// pitch > 0. Throws InputError unless radius > 0 and both are finite.
+/// Returns a helix of given radius and pitch (rise per turn, m). The curvature is
+/// radius/(radius^2 + c^2) about e1 and the twist c/(radius^2 + c^2) with c = pitch/(2
+/// pi); right-handed for pitch > 0. Throws InputError unless radius > 0 and both are
+/// finite.
 Shape helix_shape(double radius, double pitch);
 /// A planar wave: curvature about e1 amplitude cos(2 pi s/wavelength), amplitude in 1/m.
 /// Throws InputError unless both are finite and wavelength > 0.
@@ -64,11 +65,11 @@ struct Discretisation {
   double grading = 1;
 };
 
-/// A chain of segments; natural shapes are averaged over each segment, and projected to
-/// linear ones (Gauss-Legendre, 8 points: exact for polynomials of degree 14, 1e-9 of the
-/// amplitude for a wave as long as the segment); `initial` is the natural shape unless
-/// given. Throws InputError unless there are elements, lengths are positive and numbers
-/// finite.
+/// Makes a chain of segments. Natural shapes are averaged over each segment, and
+/// projected to linear ones (Gauss-Legendre, 8 points). The rule is exact for polynomials
+/// of degree 14, and within 1e-9 of the amplitude for a wave as long as the segment.
+/// `initial` is the natural shape by default. Throws InputError unless there are
+/// elements, lengths are positive and numbers finite.
 Strand make_strand(const Material& material, const CrossSection& section,
                    const Discretisation& cut, const Shape& natural,
                    const Shape& initial = {});

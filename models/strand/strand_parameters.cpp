@@ -39,25 +39,25 @@ constexpr Parameter geometry_table[] = {
      .number = 1,
      .min = 1e-3,
      .max = 1e3},
-    {.name = "natural_curvature_1_m",
+    {.name = "natural_curvature_per_m",
      .help = "curvature about e1 at rest (1/m)",
      .number = 0,
      .min = -1e6,
      .max = 1e6},
-    {.name = "natural_curvature2_1_m",
+    {.name = "natural_curvature2_per_m",
      .help = "curvature about e2 at rest (1/m)",
      .number = 0,
      .min = -1e6,
      .max = 1e6},
-    {.name = "natural_twist_1_m",
+    {.name = "natural_twist_per_m",
      .help = "twist about the tangent at rest (1/m)",
      .number = 0,
      .min = -1e6,
      .max = 1e6},
     {.name = "initial",
-     .help = "shape at t = 0; bent: natural with initial_curvature_1_m more",
+     .help = "shape at t = 0; bent: natural with initial_curvature_per_m more",
      .choices = "natural|straight|bent"},
-    {.name = "initial_curvature_1_m",
+    {.name = "initial_curvature_per_m",
      .help = "initial = bent: curvature about e1 added to the natural one (1/m)",
      .number = 0,
      .min = -1e6,
@@ -99,7 +99,7 @@ constexpr Parameter material_table[] = {
      .number = 0,
      .min = 0,
      .max = 1e6},
-    {.name = "mass_damping_1_s",
+    {.name = "mass_damping_per_s",
      .help = "damping c m v; on a uniform strand drag nu = c rho A (1/s)",
      .number = 0,
      .min = 0,
@@ -161,8 +161,8 @@ CrossSection section(const Parameters& p) {
 }
 
 Vec natural_darboux(const Parameters& p) {
-  return {p.number("natural_twist_1_m"), p.number("natural_curvature_1_m"),
-          p.number("natural_curvature2_1_m")};
+  return {p.number("natural_twist_per_m"), p.number("natural_curvature_per_m"),
+          p.number("natural_curvature2_per_m")};
 }
 
 Vec initial_darboux(const Parameters& p) {
@@ -170,7 +170,7 @@ Vec initial_darboux(const Parameters& p) {
   if (initial == "straight") return {};
   const Vec natural = natural_darboux(p);
   if (initial == "natural") return natural;
-  return natural + p.number("initial_curvature_1_m") * y_axis;
+  return natural + p.number("initial_curvature_per_m") * y_axis;
 }
 
 }  // namespace
@@ -256,7 +256,7 @@ Effects strand_effects(const Parameters& parameters) {
   const double gravity = parameters.number("gravity_m_s2");
   if (gravity != 0) effects.push_back(std::make_unique<Gravity>(gravity * down));
   const double drag = parameters.number("drag_kg_m_s");
-  const double mass_damping = parameters.number("mass_damping_1_s");
+  const double mass_damping = parameters.number("mass_damping_per_s");
   if (drag != 0 || mass_damping != 0) {
     effects.push_back(std::make_unique<LinearDrag>(drag, mass_damping));
   }

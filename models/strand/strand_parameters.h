@@ -40,8 +40,8 @@ Material material(const Parameters& parameters);
 ///     stop           sideways at speed_m_s, from t = 0 to rest in time_s
 ///     drop_pull      down by amplitude_m in half a period, up again in the next half
 RootMotion root_motion(const Parameters& parameters);
-/// For motion = free: at the origin, at rest except for spin_rad_s about (1, 1,
-/// 1)/sqrt 3.
+/// Returns the root for motion = free: at the origin, at rest except for spin_rad_s about
+/// (1, 1, 1)/sqrt 3.
 std::optional<FreeRoot> free_root(const Parameters& parameters);
 
 /// Gravity along -z, and drag with mass-proportional damping as one effect; zero effects

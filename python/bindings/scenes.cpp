@@ -24,8 +24,9 @@ double radius_of(const Segment& segment) {
   return std::sqrt(segment.section.a1 * segment.section.a2);
 }
 
-/// Radius (m) of the circle of the section's area at each point: at the tip of each
-/// segment where a strand has one point more than segments, else that of its root.
+/// Returns the radius (m) of the circle of the section's area at each point. It is that
+/// at the tip of each segment where a strand has one point more than segments, otherwise
+/// that of its root.
 std::vector<double> radii(const Scene& scene, const std::vector<int>& points) {
   std::vector<double> all;
   for (std::size_t k = 0; k < points.size(); ++k) {

@@ -6,7 +6,7 @@ import tress
 
 for model in ("der", "super_helix"):
     strand = tress.model(
-        model, elements=40, natural_curvature_1_m=100, natural_twist_1_m=30, gravity_m_s2=0
+        model, elements=40, natural_curvature_per_m=100, natural_twist_per_m=30, gravity_m_s2=0
     )
     q, _ = strand.initial_state()
     mass, stiffness = strand.mass(0, q), strand.stiffness(0, q)

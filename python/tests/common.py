@@ -11,8 +11,8 @@ BUILD = ROOT / "build" / "release"
 
 # The curl of reference.cpp: 10 cm, radius 40 um, curvature 100/m, twist 30/m, no weight.
 CURL = dict(
-    length_m=0.1, radius_m=40e-6, poisson_ratio=0.5, natural_curvature_1_m=100,
-    natural_twist_1_m=30, root_tangent="x", gravity_m_s2=0,
+    length_m=0.1, radius_m=40e-6, poisson_ratio=0.5, natural_curvature_per_m=100,
+    natural_twist_per_m=30, root_tangent="x", gravity_m_s2=0,
 )  # fmt: skip
 
 

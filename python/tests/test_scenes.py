@@ -97,7 +97,7 @@ class Running(unittest.TestCase):
 
     def test_heads(self):
         scene = tress.Scene.read(SCENES / "head_moving_vertical.toml")
-        head = scene.changed({"duration_s": 0.02, "integrator.id": "semi_implicit_euler"})
+        head = scene.changed({"duration_s": 0.02, "integrator.id": "linearly_implicit_euler"})
         try:
             frames = head.run(kind="head")
         except tress.InputError as error:

@@ -5,8 +5,7 @@
 
 #include "simulation/device/cuda_driver.h"
 
-/// What belongs to a device and is given back with its owner. All calls throw
-/// DeviceFailure.
+/// Resources of a device that their owners release. All calls throw DeviceFailure.
 namespace tress::simulation {
 
 class CudaModule {
@@ -53,7 +52,7 @@ class CudaStream {
   void synchronize() const {
     device_.check(device_.driver().cuStreamSynchronize(stream_), "cuStreamSynchronize");
   }
-  /// What follows here waits for what the event has recorded.
+  /// Makes the following work wait for the work that the event has recorded.
   void wait(const CudaEvent& event) const;
 
  private:

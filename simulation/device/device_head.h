@@ -29,9 +29,9 @@ class DeviceHead {
   using Share = std::function<void(std::size_t count,
                                    const std::function<void(std::size_t)>& work)>;
 
-  /// Of the device.
+  /// Returns the name of the device.
   virtual const std::string& name() const = 0;
-  /// From t to t + h (s), some time before fetch() returns.
+  /// Steps the strands from t to t + h (s), at some time before fetch() returns.
   virtual void step(double t, double h) = 0;
   /// Puts the strands where all steps so far have brought them; those that were lost.
   /// Throws DeviceFailure where the device fails; the head is then as it was before.
@@ -42,9 +42,9 @@ class DeviceHead {
 
 /// Why no device can step a head, whatever the machine; nothing if one can.
 std::optional<models::HeadRefusal> refused_by_device(const Head& head);
-/// On the first device. `head` must outlive it and not be refused.
+/// Makes a batch on the first device. `head` must outlive it and must not be refused.
 /// Throws DeviceFailure if there is no device or it cannot hold the strands. Slices of
-/// the size given keep a large device busy; with one slice nothing overlaps.
+/// the given size keep a large device busy; with one slice nothing overlaps.
 std::unique_ptr<DeviceHead> device_head(Head& head, std::size_t slice_strands = 32768);
 
 }  // namespace tress::simulation

@@ -51,9 +51,9 @@ Places by_length(const Strand& strand, std::size_t points) {
   return places;
 }
 
-/// A point between those of another run, by the cubic through the nearest four, whose
-/// error is of order 4, as errors in space of the most accurate model; with equal
-/// elements, every point is also a point of the run with twice the elements.
+/// Point between those of another run, by the cubic through the nearest four. Its error
+/// is of order 4, as the error in space of the most accurate model. With equal elements,
+/// every point is also a point of the run with twice the elements.
 struct Sample {
   std::size_t first = 0, count = 0;
   std::array<double, 4> weight{};

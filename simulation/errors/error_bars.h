@@ -26,8 +26,8 @@ struct StrandError {
   std::optional<double> parts;  // s, the first frame at which they are apart
 };
 
-/// The estimated error of a run in time or in space: its distance from a finer run,
-/// divided by the part of the error that the finer run does not have [Richardson 1911].
+/// Estimated error of a run in time or in space [Richardson 1911]: its distance from a
+/// finer run, divided by the part of the error that the finer run lacks.
 struct ErrorBar {
   std::vector<StrandError> strands;
   /// Errors at every frame over all strands that have not parted, until all have.
@@ -46,19 +46,20 @@ struct ErrorBar {
 };
 
 /// Bounds of the largest error, as multiples of its estimate, that held in at least 90 %
-/// of the calibration runs. Those are of six clamped hairs (13 to 25 cm; straight, wavy,
-/// curled; released, shaken, turned; with and without drag) by three models (super_helix,
-/// articulated_chain, der), in time by five methods each. A bare estimate is exceeded by
-/// half of them. tests/control/test_error_bound.cpp measures the shares.
+/// of the calibration runs. The runs are of six clamped hairs (13 to 25 cm; straight,
+/// wavy, curled; released, shaken, turned; with and without drag). Three models
+/// (super_helix, articulated_chain, der) were run, in time with five methods each. Half
+/// of the runs exceed a bare estimate. tests/control/test_error_bound.cpp measures the
+/// shares.
 constexpr double time_bound = 1.5, space_bound = 1.5;
 /// The population in words, for where a bound is printed.
 constexpr std::string_view time_population = "90 runs of 6 clamped hairs",
                            space_population = "14 runs of 6 clamped hairs";
 
-/// Against a run with half the step, or with a tenth of the tolerance (of rtol and atol),
-/// whose own error is neglected. The scene's method is taken to have the order that it
-/// declares: where contact or friction lower that to 1, a method of order 2 has an error
-/// up to 3/2 of the estimate.
+/// Estimates the error against a run with half the step, or with a tenth of the tolerance
+/// (of rtol and atol), whose own error is neglected. The scene's method is assumed to
+/// have its declared order. Where contact or friction lower the order to 1, a method of
+/// order 2 has an error up to 3/2 of the estimate.
 ErrorBar time_error(const Scene& scene, int threads);
 
 /// Distance of two runs of one scene with two meshes, at equal arc length, times

@@ -31,8 +31,8 @@ int most_elements(const Scene& scene, std::size_t strand) {
   return source_of(scene, strand).table.values().whole("elements");
 }
 
-/// Returns the number of elements that leaves the error at `aim` of the tolerance, by
-/// the model's order: at least one more than now, and no more than the finer run had.
+/// Returns the number of elements that leaves the error at `aim` of the tolerance, by the
+/// model's order. It is at least one more than now, and no more than the finer run had.
 int more_elements(const Pilot::OfStrand& now, bool parted, int order) {
   if (parted) return 2 * now.elements;
   const double wanted =

@@ -8,7 +8,7 @@
 namespace tress::simulation {
 
 /// Numbers of elements that keep the tolerances of [strand] tables in motion, found by
-/// trial: the scene runs with the numbers for its shapes at rest and with twice these
+/// trial. The scene runs with the numbers for its shapes at rest and with twice these
 /// numbers. Where the estimated error in space (error_bars.h) is above a strand's
 /// tolerance at some frame, the strand gets more, up to its `elements`.
 struct Pilot {
@@ -33,9 +33,9 @@ struct Pilot {
 /// Whether a [strand] has a tolerance.
 bool wants_pilot(const Scene& scene);
 
-/// Throws InputError, naming the tolerance, where no estimate is possible: models whose
-/// points are not compared, and motion that no number of elements up to the limit
-/// brings together with a finer run, as chaos is.
+/// Runs the trials. Throws InputError, naming the tolerance, where no estimate is
+/// possible. That is the case for models whose points are not compared, and for chaotic
+/// motion, which differs from a finer run for every number of elements.
 Pilot pilot(const Scene& scene, int threads);
 
 }  // namespace tress::simulation

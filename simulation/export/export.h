@@ -35,16 +35,16 @@ struct Animation {
 /// thinned evenly to about `most_bytes`, but not below 24 frames.
 std::string page_json(const Animation& animation, std::size_t most_bytes = 500'000);
 
-/// Return the files for ParaView: one .vtp per frame (PolyData, appended raw, float32)
-/// with every channel, radius and strand as point data and the time as field data, and
-/// the .pvd that lists them with their times [VTK file formats, XML].
+/// Returns the files for ParaView. Each frame is one .vtp (PolyData, appended raw,
+/// float32) with every channel, radius and strand as point data and the time as field
+/// data. The .pvd lists them with their times [VTK file formats, XML].
 std::string vtp(const Animation& animation, const Frame3d& frame);
 std::string pvd(const Animation& animation, const std::string& stem);
 std::string vtp_name(const std::string& stem, std::size_t frame);
 
-/// For Blender, Houdini: USD text with one animated BasisCurves [OpenUSD, UsdGeom]; time
-/// codes count the scene's frames, primvars:strand is the strand of each curve, and the
-/// extent of each frame is that of the points and half the largest width.
+/// Returns USD text with one animated BasisCurves, for Blender and Houdini [OpenUSD,
+/// UsdGeom]. Time codes count the scene's frames, and primvars:strand is the strand of
+/// each curve. The extent of each frame is that of the points and half the largest width.
 std::string usda(const Animation& animation);
 
 /// Returns a file for renderers: one .hair per frame [Yuksel], with the time and the
@@ -53,12 +53,12 @@ std::string usda(const Animation& animation);
 std::string hair(const Animation& animation, const Frame3d& frame);
 std::string hair_name(const std::string& stem, std::size_t frame);
 
-/// For viewers, engines and Blender: binary glTF 2.0 [Khronos] of one mesh of lines,
-/// whose points' _STRAND tells the strands apart: a primitive for each would need
-/// accessors for each strand of each frame. Every frame but the first is a morph target,
-/// of places and channels, and the animation blends them at their times. _RADIUS is the
-/// radius; what channels are called and their units is in the mesh's extras. Throws
-/// InputError on what such a file cannot hold.
+/// Returns binary glTF 2.0 [Khronos] of one mesh of lines, for viewers, engines and
+/// Blender. The attribute _STRAND of its points distinguishes the strands: a primitive
+/// for each would need accessors for each strand of each frame. Every frame but the first
+/// is a morph target, of places and channels, and the animation blends them at their
+/// times. The attribute _RADIUS is the radius. The mesh's extras contain the names and
+/// units of channels. Throws InputError on data that such a file cannot hold.
 std::string glb(const Animation& animation);
 
 }  // namespace tress::simulation

@@ -163,8 +163,8 @@ std::vector<std::uint32_t> pieces(const std::vector<int>& lines) {
   return ends;
 }
 
-/// At the time of frame f the weight of target f - 1 is one and all others are zero, so
-/// that linear blending of the weights is that of the frames.
+/// Returns the animation. At the time of frame f the weight of target f - 1 is one and
+/// all others are zero. Linear blending of the weights is therefore that of the frames.
 ordered_json animation_of(const Animation& animation, Arrays& arrays) {
   const std::size_t frames = animation.frames.size();
   std::vector<float> times;

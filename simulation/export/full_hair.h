@@ -23,9 +23,10 @@ GuideHair hair_that_follows(std::span<const Strand> guides,
 /// guide. Where grooms have guides, the strands that follow these, with their own shapes.
 class FullHair {
  public:
-  /// `guides`: points of each simulated line. Throws InputError when hairs > 0 and the
-  /// lines are not strands with equal numbers of points, or fewer than three, or have
-  /// followers, for which one guide is enough. hairs = 0: draws the followers only.
+  /// Prepares the hair. `guides`: points of each simulated line. hairs = 0: draws the
+  /// followers only. With hairs > 0, throws InputError unless the lines are at least
+  /// three strands with equal numbers of points and without followers, for which one
+  /// guide is enough.
   FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
 
   std::size_t hairs() const { return hair_ ? hair_->hairs() : 0; }

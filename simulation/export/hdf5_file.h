@@ -32,11 +32,11 @@ class Hdf5Handle {
 /// Numbers of an HDF5 file, little-endian on disk.
 enum class Hdf5Type { float32, float64, int32 };
 
-/// An HDF5 file of datasets with two or three dimensions, the first of which may grow
-/// [The HDF Group, HDF5 1.10]. What it says about itself changes on disk at flush() only:
-/// a file whose writer was killed, or could not write on, holds what the last flush left,
-/// unless that happened within a flush (FileState helps).
-/// Throws InputError with HDF5's own reason whenever a call fails.
+/// HDF5 file of datasets with two or three dimensions, the first of which may grow [The
+/// HDF Group, HDF5 1.10]. Its metadata change on disk at flush() only. A file whose
+/// writer was killed, or could not write on, holds the data of the last flush, unless
+/// that happened within a flush (FileState helps). Throws InputError with HDF5's own
+/// reason whenever a call fails.
 class Hdf5File {
  public:
   enum class Mode { create, extend, read };

@@ -76,7 +76,7 @@ HeadFrames::HeadFrames(const std::string& stem, const Scene& scene, StrandCount 
   file_.set("model", std::string(scene.model->id));
   file_.set("integrator", scene.integrator);
   if (scene.options.tolerance > 0) {
-    file_.set("tolerance", scene.options.tolerance);
+    file_.set("position_tol_rel", scene.options.tolerance);
   } else {
     file_.set("dt_s", scene.options.step);
   }

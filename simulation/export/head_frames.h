@@ -23,18 +23,18 @@ struct StoredFrames {
   std::vector<std::string> columns;  // of the series, the first of which is the time
 };
 
-/// The frames of a head on disk, <stem>.h5:
+/// Frames of a batch on disk, <stem>.h5:
 ///
 ///     positions/000000 ... (strands points, 3), m, one for each frame
 ///     connectivity (strands, points)   series (frames, columns)
 ///     shown/positions (frames, shown points, 3), shown/strands
 ///
-/// and how ParaView reads them as polylines, <stem>.xdmf: its readers of XDMF 2 and 3
-/// agree on whole datasets only, so that each frame is one. Strands are shuffled and
-/// compressed by a crew, a thousand or two as one chunk; a frame is in the file once
-/// written. Memory: one compressed frame. A killed run leaves the frames before the one
-/// that it was writing; where it was killed while HDF5 wrote what the file says about
-/// itself, they can be read once it was resumed.
+/// and their description for ParaView as polylines, <stem>.xdmf. ParaView's readers of
+/// XDMF 2 and 3 agree on whole datasets only, so each frame is one dataset. A crew
+/// shuffles and compresses the strands, one or two thousand per chunk. A frame is in the
+/// file once written. Memory: one compressed frame. A killed run leaves the frames before
+/// the one that it was writing. If it was killed while HDF5 wrote metadata, the frames
+/// can be read once the run was resumed.
 class HeadFrames {
  public:
   /// A new file.

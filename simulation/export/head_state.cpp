@@ -26,7 +26,7 @@ SavedHead::SavedHead(const std::string& file, const RunKey& key, std::size_t str
   std::vector<double> when;
   std::vector<std::uint64_t> sizes;
   std::string reasons;
-  for (const LostStrand& lost : progress.lost) {
+  for (const FailedStrand& lost : progress.lost) {
     which.push_back(lost.strand);
     when.push_back(lost.t);
     sizes.push_back(lost.reason.size());

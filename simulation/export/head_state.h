@@ -9,7 +9,7 @@
 #include "simulation/files/file_state.h"
 #include "simulation/files/files.h"
 #include "simulation/files/run_key.h"
-#include "simulation/run/lost_strand.h"
+#include "simulation/run/failed_strand.h"
 
 namespace tress::simulation {
 
@@ -17,7 +17,7 @@ namespace tress::simulation {
 struct HeadProgress {
   std::vector<std::uint64_t> sums;  // checksums of the frames that are written
   std::size_t step = 0;             // taken towards the next one
-  std::vector<LostStrand> lost;     // in the order in which they were
+  std::vector<FailedStrand> lost;   // in the order in which they were
   FileState frames;                 // of HeadFrames
 };
 

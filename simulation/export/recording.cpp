@@ -73,13 +73,13 @@ std::string state_text(const std::string& key, const Saved& saved) {
   for (const auto& coupling : s.couplings) bytes.put_sized(coupling);
   std::vector<std::uint64_t> which;
   std::vector<double> when;
-  for (const LostStrand& one : s.lost) {
+  for (const FailedStrand& one : s.lost) {
     which.push_back(one.strand);
     when.push_back(one.t);
   }
   bytes.put_sized(which);
   bytes.put_sized(when);
-  for (const LostStrand& one : s.lost) {
+  for (const FailedStrand& one : s.lost) {
     bytes.put_sized(std::vector<char>(one.reason.begin(), one.reason.end()));
   }
   return sealed(bytes.text());

@@ -13,9 +13,9 @@
 namespace tress::simulation {
 
 /// Records a run to disk as it proceeds: every frame (<stem>.frames), the time series
-/// (<stem>.csv) and the last saved state (<stem>.state), which holds its own checksum and
-/// that of the frames up to it. A killed run has all frames but the current one; the next
-/// run continues at the saved state.
+/// (<stem>.csv) and the last saved state (<stem>.state). The state file holds its own
+/// checksum and that of the frames up to it. A killed run has all frames but the current
+/// one; the next run continues at the saved state.
 class Recording {
  public:
   /// Starts a new recording, or with `resume` continues an existing one. Throws

@@ -65,9 +65,10 @@ struct Bends {
   }
 
  private:
-  /// Cosine of the turn of element j by least squares of a_{i-1} + a_{i+1} = 2 cos(theta)
-  /// a_i at its two ends, or at the nearest points that have two neighbours; with three
-  /// elements of the angle between the only two a_i.
+  /// Returns the cosine of the turn of element j, by least squares of a_{i-1} + a_{i+1} =
+  /// 2 cos(theta) a_i. The equations are those at its two ends, or at the nearest points
+  /// that have two neighbours. With three elements: the cosine of the angle between the
+  /// only two a_i.
   double cosine(std::size_t j) const {
     const std::size_t n = theta.size();
     if (n == 3) {

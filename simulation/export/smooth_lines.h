@@ -15,9 +15,9 @@ namespace tress::simulation {
 ///     w(u) = (sin(theta u)/sin(theta) - u) / (2 - 2 cos(theta)),  u (1 - u^2)/6 at 0
 ///
 /// where a_i is the second divided difference at x_i, h^2 a_i = x_{i+1} - 2 x_i + x_{i-1}
-/// for equal chords: on a helix of theta per element it points to the axis and x(u) is
-/// the interpolant by (1, u, cos, sin)(theta u). theta is determined from the points, as
-/// a_{i-1} + a_{i+1} = 2 cos(theta) a_i there, limited to [0, 150 degrees].
+/// for equal chords. On a helix of theta per element it points to the axis, and x(u) is
+/// the interpolant by (1, u, cos, sin)(theta u). The angle theta is determined from the
+/// points, as a_{i-1} + a_{i+1} = 2 cos(theta) a_i there, limited to [0, 150 degrees].
 ///
 /// An element is divided into pieces so that no chord is farther from the curve than a
 /// thousandth of the line's length, half a pixel if that fills 500 pixels. With k pieces
@@ -35,7 +35,8 @@ class SmoothLines {
   /// Number of points of each line, including intermediate ones.
   const std::vector<int>& lines() const { return smooth_; }
   std::size_t points() const { return points_; }
-  std::vector<float> positions(const Frame3d& frame) const;  // (3 points)
+  /// Returns the positions of the drawn points, (3 points), m.
+  std::vector<float> positions(const Frame3d& frame) const;
   /// (points) of the first channel, of the second ...; linear between a line's points.
   std::vector<float> channels(const Frame3d& frame) const;
 

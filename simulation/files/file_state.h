@@ -13,8 +13,8 @@ struct FileRange {
   std::uint64_t begin, size;
 };
 
-/// What a file was, but for ranges that its writer never changes: enough to go back to,
-/// whatever happened to the rest since. It is small where those ranges are large.
+/// State of a file, except for ranges that its writer never changes: enough to restore
+/// it, whatever happened to the rest since. It is small where those ranges are large.
 struct FileState {
   std::uint64_t length = 0;
   std::vector<FileRange> ranges;  // that may change, ascending

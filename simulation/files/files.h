@@ -13,7 +13,7 @@ namespace tress::simulation {
 /// An open file; closed on every path.
 class File {
  public:
-  /// As open(2) with mode 0644; throws InputError naming `file` on failure.
+  /// Opens a file as open(2) with mode 0644; throws InputError naming `file` on failure.
   File(const std::string& file, int flags);
   ~File();
   File(const File&) = delete;

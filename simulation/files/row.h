@@ -48,9 +48,10 @@ class Row {
   Row& failed(std::string_view status, std::string_view reason);
 
   bool has(std::string_view column) const;
-  std::string_view text(std::string_view column) const;  // empty when unset
-  double number(std::string_view column) const;          // NaN when empty or not a number
-  std::string_view status() const;                       // "ok" unless failed
+  /// Returns the text of a column; empty when unset.
+  std::string_view text(std::string_view column) const;
+  double number(std::string_view column) const;  // NaN when empty or not a number
+  std::string_view status() const;               // "ok" unless failed
   bool ok() const { return status() == "ok"; }
   std::span<const Cell> cells() const { return cells_; }
 

@@ -127,10 +127,10 @@ class Levels {
 };
 
 /// Throws InputError with file:line:column where a value of `text` lies more than 100
-/// levels deep: toml++ and the readers of its tables recurse once per level, and dotted
-/// keys, which toml++ does not limit, would overflow the stack. Levels are dots of keys
-/// and of headers, and brackets around values. In malformed TOML this holds up to the
-/// first error, where toml++ stops.
+/// levels deep. toml++ and the readers of its tables recurse once per level. Dotted keys,
+/// which toml++ does not limit, would overflow the stack. Levels are dots of keys and of
+/// headers, and brackets around values. In malformed TOML the check covers the text up to
+/// the first error, where toml++ stops.
 void refuse_deep(std::string_view text, const std::string& file) {
   Levels(text, file).check();
 }

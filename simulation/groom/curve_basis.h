@@ -22,10 +22,11 @@ std::size_t points_of_curve(std::size_t control, CurveBasis basis, bool pinned);
 /// points".
 std::string counts_in_words(CurveBasis basis, bool pinned);
 
-/// Points on the curve of these control points, which are not on it themselves: four to a
-/// piece of a cubic, and its end; those of a linear curve are its own. A bspline or
-/// catmullRom that is pinned begins and ends at the outer control points; one that is not
-/// has its first piece between the second and the third. Empty if points_of_curve() is 0.
+/// Returns points on the curve of these control points, which are not on it themselves:
+/// four per piece of a cubic, and its end. Points of a linear curve are its control
+/// points. A pinned bspline or catmullRom begins and ends at the outer control points;
+/// otherwise its first piece lies between the second and the third. Empty if
+/// points_of_curve() is 0.
 std::vector<Vec> points_on(std::span<const Vec> control, CurveBasis basis, bool pinned);
 
 }  // namespace tress::simulation

@@ -12,12 +12,12 @@ namespace tress::simulation {
 /// Returns the points of a strand at t = 0: its root and the tips of its segments.
 std::vector<Vec> initial_points(const Strand& strand);
 
-/// Returns the strands of a groom that represent the others. The distance of two
-/// strands is the root mean square distance of their roots and quarter points at t = 0,
-/// so that place, length and shape count, in metres. The farthest strand from all
-/// guides so far is the next one [Gonzalez 1985], the first is drawn by the seed; the
-/// middle of each cluster then takes the place of its guide a few times [Lloyd 1982].
-/// Ascending; all of them if guides >= strands. O(strands guides).
+/// Returns the strands of a groom that represent the others. The distance of two strands
+/// is the root mean square distance of their roots and quarter points at t = 0. Place,
+/// length and shape therefore count, in metres. The first guide is drawn by the seed, and
+/// the farthest strand from all guides so far is the next one [Gonzalez 1985]. The middle
+/// of each cluster then replaces its guide a few times [Lloyd 1982]. Ascending; all
+/// strands if guides >= strands. O(strands guides).
 std::vector<std::size_t> choose_guides(std::span<const Strand> strands,
                                        std::size_t guides, std::uint64_t seed);
 

@@ -20,8 +20,9 @@ constexpr std::array<double, 3> gauss_at{0.5 - 0.38729833462074169, 0.5,
                                          0.5 + 0.38729833462074169};
 constexpr std::array<double, 3> gauss_weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/// A helix from a frame at the origin, at arc length s: R = 1 + S K + A K^2 and x = W e0
-/// with W = int_0^s R = s + A K + B K^2, K = [kappa]x.
+/// Helix from a frame at the origin, at arc length s, with K = [kappa]x:
+///
+///     R = 1 + S K + A K^2,   x = W e0,   W = int_0^s R = s + A K + B K^2
 struct HelixPlace {
   HelixFunctions<double> f;
   Vec k;

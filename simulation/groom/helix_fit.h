@@ -11,15 +11,15 @@ namespace tress::simulation {
 /// Angle by which the tangent of a curve turns in all, rad, up to each of its arcs().
 std::vector<double> turning(const SpaceCurve& curve);
 
-/// Number of helices by which a curve of so much turning (rad) is within `tolerance` of
-/// its length everywhere: max(2, 1 + ceil(turning sqrt(0.02/tolerance))), since the
-/// distance falls as the square of the angle of an element; one more, for the distance is
-/// largest at the two ends, beyond which nothing holds a chain.
+/// Returns the number of helices for which a curve of this turning (rad) is within
+/// `tolerance` of its length everywhere: max(2, 1 + ceil(turning sqrt(0.02/tolerance))).
+/// The distance falls as the square of the angle of an element. One element is added
+/// because the distance is largest at the two ends, where the chain is free.
 int elements_by_turning(double turning, double tolerance);
 
-/// Ends of n elements, n + 1 arc lengths from 0: equal shares of half the length plus
-/// half the turning, so that a bend gets more of them than a straight part and no element
-/// is longer than twice the mean.
+/// Returns the ends of n elements, n + 1 arc lengths from 0. Each has an equal share of
+/// half the length plus half the turning. A bend thus gets more elements than a straight
+/// part, and no element is longer than twice the mean.
 std::vector<double> cut_by_turning(const SpaceCurve& curve,
                                    std::span<const double> turning, int n);
 /// Returns the ends of n equal elements.
@@ -39,17 +39,17 @@ struct FitWeights {
   double jump = 2e-6, twist = 1e-6;
 };
 
-/// The chain next to a curve, with joints at these arc lengths: least
+/// Fits the chain next to a curve, with joints at these arc lengths. It minimises
 ///
 ///     1/L^3 int |x(s) - c(s)|^2 ds + w1 sum |l (k_{i+1} - k_i)|^2 + w2 sum |l_i tau_i|^2
 ///
-/// over all Darboux vectors and the frame at the root, l the mean
-/// of two lengths, tau the twist, the integral by 3 Gauss points an element [Levenberg
-/// 1944; Marquardt 1963]. It starts from the curvature of the twistless frame, averaged
-/// over each element: that alone is ten times as far away, since errors of angle add up
-/// along the strand. The two small weights hold what the curve leaves open: the twist of
-/// a straight part, and strains that oscillate from element to element. O(n^3) for each
-/// of a dozen steps at most.
+/// over all Darboux vectors and the frame at the root. l is the mean of two lengths, tau
+/// the twist; the integral uses 3 Gauss points per element [Levenberg 1944; Marquardt
+/// 1963]. The start is the curvature of the twistless frame, averaged over each element.
+/// That alone is ten times as far away, since errors of angle add up along the strand.
+/// The two small weights determine what the curve leaves open: the twist of a straight
+/// part, and strains that oscillate from element to element. O(n^3) for each of a dozen
+/// steps at most.
 HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints,
                        const FitWeights& weights = {});
 
@@ -59,9 +59,9 @@ double misfit(const SpaceCurve& curve, const HelixChain& chain);
 /// Places on a chain at ascending arc lengths from 0 to its length.
 std::vector<Vec> places_on(const HelixChain& chain, std::span<const double> arcs);
 
-/// Root mean square, over the length, and largest distance of the points of a curve from
-/// the places of the same arc length: on the chain, or on the straight edges between its
-/// joints; m.
+/// Root mean square, over the length, and largest distance (m) of the points of a curve
+/// from a chain. Points are compared at the same arc length, with the chain or with the
+/// straight edges between its joints.
 struct FitError {
   double rms = 0, largest = 0;
 };

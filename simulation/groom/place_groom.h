@@ -34,22 +34,23 @@ struct PlacedGroom {
   std::vector<std::string> notes;
 };
 
-/// An axis that points up becomes z by a cyclic exchange of the axes (x, y, z) -> (y, z,
-/// x) or (z, x, y), and a turn by pi about x where its negative direction points up; so
-/// that what faces z in a file with y up, as in Houdini, faces x, as a head does here.
+/// Places a groom in the axes and units of tress. The axis that points up becomes z by a
+/// cyclic exchange of the axes (x, y, z) -> (y, z, x) or (z, x, y). A turn by pi about x
+/// follows where its negative direction points up. A groom that faces z in a file with y
+/// up, as in Houdini, then faces x, as a head does here.
 ///
 /// Without a unit from the scene, the file or its format, it is guessed as m, cm or mm,
 /// whichever brings the median length nearest to 15 cm, by ratio. An axis is guessed as
 /// the one along which strands run most, from roots to tips, and towards which they bend
 /// on their way, as hanging hair does. Straight hair, and hair that stands, could be
-/// either way round: InputError asks for the axis. Guesses and fallbacks are noted, and
-/// notes_on_lengths().
+/// either way round: InputError asks for the axis. The notes contain guesses, fallbacks
+/// and notes_on_lengths().
 ///
-/// A strand is bad if it has fewer than two points, one that is not finite or farther
-/// than 1 km from the origin, or a point that repeats the one before (within 1 nm).
-/// Refused, an InputError names the first with its number, from 0, and its place in the
-/// file; dropped, they are counted, and of repeated points only the repetition is left
-/// out.
+/// A strand is bad if it has fewer than two points or a point that is not finite. It is
+/// also bad if a point is farther than 1 km from the origin or repeats the one before
+/// (within 1 nm). If bad strands are refused, an InputError names the first with its
+/// number, from 0, and its place in the file. If they are dropped, they are counted, and
+/// of repeated points only the repetition is left out.
 PlacedGroom place_groom(GroomFile read, const std::string& file,
                         const GroomPlacing& placing);
 

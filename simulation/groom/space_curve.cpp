@@ -7,14 +7,14 @@
 
 namespace tress::simulation {
 
-/// Second derivatives at the knots of a cubic spline: of the inner ones
+/// Computes second derivatives at the knots of a cubic spline. The inner ones satisfy
 ///
 ///     h0 m0 + 2 (h0 + h1) m1 + h1 m2 = 6 (d1 - d0)
 ///
-/// with h the distances of knots and d the slopes of chords before and after; at an end
+/// with h the distances of knots and d the slopes of chords before and after. At an end
 /// m0 = m1 + r (m1 - m2), r = h0/h1, by which the third derivative passes the knot next
-/// to it. A last piece that is longer than twice the one before takes r = 2: noise in m1
-/// - m2 would grow with r. O(n).
+/// to it. A last piece longer than twice the one before takes r = 2: noise in m1 - m2
+/// would grow with r. O(n).
 void SpaceCurve::interpolate(std::span<const Vec> points) {
   places_.assign(points.begin(), points.end());
   const std::size_t n = points.size();

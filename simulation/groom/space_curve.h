@@ -8,12 +8,12 @@
 
 namespace tress::simulation {
 
-/// A smooth curve through points: the cubic spline over the length u of their polyline,
-/// and its arc length s. The second derivative is extrapolated linearly from the two
-/// inner knots next to an end (not-a-knot), so that the curve keeps its curvature there:
-/// for points of a smooth curve at distances h, places are off by O(h^4), the curvature
-/// by O(h^2), up to the ends [de Boor 2001, chapter IV; Floater & Surazhsky 2006].
-/// Through two points it is straight, through three a parabola, through four one cubic.
+/// Smooth curve through points: the cubic spline over the length u of their polyline, and
+/// its arc length s. The second derivative is extrapolated linearly from the two inner
+/// knots next to an end (not-a-knot), so that the curve keeps its curvature there. For
+/// points of a smooth curve at distances h, places are off by O(h^4) and the curvature by
+/// O(h^2), up to the ends [de Boor 2001, chapter IV; Floater & Surazhsky 2006]. Through
+/// two points it is straight, through three a parabola, through four one cubic.
 class SpaceCurve {
  public:
   /// Points nearer to each other than this are refused, m.
@@ -33,8 +33,10 @@ class SpaceCurve {
   double parameter(double s) const;
 
   Vec position(double u) const;
-  Vec rate(double u) const;     // dx/du
-  Vec tangent(double u) const;  // of length 1
+  /// Returns the derivative dx/du.
+  Vec rate(double u) const;
+  /// Returns the unit tangent.
+  Vec tangent(double u) const;
 
   /// u and s at the ends of all parts.
   std::span<const double> parameters() const { return u_; }

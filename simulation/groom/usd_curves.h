@@ -21,8 +21,8 @@ struct UsdCurveSet {
   int line = 0;  // of the points
 };
 
-/// The curves of a stage, in the order of their prims: what surrounds a prim acts on the
-/// sets that were added within it, which is known where the prim ends.
+/// Curves of a stage, in the order of their prims. Properties that surround a prim act on
+/// the curve sets that were added within it, which are known where the prim ends.
 class UsdCurves {
  public:
   explicit UsdCurves(ByteStream& from) : from_(from) {}

@@ -23,12 +23,12 @@ struct Affine {
 /// The inverse; none: the linear part is singular.
 std::optional<Affine> inverse(const Affine& a);
 
-/// The map of an operation of USD's Xformable: its name, xformOp:KIND or
+/// Returns the map of an operation of USD's Xformable: its name, xformOp:KIND or
 /// xformOp:KIND:SUFFIX, and its numbers [OpenUSD, UsdGeomXformOp]. Kinds are translate,
-/// scale and rotate along or about one axis (translateX) or three, rotations in the order
-/// of their letters (degrees), orient (w, x, y, z) and transform (a matrix by rows, for
-/// row vectors). None: another kind, the wrong number of numbers, or a matrix that is not
-/// affine.
+/// scale and rotate along or about one axis (translateX) or three, orient (w, x, y, z)
+/// and transform (a matrix by rows, for row vectors). Rotations are in the order of their
+/// letters (degrees). None: another kind, the wrong number of numbers, or a matrix that
+/// is not affine.
 std::optional<Affine> usd_operation(std::string_view name, std::span<const double> x);
 
 }  // namespace tress::simulation

@@ -24,13 +24,14 @@ std::string strand_text(double y) {
 }
 
 /// Two strands.
-std::string scene_text(std::string_view model, std::string_view tangent,
+std::string scene_text(std::string_view model, std::string_view jacobian,
                        std::string_view integrator, std::string_view formulation,
                        std::string_view effects) {
   std::string text = fmt::format(
-      "title = \"batch\"\nduration_s = 1e-4\nframes_1_s = 20000\n[model]\nid = \"{}\"\n",
+      "title = \"batch\"\nduration_s = 1e-4\nframes_per_s = 20000\n[model]\nid = "
+      "\"{}\"\n",
       model);
-  if (!tangent.empty()) text += fmt::format("tangent = \"{}\"\n", tangent);
+  if (!jacobian.empty()) text += fmt::format("jacobian = \"{}\"\n", jacobian);
   text += fmt::format("[integrator]\nid = \"{}\"\n", integrator);
   if (!formulation.empty()) text += fmt::format("formulation = \"{}\"\n", formulation);
   text += find_integrator(integrator).adaptive ? "rtol = 1e-3\n" : "dt_s = 2.5e-5\n";
@@ -72,9 +73,9 @@ std::vector<std::string_view> words(std::string_view choices) {
 }
 
 /// Approximations of the Jacobian that a model offers.
-std::vector<std::string_view> tangents_of(const ModelEntry& model) {
+std::vector<std::string_view> jacobians_of(const ModelEntry& model) {
   for (const Parameter& p : model.parameters) {
-    if (p.name == "tangent") return words(p.choices);
+    if (p.name == "jacobian") return words(p.choices);
   }
   return {};
 }
@@ -168,8 +169,8 @@ BatchCase batch_case(const ModelEntry& model, const IntegratorEntry& integrator,
                      std::string_view effects) {
   std::string text, formulation;
   std::optional<SceneOutline> outline;
-  const auto with = [&](std::string_view tangent) {
-    text = scene_text(model.id, tangent, integrator.id, formulation, effects);
+  const auto with = [&](std::string_view jacobian) {
+    text = scene_text(model.id, jacobian, integrator.id, formulation, effects);
     outline = read(text);
     return outline.has_value();
   };
@@ -183,12 +184,12 @@ BatchCase batch_case(const ModelEntry& model, const IntegratorEntry& integrator,
   if (!outline) return {};
   BatchCase usual = case_of(text, *outline);
   if (usual.way != Way::replicated || !head_method(outline->scene)) return usual;
-  for (const std::string_view tangent : tangents_of(model)) {
-    if (!with(tangent)) continue;
+  for (const std::string_view jacobian : jacobians_of(model)) {
+    if (!with(jacobian)) continue;
     BatchCase other = case_of(text, *outline);
     if (other.way == Way::lanes) return other;
     // The reason that remains when the Jacobian is the one that lanes have.
-    if (!other.reason.starts_with("tangent")) usual = std::move(other);
+    if (!other.reason.starts_with("jacobian")) usual = std::move(other);
   }
   return usual;
 }
@@ -214,7 +215,7 @@ std::string batch_matrix() {
     }
   }
   return fmt::format(
-      "\nBATCHES OF STRANDS (simulate --as head; a scene with [effects.gravity])\n"
+      "\nBATCHES OF STRANDS (simulate --as batch; a scene with [effects.gravity])\n"
       "  L in SIMD lanes, R replicated: each strand a system of its own, x refused, - "
       "the "
       "integrator does not drive the model; a number is the reason, below\n{}\n"

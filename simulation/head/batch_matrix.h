@@ -8,7 +8,7 @@
 
 namespace tress::simulation {
 
-/// How strands of a model run as one batch with an integrator and effects.
+/// Support of a model's strands as one batch, with an integrator and effects.
 struct BatchCase {
   enum class Way {
     none,        // the integrator does not drive the model
@@ -27,8 +27,8 @@ struct BatchCase {
 BatchCase batch_case(const ModelEntry& model, const IntegratorEntry& integrator,
                      std::string_view effects);
 
-/// What runs as a batch, and how: models by integrators, and effects where there are
-/// lanes, with the reasons that the program itself gives.
+/// Returns the table of supported batches: models by integrators, and effects where there
+/// are lanes, with the reasons that the program itself prints.
 std::string batch_matrix();
 
 }  // namespace tress::simulation

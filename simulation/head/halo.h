@@ -15,19 +15,20 @@
 
 namespace tress::simulation {
 
-/// The strands of other ranks that may touch those of this one, its ghosts, and what they
-/// do to them:
+/// Strands of other ranks that may touch those of this one (its ghosts), and their
+/// forces:
 ///
 ///     look() -> send() ... strands that no ghost can touch ... receive() -> the others
 ///
-/// Every point of a strand claims what lies within its room, the distance it may go in a
-/// few steps, seen from the head. Two strands can touch in a step only if what one claims
-/// comes within reach of what the other claims, for as long as no point has left its
-/// room; then claims are made anew, by all ranks. The rank of each strand finds to whom
-/// it has to be sent, from the cells in which other ranks' claims lie. Own strands that
-/// are sent are those that may touch ghosts: they meet, in an interaction of their own,
-/// the ghosts and the own strands near them, in the order of the whole head, so that
-/// forces are the same bits as on one rank. Steps take O(strands sent), claims O(points).
+/// Every point of a strand claims a ball whose radius, its room, is the distance that the
+/// point may move in a few steps, seen from the head. While no point has left its room,
+/// two strands can touch in a step only if their claims come within reach of each other.
+/// When a point leaves its room, all ranks rebuild their claims. The rank of each strand
+/// determines the receivers from the cells in which other ranks' claims lie. Own strands
+/// that are sent are those that may touch ghosts. In an interaction of their own they
+/// meet the ghosts and the own strands near them. The order is that of the whole batch,
+/// so that forces are bit-identical to those of one rank. Steps take O(strands sent),
+/// claims O(points).
 class Halo {
  public:
   /// `interaction` of own strands; `effects` by their places, which use it.
@@ -35,11 +36,11 @@ class Halo {
        models::RootMotion motion, const models::StrandInteraction& interaction,
        std::vector<std::shared_ptr<ChosenEffect>> effects, std::size_t points);
 
-  /// By the numbers of own strands: root and tips at t, what Head::ahead() says.
+  /// Root and tips at t, and the results of Head::ahead(), by the numbers of own strands.
   struct Places {
     In x, ahead, bulge;
   };
-  /// Makes ready for a step from t to t + h; whether claims were made anew.
+  /// Prepares a step from t to t + h; returns whether claims were rebuilt.
   bool look(double t, double h, const Places& places, const models::Loop& loop);
   /// Own strands' root and tips and their velocities, by numbers, to who needs them.
   void send(In x, In v);

@@ -13,16 +13,16 @@ struct HeadClass {
   SceneOutline outline;
 };
 
-/// Whether strands may differ in their numbers of elements: their tables do, or they get
-/// as many as they need ([groom] tolerance_m).
+/// Returns whether strands may differ in their numbers of elements: their tables do, or
+/// each gets the number that it needs ([groom] tolerance_m).
 bool has_classes(const SceneOutline& outline);
-/// Of such a scene, ascending; each may run as a head. Every strand is made once, by so
-/// many threads. Throws InputError where a strand cannot be made.
+/// Returns the classes of such a scene, ascending; each may run as a batch. `threads`
+/// threads make every strand once. Throws InputError where a strand cannot be made.
 std::vector<HeadClass> head_classes(const SceneOutline& outline, int threads);
 /// no_head(), for those who run one head of a scene.
 std::optional<NoHead> no_single_head(
     const SceneOutline& outline, models::HeadNumber number = models::HeadNumber::float64);
-/// What speaks against running them side by side: strands that touch.
+/// Returns the reason against running them together: strands that touch.
 std::optional<NoHead> no_classes(const SceneOutline& outline);
 
 }  // namespace tress::simulation

@@ -9,7 +9,8 @@
 
 namespace tress::simulation {
 
-/// What takes the steps of a head: `automatic` is a GPU where there is one for it.
+/// Device that takes the steps of a batch: `automatic` is a GPU if one supports the
+/// batch.
 enum class DeviceChoice { cpu, gpu, automatic };
 constexpr const char* device_choices = "cpu|gpu|auto";
 /// One of these words.
@@ -19,11 +20,11 @@ struct ChosenDevice {
   std::string name = "cpu";  // or that of the GPU
   std::string why_not = {};  // automatic, on the processor: what speaks against a GPU
 };
-/// Steps of the head are taken there from now on. Throws InputError, which names the
-/// place where `gpu` is asked for, if there is none for it.
+/// Moves the steps of the batch to the device. Throws InputError, which names the place
+/// of the request, if `gpu` is requested and no GPU supports the batch.
 ChosenDevice choose_device(HeadRun& run, DeviceChoice choice, const std::string& place);
 
-/// What a failing device ends as.
+/// Returns the error for a failing device.
 InputError no_device(const DeviceFailure& failure, const std::string& place);
 
 }  // namespace tress::simulation

@@ -8,17 +8,17 @@
 
 namespace tress::simulation {
 
-/// Which rank has which strands of a head, and in which order. Strands are known by their
-/// number in the head; a rank has its own at places from 0 on, in groups whose roots lie
-/// beside each other, within a group by their numbers.
+/// Division of a batch's strands among ranks, and their order. Strands are known by their
+/// number in the batch. A rank has its own at places from 0 on, in groups of neighbouring
+/// roots, within a group by their numbers.
 class HeadDivision {
  public:
   /// One rank has all, strand k at place k.
   explicit HeadDivision(std::size_t strands);
-  /// Regions of the scalp of about equal sums of `cost` (of each strand, positive), by
-  /// recursive bisection of the roots across the longer side of their box. There must be
-  /// as many strands as ranks at least. The same on all ranks but for `rank`, whose
-  /// places these are.
+  /// Divides the scalp into regions of about equal sums of `cost` (of each strand,
+  /// positive). The roots are bisected recursively across the longer side of their box.
+  /// There must be at least one strand per rank. The result is the same on all ranks but
+  /// for `rank`, whose places these are.
   HeadDivision(std::span<const Vec> roots, std::span<const double> cost, int ranks,
                int rank);
 
@@ -29,7 +29,7 @@ class HeadDivision {
   std::span<const std::size_t> own() const { return own_; }
   /// The i-th of them by their numbers.
   std::size_t number(std::size_t i) const { return own_[by_number_[i]]; }
-  /// Their places, by their numbers.
+  /// Returns the places of own strands, by their numbers.
   std::span<const std::size_t> by_number() const { return by_number_; }
   /// The other way: of each place, which it is by the numbers.
   std::span<const std::size_t> order() const { return order_; }
@@ -40,7 +40,7 @@ class HeadDivision {
   };
   /// Own strands among these, ascending numbers; by their places.
   std::vector<Listed> own_among(std::span<const std::size_t> numbers) const;
-  /// How many of these each rank has.
+  /// Returns the number of these strands that each rank has.
   std::vector<std::size_t> counts(std::span<const std::size_t> numbers) const;
 
  private:

@@ -17,7 +17,8 @@ class HeadGuard {
   /// Effects whose potentials (J) are not in HeadEnergy::gravity: those of the scene, in
   /// its order, without uniform accelerations.
   virtual std::size_t effects() const = 0;
-  /// So many of each strand of a block, whose first place is `first`.
+  /// Writes effects() potentials (J) for each strand of a block, whose first place is
+  /// `first`.
   virtual void potentials(const models::Head& head, std::size_t block, std::size_t first,
                           double t, std::span<double> each) const = 0;
 
@@ -29,10 +30,11 @@ class HeadGuard {
   virtual bool due(double t, double h) const = 0;
   virtual void judge(const models::Head& head, std::size_t block, std::size_t first,
                      double t) = 0;
-  /// What the last judge() found; empty: nothing.
+  /// Returns the finding of the last judge(); empty: nothing.
   virtual std::string_view verdict(std::size_t place) const = 0;
 
-  /// Numbers of a strand that judge() changes, beside those that the head keeps.
+  /// Returns how many numbers of a strand judge() changes, in addition to those of the
+  /// batch.
   virtual std::size_t kept() const = 0;
   virtual void keep(std::size_t place, std::span<double> to) const = 0;
   virtual void recall(std::size_t place, std::span<const double> from) = 0;

@@ -16,18 +16,18 @@
 
 namespace tress::simulation {
 
-/// A head that is advanced and read by a crew, each worker with its share of the blocks,
-/// or advanced by a device. Of several ranks each holds its own strands (HeadDivision),
-/// and no others but those that may touch them (Halo); numbers of all strands reach the
-/// first rank as many at a time as it asks for. All are the same bits for any number of
-/// ranks, threads and lanes.
+/// Batch that a crew advances and reads, each worker with its share of the blocks, or
+/// that a device advances. Of several ranks each holds its own strands (HeadDivision),
+/// and no others but those that may touch them (Halo). Numbers of all strands reach the
+/// first rank in chunks of the requested size. Results are bit-identical for any number
+/// of ranks, threads and lanes.
 class HeadRun {
  public:
-  /// By this process alone, with the interaction whose effects the head's strands have,
-  /// if there is one.
+  /// Constructs a run by this process alone. `interaction`: the one whose effects the
+  /// batch's strands have, if any.
   HeadRun(std::unique_ptr<Head> head, int threads,
           std::unique_ptr<models::StrandInteraction> interaction = {});
-  /// By the ranks that it was made for, which must outlive it.
+  /// Constructs a run by the ranks for which the batch was made; they must outlive it.
   HeadRun(SceneHead made, int threads, Ranks& ranks);
   HeadRun(SceneHead made, int threads) : HeadRun(std::move(made), threads, alone_) {}
 
@@ -38,11 +38,11 @@ class HeadRun {
   /// Whether strands are stepped in SIMD lanes, else each as a system of its own.
   bool lanes() const { return lanes_; }
 
-  /// From t to t + h (s). Methods that iterate get blocks by the dozen, so that their
-  /// lanes find strands to go on with.
+  /// Steps from t to t + h (s). Methods that iterate get blocks by the dozen, so that
+  /// their lanes can be refilled with other strands.
   void step(double t, double h);
-  /// On a device steps may wait: strands are where all of them have brought them, and
-  /// lost() tells of all since the last call. Throws DeviceFailure.
+  /// Waits for all steps of the device and copies the strands. lost() then lists all
+  /// failures since the last call. Throws DeviceFailure.
   void fetch();
   /// Judges all strands where they are at t, by HeadGuard if there is one: those that
   /// fail are lost, and lost() tells of them. Steps do so as often as HeadGuard asks for,
@@ -54,7 +54,7 @@ class HeadRun {
   // Of this rank's own strands, by their places: see HeadDivision.
   const HeadDivision& division() const { return *division_; }
   const Head& head() const { return *head_; }
-  /// For whoever changes its state.
+  /// Returns the batch for changes of its state.
   Head& change() {
     if (device_) device_->renew();
     return *head_;
@@ -62,7 +62,7 @@ class HeadRun {
   /// Root and tips of elements (m), strand after strand.
   void positions(double t, std::vector<double>& x);
   void energies(double t, std::vector<models::HeadEnergy>& each);
-  /// HeadGuard::potentials(), so many of each strand; none of a head of no scene.
+  /// Returns the number of HeadGuard::potentials() of each strand; none without a scene.
   std::size_t effects() const { return guard_ ? guard_->effects() : 0; }
   void potentials(double t, std::vector<double>& each);
 
@@ -71,26 +71,26 @@ class HeadRun {
   std::size_t strands() const { return division_->strands(); }
   /// Reads `each` numbers of every strand of an own block.
   using Read = std::function<void(std::size_t block, std::span<double> to)>;
-  /// What is read of these strands, one after the other; on the first rank, others get
-  /// nothing.
+  /// Collects the numbers read from these strands, one after the other, on the first
+  /// rank; other ranks get nothing.
   void collect(Numbers strands, std::size_t each, const Read& read,
                std::vector<double>& all);
   void positions(double t, Numbers strands, std::vector<double>& x);
-  /// Head::keep() and Head::recall(), with what the guard knows of each strand, so many
-  /// numbers; what is recalled is the first rank's.
+  /// Returns how many numbers keep() and recall() transfer per strand: those of the batch
+  /// and of the guard. The first rank's numbers are recalled.
   std::size_t kept() const { return head_->kept() + (guarded_ ? guard_->kept() : 0); }
   void keep(Numbers strands, std::vector<double>& kept);
   void recall(Numbers strands, std::vector<double>& kept);
-  /// Calls use(strands) for all, so many at a time.
+  /// Calls use(strands) for all strands, `chunk` at a time.
   void by_chunks(std::size_t chunk, const std::function<void(Numbers)>& use) const;
-  /// As Head::hash() of all strands, on the first rank.
+  /// Returns Head::hash() of all strands, on the first rank.
   std::size_t hash();
 
   /// Newton's iterations of all steps so far, of this rank.
   HeadWork work() const;
   /// Wall time of this rank's steps since the last call, without waiting for others.
   double stepping_s();
-  /// What other ranks' strands have cost; null: none touch its own.
+  /// Returns the halo, with the cost of other ranks' strands; null: none touch its own.
   const Halo* halo() const { return halo_.get(); }
   Crew& crew() { return crew_; }
   Ranks& ranks() { return *ranks_; }
@@ -115,7 +115,7 @@ class HeadRun {
   void taken(double t, double h, Ready ready);
   /// `start`: of the step that has come to t.
   void find_failed(double t, double start);
-  /// What keep() and recall() know of a block.
+  /// Writes the numbers of a block for keep() and recall().
   void keep(std::size_t block, std::span<double> to) const;
   void recall(std::size_t block, std::span<const double> from);
 
@@ -124,7 +124,7 @@ class HeadRun {
   /// x_ and v_ of own strands become those of all.
   void share_motion();
   models::Loop loop();
-  /// Of a list of strands, own ones by blocks: use(block, listed ones).
+  /// Calls use(block, listed strands) for the own strands of a list, by blocks.
   void own_blocks_of(
       Numbers strands,
       const std::function<void(std::size_t, std::span<const HeadDivision::Listed>)>& use);

@@ -12,24 +12,24 @@
 
 namespace tress::simulation {
 
-/// Guard of every strand of a head in SIMD lanes: the account of energy, the bound of
-/// speed and, of springs, of stretch that Guard has for a strand by itself, with the work
-/// of all effects. Strands are known by their places in the head.
+/// Guard of every strand of a batch in SIMD lanes. It has Guard's account of energy,
+/// bound of speed and, for springs, bound of stretch, with the work of all effects.
+/// Strands are known by their places in the batch.
 ///
-/// Energies are the head's own. Potentials, loads and powers of effects are those on the
-/// points where its model has them act: the nodes of springs; else the Gauss-Legendre
-/// points of the elements. Nodes also serve where nothing but gravity and linear drag
-/// acts.
+/// Energies are those of the batch. Potentials, loads and powers of effects are those on
+/// the points where its model has them act: the nodes of springs, otherwise the
+/// Gauss-Legendre points of the elements. Nodes also serve where nothing but gravity and
+/// linear drag acts.
 ///
-/// When a state is judged: with every frame. Where nothing can do work on a strand in the
-/// frame of the head, that is enough, as the bound does not change. Under gravity and
-/// linear drag alone a head that moves does smooth work: every ten steps or 20 ms in
-/// addition, and else as Guard does. Cost: of the energies and positions of a block,
-/// about a third of a step, and of its effects' loads.
+/// A state is judged with every frame. Where nothing can do work on a strand in the frame
+/// of the head, that is enough, as the bound does not change. Under gravity and linear
+/// drag alone a head that moves does smooth work. States are then also judged every ten
+/// steps or 20 ms, otherwise as often as by Guard. Cost: of the energies and positions of
+/// a block, about a third of a step, and of its effects' loads.
 class LaneGuard final : public HeadGuard {
  public:
-  /// Of a head with these options; `at_rest`: whether what acts beside gravity and drag
-  /// does no work in the frame of the head.
+  /// Constructs the guard of a batch with these options. `at_rest`: whether all effects
+  /// other than gravity and drag do no work in the frame of the head.
   LaneGuard(const Scene& scene, const HeadOptions& options, bool at_rest);
 
   void reserve(std::size_t strands) { strands_.reserve(strands); }

@@ -46,8 +46,8 @@ void check_start(const HeadOptions& options) {
       "leave rotary_inertia on, or use backward_euler");
 }
 
-/// Throws InputError if steps are single corrections of numbers of 32 bits, for strands
-/// in which their rounding errors grow.
+/// Throws InputError if steps are single corrections in single precision, for strands in
+/// which their rounding errors grow.
 void check_mended(const HeadOptions& options, const HeadPack& pack) {
   refuse_if(options.method == HeadMethod::linearly_implicit_midpoint &&
                 pack.number == HeadNumber::float32,
@@ -56,18 +56,18 @@ void check_mended(const HeadOptions& options, const HeadPack& pack) {
 }
 
 /// The method whose single correction is from zero acceleration is refused: with the
-/// exact Jacobian there, strands of a shaken root are less stable (SemiImplicitStep).
+/// exact Jacobian there, strands of a shaken root are less stable (LinearlyImplicitStep).
 void check_quaternions(const HeadOptions& options, const HeadPack& pack) {
   check_steps(options, pack);
-  refuse_if(options.method == HeadMethod::semi_implicit_euler,
-            "semi_implicit_euler with an exact Jacobian", place,
+  refuse_if(options.method == HeadMethod::linearly_implicit_euler,
+            "linearly_implicit_euler with an exact Jacobian", place,
             "use linearly_implicit_midpoint, backward_euler or tr_bdf2");
   check_mended(options, pack);
 }
 
 bool linear(const HeadOptions& options) { return block_method(options.method).linear(); }
-Tangent tangent(const HeadOptions& options) {
-  return linear(options) ? Tangent::stiff : Tangent::exact;
+Jacobian jacobian(const HeadOptions& options) {
+  return linear(options) ? Jacobian::elastic : Jacobian::exact;
 }
 
 std::unique_ptr<models::Head> in_steps(models::AnyLaneKernel kernel,
@@ -115,13 +115,13 @@ std::unique_ptr<models::Head> der_head(const HeadOptions& options, const HeadPac
   // Stretching keeps what rounding puts into it: in a second strands are off by 6e-4 of
   // their length.
   check_mended(options, pack);
-  return in_steps(models::der_lanes(options, pack, tangent(options)), options);
+  return in_steps(models::der_lanes(options, pack, jacobian(options)), options);
 }
 
 std::unique_ptr<models::Head> spring_head(const HeadOptions& options,
                                           const HeadPack& pack) {
   check_steps(options, pack);
-  return in_steps(models::spring_lanes(options, pack, tangent(options)), options);
+  return in_steps(models::spring_lanes(options, pack, jacobian(options)), options);
 }
 
 std::unique_ptr<models::Head> corde_head(const HeadOptions& options,

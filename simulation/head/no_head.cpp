@@ -24,17 +24,17 @@ NoHead no_option(const Parameters& p, const char* key, std::string remedy) {
 /// Whether steps are solved with all derivatives of the residual.
 bool has_exact_tangent(const Scene& scene) {
   const auto method = head_method(scene);
-  return method && *method != HeadMethod::semi_implicit_euler;
+  return method && *method != HeadMethod::linearly_implicit_euler;
 }
 
-/// The tangent of the scene's method: all derivatives, or `of_one` for one correction.
-std::optional<NoHead> no_tangent(const Scene& scene, const char* of_one) {
+/// The Jacobian of the scene's method: all derivatives, or `of_one` for one correction.
+std::optional<NoHead> no_jacobian(const Scene& scene, const char* of_one) {
   const bool exact = has_exact_tangent(scene);
   const std::string_view needed = exact ? "exact" : of_one,
-                         given = scene.model_options.word("tangent");
+                         given = scene.model_options.word("jacobian");
   if (given == needed) return {};
-  return NoHead{fmt::format("tangent = \"{}\" with {}", given, scene.integrator),
-                fmt::format("give [model] tangent = \"{}\"{}", needed,
+  return NoHead{fmt::format("jacobian = \"{}\" with {}", given, scene.integrator),
+                fmt::format("give [model] jacobian = \"{}\"{}", needed,
                             exact ? " to " + scene.integrator
                                   : ", or [integrator] id = \"backward_euler\"")};
 }
@@ -42,7 +42,7 @@ std::optional<NoHead> no_tangent(const Scene& scene, const char* of_one) {
 std::optional<NoHead> no_integrator(const Scene& scene) {
   if (head_method(scene)) return {};
   return NoHead{scene.integrator,
-                "use [integrator] id = \"semi_implicit_euler\", "
+                "use [integrator] id = \"linearly_implicit_euler\", "
                 "\"linearly_implicit_midpoint\", \"backward_euler\" or "
                 "\"tr_bdf2\""};
 }
@@ -56,7 +56,7 @@ std::optional<NoHead> no_springs(const Scene& scene) {
   if (p.word("torsion") != "none") {
     return no_option(p, "torsion", "give [model] torsion = \"none\"");
   }
-  return no_tangent(scene, "filtered");
+  return no_jacobian(scene, "filtered");
 }
 
 std::optional<NoHead> no_quaternions(const Scene& scene) {
@@ -92,7 +92,7 @@ std::optional<NoHead> no_model(const Scene& scene) {
   if (p.word("modes") == "bend_planar") {
     return no_option(p, "modes", "give [model] modes = \"bend_twist\" or \"bend\"");
   }
-  if (auto no = no_tangent(scene, "stiff")) return no;
+  if (auto no = no_jacobian(scene, "elastic")) return no;
   if (scene.integrator == "tr_bdf2" && p.word("modes") == "bend_twist" &&
       p.word("rotary_inertia") == "off") {
     return NoHead{
@@ -130,8 +130,8 @@ std::optional<NoHead> no_method(const Scene& scene) {
 std::optional<NoHead> no_strands(const Scene& scene) {
   for (const StrandSource& source : sources_of(scene)) {
     const Parameters& p = source.table.values();
-    if (source.file && p.word("cuts") != "equal") {
-      return NoHead{"elements of different lengths", "give [groom] cuts = \"equal\""};
+    if (source.file && p.word("mesh") != "equal") {
+      return NoHead{"elements of different lengths", "give [groom] mesh = \"equal\""};
     }
     if (p.number("grading") != 1) {
       return NoHead{"elements of different lengths", "leave out grading"};
@@ -143,7 +143,8 @@ std::optional<NoHead> no_strands(const Scene& scene) {
   return {};
 }
 
-/// Lanes with bodies alone, beside what all have; empty: there are others.
+/// Returns the effects of lanes that support bodies only, beyond those that all lanes
+/// support; empty: there are others.
 std::string only_with_bodies(const Scene& scene) {
   if (steps_edges(scene)) return std::string(scene.model->id);
   return has_exact_tangent(scene) ? scene.integrator : "";
@@ -151,7 +152,7 @@ std::string only_with_bodies(const Scene& scene) {
 std::string with_others(const Scene& scene) {
   return steps_edges(scene) ? "leave it out, or use [model] id = \"super_helix\""
                             : "leave it out, or use [integrator] id = "
-                              "\"semi_implicit_euler\"";
+                              "\"linearly_implicit_euler\"";
 }
 
 std::optional<NoHead> no_effects(const Scene& scene) {
@@ -178,22 +179,22 @@ std::optional<NoHead> no_effects(const Scene& scene) {
 std::optional<NoHead> no_number(const Scene& scene, models::HeadNumber number) {
   const bool narrow = number == models::HeadNumber::float32;
   if (narrow && steps_springs(scene)) {
-    return NoHead{"springs in 32 bits, which do not resolve their strains",
-                  "give --bits 64"};
+    return NoHead{"springs in single precision, which does not resolve their strains",
+                  "give --precision 64"};
   }
   if (narrow && (steps_chains(scene) || steps_quaternions(scene)) &&
       scene.integrator == "linearly_implicit_midpoint") {
     return NoHead{fmt::format("{} in 32 bits, whose rounding a single correction does "
                               "not mend",
                               steps_chains(scene) ? "rigid links" : scene.model->id),
-                  "give --bits 64, or [integrator] id = \"tr_bdf2\""};
+                  "give --precision 64, or [integrator] id = \"tr_bdf2\""};
   }
   const double tolerance = scene.options.tolerance;
   if (tolerance == 0 || resolve(number, tolerance)) return {};
   return NoHead{
-      fmt::format("tolerance = {:g} in {} bits, which do not resolve it", tolerance,
-                  narrow ? 32 : 64),
-      narrow ? "give --bits 64, or a larger tolerance" : "give a larger tolerance"};
+      fmt::format("position_tol_rel = {:g} in {} bits, which do not resolve it",
+                  tolerance, narrow ? 32 : 64),
+      narrow ? "give --precision 64, or a larger tolerance" : "give a larger tolerance"};
 }
 
 /// Strands that are no systems of their own, or that are not all simulated.
@@ -265,15 +266,15 @@ std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber nu
   if (auto no = no_strand_alone(scene)) return no;
   const auto without = no_lanes(scene, number);
   if (without && number != models::HeadNumber::float64) {
-    const bool named = without->remedy.find("--bits 64") != std::string::npos;
+    const bool named = without->remedy.find("--precision 64") != std::string::npos;
     return NoHead{"no SIMD lanes for " + without->reason,
-                  without->remedy + (named ? "" : ", or --bits 64")};
+                  without->remedy + (named ? "" : ", or --precision 64")};
   }
   const Options& options = scene.options;
   if (!scene.chooses_steps() &&
       1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
     return NoHead{"more than max_steps steps of dt_s from frame to frame",
-                  "give a longer dt_s, or more frames_1_s"};
+                  "give a longer dt_s, or more frames_per_s"};
   }
   return {};
 }

@@ -21,14 +21,14 @@ struct NoHead {
 std::optional<NoHead> no_lanes(const Scene& scene,
                                models::HeadNumber number = models::HeadNumber::float64);
 
-/// What speaks against running a scene as one batch, a Head (models/head/head.h), with
-/// such numbers: physics, or what the scene asks for. Of strands it sees what their
-/// tables say: make_head() throws InputError where a strand of them does not fit.
+/// Returns the reason against running a scene as one batch (models/head/head.h) with this
+/// number type: physics, or a request of the scene. Only the tables of strands are read:
+/// make_head() throws InputError where one of their strands does not fit.
 std::optional<NoHead> no_head(const SceneOutline& outline,
                               models::HeadNumber number = models::HeadNumber::float64);
 
-/// Of a scene that has lanes: of springs, of rods with a quaternion for every edge, of
-/// rigid links, or else of super-helices.
+/// Returns whether a scene in lanes has springs; the next two: rods with a quaternion for
+/// every edge, rigid links. Otherwise it has super-helices.
 bool steps_springs(const Scene& scene);
 bool steps_quaternions(const Scene& scene);
 bool steps_chains(const Scene& scene);
@@ -36,7 +36,7 @@ bool steps_chains(const Scene& scene);
 bool steps_edges(const Scene& scene);
 /// Methods that heads have, by the ids of integrators.
 inline constexpr std::pair<std::string_view, HeadMethod> head_methods[] = {
-    {"semi_implicit_euler", HeadMethod::semi_implicit_euler},
+    {"linearly_implicit_euler", HeadMethod::linearly_implicit_euler},
     {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint},
     {"backward_euler", HeadMethod::backward_euler},
     {"tr_bdf2", HeadMethod::tr_bdf2}};

@@ -18,7 +18,7 @@ namespace tress::simulation {
 class Ranks {
  public:
   using Sizes = std::span<const std::size_t>;
-  /// What goes to another rank, or comes from it.
+  /// Data sent to another rank, or received from it.
   struct Message {
     int rank;
     std::span<std::byte> bytes;
@@ -42,7 +42,7 @@ class Ranks {
   void share(std::span<T> x, Sizes sizes) {
     share_bytes(bytes_of(x), in_bytes<T>(sizes));
   }
-  /// What each rank gives, by the ranks.
+  /// Returns one value of each rank, by the ranks.
   template <class T>
   std::vector<T> of_each(const T& own) {
     std::vector<T> all(static_cast<std::size_t>(size()));
@@ -50,7 +50,7 @@ class Ranks {
     share(std::span(all), std::vector<std::size_t>(all.size(), 1));
     return all;
   }
-  /// What the first rank has in x, all have then.
+  /// Copies x of the first rank to all ranks.
   template <class T>
   void as_first(std::span<T> x) {
     bytes_as_first(bytes_of(x));

@@ -12,16 +12,18 @@
 
 namespace tress::simulation {
 
-/// A head whose strands are systems of their own, each with the integrator and guard that
-/// a single strand has: of every model of strands, plug-ins included, with every
-/// integrator, effect and option. A block is one strand. Numbers have 64 bits.
+/// Batch whose strands are systems of their own, each with the integrator and guard of a
+/// single strand. Supports every model of strands, plug-ins included, with every
+/// integrator, effect and option. A block is one strand. Numbers have double precision.
 ///
-/// A strand takes the steps that it takes as a single strand of a World, and is the same
-/// bits alone and beside others, if they do not touch. Memory is that of systems: see
-/// bytes(). Integrators that remember earlier steps restart at recall(), as World does.
+/// A strand takes the steps that it takes as a single strand of a World. It is
+/// bit-identical alone and with others if they do not touch. Memory is that of systems:
+/// see bytes(). Integrators that remember earlier steps restart at recall(), as World
+/// does.
 class ReplicatedHead final : public models::Head {
  public:
-  /// Of strands with so many elements each, of this scene, to which no reference is kept.
+  /// Constructs a batch of strands with `elements` elements each; keeps no reference to
+  /// the scene.
   ReplicatedHead(const Scene& scene, int elements);
 
   void reserve(std::size_t strands) override { strands_.reserve(strands); }
@@ -40,7 +42,7 @@ class ReplicatedHead final : public models::Head {
   std::size_t blocks() const override { return strands_.size(); }
   std::size_t bytes() const override { return bytes_; }
   std::unique_ptr<Scratch> scratch() const override;
-  /// To t + h, in as many steps as the integrator needs.
+  /// Advances to t + h, in the number of steps that the integrator needs.
   void step(std::size_t block, double t, double h, Scratch& scratch) override;
   std::size_t blocks_at_once() const override { return 1; }
   bool lost(std::size_t strand) const override { return strands_[strand].run.stays(); }

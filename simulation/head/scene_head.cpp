@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::size_t parts = 64;  // of strands that are made at the same time
 
-/// Whether what acts beside gravity and drag does no work in the frame of the head.
+/// Returns whether effects other than gravity and drag do no work in the frame of the
+/// head.
 bool at_rest_in_head(const Scene& scene) {
   return std::ranges::all_of(scene.effects, [&](const EffectChoice& choice) {
     const auto effect = make_effect(scene, choice);

@@ -16,10 +16,10 @@
 
 namespace tress::simulation {
 
-/// The strands of a rank, of a scene that no_head() has nothing against, at t = 0: in
-/// SIMD lanes, with the largest number of quadrature points that any strand of the scene
-/// needs, if the scene does not say how many; or, where no_lanes() has a reason, as a
-/// ReplicatedHead. Two passes over strands by so many threads, a thousand at a time.
+/// Strands of a rank at t = 0, of a scene that no_head() accepts. They are in SIMD lanes
+/// or, where no_lanes() has a reason, a ReplicatedHead. Unless the scene gives the number
+/// of quadrature points, lanes have the largest number that any strand of the scene
+/// needs. `threads` threads pass twice over the strands, a thousand at a time.
 struct SceneHead {
   std::unique_ptr<models::StrandInteraction> interaction;  // or null; outlives the head
   std::unique_ptr<Head> head;
@@ -31,19 +31,19 @@ struct SceneHead {
   std::vector<HeldShape> held;  // of a rest that is inverse, by places
 };
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);
-/// The same of the strands that a scene holds: the guides of a groom, or those left by
-/// only(). no_head() is asked of the scene that they come from.
+/// Makes a batch of the strands that a scene holds: the guides of a groom, or those left
+/// by only(). no_head() must accept the scene that they come from.
 SceneHead make_head(const Scene& scene, const HeadPack& pack, int threads);
-/// By ranks, each with strands of about equal sums of `cost`; empty: equally many. Throws
-/// InputError if there are fewer strands than ranks.
+/// Makes the strands of each rank, with about equal sums of `cost` per rank; empty:
+/// equally many. Throws InputError if there are fewer strands than ranks.
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads,
                     Ranks& ranks, std::span<const double> cost = {});
 
-/// Of a call of HeadRun::step() for the scene (s): of the intervals that strands divide
-/// into steps of their own, with a tolerance, or as systems that see no others.
+/// Returns the longest step (s) of HeadRun::step() for the scene. Strands divide it into
+/// steps of their own with a tolerance, or as systems that see no others.
 double longest_step(const Scene& scene, bool lanes);
 
-/// Bytes that so many strands of a head take, known before it is made.
+/// Returns the memory (bytes) of this number of strands, known before the batch is made.
 std::size_t head_bytes(const SceneOutline& outline, const HeadPack& pack,
                        std::size_t strands);
 

@@ -58,8 +58,9 @@ class SteppingHead final : public models::Head {
     for (const auto& [strand, reason] : lost) losses_.add(strand, t, h, reason);
   }
 
-  /// Strands that choose their steps share lanes with those of the same step alone: in a
-  /// hundred blocks of 8 lanes 8 % of the lanes are without one, in a dozen 40 %.
+  /// Returns the number of blocks per call. Strands that choose their steps share lanes
+  /// only with those of the same step. With a hundred blocks of 8 lanes 8 % of the lanes
+  /// are empty, with a dozen 40 %.
   std::size_t blocks_at_once() const override {
     return options_.tolerance > 0 ? 100 : Head::blocks_at_once();
   }

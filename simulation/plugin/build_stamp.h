@@ -11,9 +11,10 @@
 
 namespace tress::simulation {
 
-/// What must be the same where a plug-in and the program that loads it are compiled, for
-/// they pass each other objects: a text "tress plug-in|version=0.1.0|headers=...|...|"
-/// that lies in the library's file, where it is read before the library is opened.
+/// Properties that must agree where a plug-in and the program that loads it are compiled,
+/// since they pass each other objects. The stamp is a text "tress
+/// plug-in|version=0.1.0|headers=...|...|" in the library's file, which is read before
+/// the library is opened.
 class BuildStamp {
  public:
   constexpr BuildStamp() {

@@ -14,14 +14,18 @@ struct LoadedPlugin {
   std::vector<std::string> models, integrators, effects;  // ids that it brought
 };
 
-/// Opens the shared library, for the life of the process, and adds what it brings to the
-/// catalogues. To be called before they are first read, and before other threads run.
-/// Throws InputError if the file is missing or no plug-in; if it was built for another
-/// version of tress or in another way than this program (nothing of it is run then); if
-/// it throws, exits or crashes when it is loaded; or if a catalogue refuses an entry.
+/// Opens the shared library for the life of the process and adds its entries to the
+/// catalogues. Must be called before they are first read, and before other threads run.
+/// Throws InputError in these cases:
+///
+/// - The file is missing or no plug-in.
+/// - It was built for another version of tress or in another way than this program.
+///   Nothing of the library is run then.
+/// - It throws, exits or crashes when it is loaded.
+/// - A catalogue refuses an entry.
 void load_plugin(const std::string& file);
 
-/// In the order in which they were loaded.
+/// Returns the plug-ins in the order in which they were loaded.
 std::span<const LoadedPlugin> loaded_plugins();
 
 }  // namespace tress::simulation

@@ -9,7 +9,7 @@
 
 namespace tress::simulation {
 
-/// What a plug-in brings: entries of the catalogues. Texts and tables that they name must
+/// Contents of a plug-in: entries of the catalogues. Texts and tables that they name must
 /// live as long as the library.
 struct Plugin {
   std::vector<models::ModelEntry> models;

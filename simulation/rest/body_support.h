@@ -9,10 +9,10 @@
 
 namespace tress::simulation {
 
-/// How bodies support a strand at rest (held_shape.h).
+/// Support of a strand at rest by bodies (held_shape.h).
 struct BodySupport {
   int contacts = 0;  // points with a force
-  /// Of a body, by its index among the effects: what with_offsets() takes.
+  /// Offsets for with_offsets() of each body, by its index among the effects.
   std::vector<std::pair<std::size_t, std::vector<double>>> offsets;
 };
 

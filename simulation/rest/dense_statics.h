@@ -6,11 +6,11 @@
 
 namespace tress::simulation {
 
-/// A system without motion at t = 0 and q, linearised for its statics: displacements that
-/// its constraints allow, dq = Z y, and the symmetric part of the stiffness Z^T (dr/dq -
-/// d(G^T lambda)/dq) Z at the natural strains for which it is first asked. From the
-/// sparse form if there is one, else of the tangent, which has to be the exact one.
-/// Dense, O(n^3).
+/// Statics of a system without motion at t = 0 and q, linearised. Displacements that its
+/// constraints allow are dq = Z y. The stiffness is the symmetric part of Z^T (dr/dq -
+/// d(G^T lambda)/dq) Z at the natural strains of the first call. It comes from the sparse
+/// form if there is one, otherwise from the tangent, which must be the exact one. Dense,
+/// O(n^3).
 class DenseStatics {
  public:
   /// Throws std::runtime_error where the system cannot be evaluated.
@@ -22,7 +22,7 @@ class DenseStatics {
   const Eigen::MatrixXd& stiffness();
   /// Z^T K (to - from), of two states.
   Eigen::VectorXd pull(In from, In to);
-  /// Z^T dr/dnatural.
+  /// Computes Z^T dr/dnatural.
   Eigen::MatrixXd by_natural(NaturalStrains& strains);
   /// Displacements of all coordinates, a column each.
   Eigen::MatrixXd displacement(const Eigen::MatrixXd& y) const;

@@ -79,8 +79,8 @@ std::vector<double> balanced(DenseStatics& statics, std::vector<double> q) {
 }
 
 /// Sets the natural strains for which the state of balance is nearest to q, and returns
-/// that state: q itself where strains are coordinates; elsewhere stretch, which carries
-/// the tension and is no strain of these, moves it a little.
+/// that state. It is q itself where strains are coordinates. Elsewhere stretch, which
+/// carries the tension and is not one of these strains, moves it a little.
 std::vector<double> balance(System& system, NaturalStrains& strains,
                             const std::vector<double>& q) {
   constexpr int rounds = 4;  // after the first, with the tension of the load
@@ -102,7 +102,7 @@ std::vector<double> balance(System& system, NaturalStrains& strains,
 
 void invert(const Scene& scene, const Strand& strand, Effects effects, HeldShape& held) {
   Parameters options = scene.model_options;
-  if (options.knows("tangent")) options.set("tangent", "exact");
+  if (options.knows("jacobian")) options.set("jacobian", "exact");
   const auto system = scene.model->on_strand(strand, options, std::move(effects));
   const std::vector<double> q = coordinates_at_start(*system);
   NaturalStrains& strains = strains_to_hold(scene, strand, *system, inverse_rest);

@@ -11,7 +11,7 @@
 
 namespace tress::simulation {
 
-/// What keeps a strand at rest in the shape that it has at t = 0, for rest = "inverse".
+/// Data that keep a strand at rest in its shape at t = 0, for rest = "inverse".
 struct HeldShape {
   std::vector<double> natural;  // of NaturalStrains
   double factor = 1;            // by which its moduli are raised
@@ -19,41 +19,41 @@ struct HeldShape {
   double residual = 0;          // of the balance found, over that of the loads
   double sag = 0;               // largest displacement to it from the shape, m
   int contacts = 0;             // points that bodies support
-  /// Of a body, by its index among make_effects(): Body::with_offsets().
+  /// Offsets for Body::with_offsets() of a body, by its index among make_effects().
   std::vector<std::pair<std::size_t, std::vector<double>>> offsets;
 
   bool would_fall() const { return !(least_factor < 1); }
   bool falls() const { return !(least_factor < factor); }
 };
 
-/// By how much more than needed strands are stiffened.
+/// Factor of the stiffness by which strands exceed the moduli that they need.
 inline constexpr double stiffened = 2;
 
-/// For each strand the natural strains n for which q, its shape at t = 0, is an
-/// equilibrium under what acts on it then, r(q; n) = 0: the residual is affine in n.
+/// Returns for each strand the natural strains n for which q, its shape at t = 0, is an
+/// equilibrium, r(q; n) = 0, under the loads at t = 0. The residual is affine in n.
 ///
 /// Reduced models, whose strains are coordinates: n_k += r_k/stiffness_k, exact. Others
-/// have more coordinates than strains: the displacement that remains, |D^-1 K^-1 r| with
-/// K = dr/dq and typical sizes D, is made least, within the model's own constraints.
+/// have more coordinates than strains. The remaining displacement, |D^-1 K^-1 r| with K =
+/// dr/dq and typical sizes D, is minimised within the model's own constraints.
 ///
 /// Effects act with their values at t = 0, wind with its mean; roots and bodies are held
 /// where they are then. A `body` with regularised friction supports the points that it
-/// meets by normal forces f >= 0 for which the least elastic energy of n - s(q) remains,
-/// by nonnegative least squares. Where the depth d of a point is not f/k, its offset is
+/// meets by normal forces f >= 0. These minimise the elastic energy of n - s(q), by
+/// nonnegative least squares. Where the depth d of a point is not f/k, its offset is
 /// changed by f/k - d from then on, as the depth at rest must be.
 ///
 /// With the elastic stiffness raised by s, K(s) = s K_el + G, where G depends neither on
-/// s nor on n: the internal forces are those of the load. So a strand stays where s is
-/// above least_factor, the largest for which K(s) is singular; loads without a potential
-/// count with the symmetric part of their slopes. Where the scene says `stiffen`, strands
-/// that would fall get `stiffened` times the moduli that they need.
+/// s nor on n: the internal forces are those of the load. A strand therefore stays where
+/// s is above least_factor, the largest s for which K(s) is singular. Loads without a
+/// potential count with the symmetric part of their slopes. Where the scene says
+/// `stiffen`, strands that would fall get `stiffened` times the moduli that they need.
 ///
 /// O(n^3) for each strand, n its coordinates. Equilibria as unknowns of the natural
 /// shape: [Hadap 2006; Derouet-Jourdan et al. 2013].
 ///
-/// `between`: effects between strands, which know where all are. `numbers`: of the
-/// strands in messages, if they are not all of a scene. Throws InputError where
-/// the model has no such natural strains, a root is free or a balance does not exist.
+/// `between`: effects between strands, which know all positions. `numbers`: numbers of
+/// the strands in messages, if they are not all of a scene. Throws InputError where the
+/// model has no such natural strains, a root is free or a balance does not exist.
 std::vector<HeldShape> held_shapes(
     const Scene& scene, const std::function<models::Effects(std::size_t)>& between,
     Crew& crew, std::span<const std::size_t> numbers = {});

@@ -6,7 +6,7 @@
 
 namespace tress::simulation {
 
-/// Where errors of rest = "inverse" are, outside a file.
+/// Location of errors of rest = "inverse" that have no place in a file.
 inline constexpr const char* inverse_rest = "rest = \"inverse\"";
 
 std::vector<double> coordinates_at_start(const System& system);

@@ -16,16 +16,16 @@ struct EnergyMeasure {
   double power = 0;                   // W, into it
   double frame = 0;                   // J, of the frame's own motion
 
-  /// From the world's frame to the clamp's, of points under a load (3 numbers each, N).
-  /// Writes the relative velocities to `u`.
+  /// Transforms points under a load (3 numbers each, N) from the world's frame to the
+  /// clamp's. Writes the relative velocities to `u`.
   void move_with(const RootPose& root, const Points& p, In load, Out u);
 };
 
-/// The energy that a motion may have. In a frame that moves with the clamp, the clamp
-/// does no work. With x the position and v the velocity of a point of mass m, w = V +
-/// omega x r that of the frame there, u = v - w, f the loads of all effects, P the power
-/// (in the world's frame) of their non-potential part, V_p the potential of the rest, and
-/// a_w = A + alpha x r + omega x (omega x r) (the Coriolis term does no work),
+/// Bound of the energy of a motion. In a frame that moves with the clamp, the clamp does
+/// no work. x is the position and v the velocity of a point of mass m, w = V + omega x r
+/// the velocity of the frame there, and u = v - w. f are the loads of all effects, P the
+/// power (in the world's frame) of their non-potential part, and V_p the potential of the
+/// rest. With a_w = A + alpha x r + omega x (omega x r) (the Coriolis term does no work),
 ///
 ///     E = sum m u^2/2 + V_p,   dE/dt <= P - sum (f.w + m a_w.u),
 ///
@@ -35,10 +35,10 @@ struct EnergyMeasure {
 ///
 ///     E <= E(0) + slack + 1.1 W + largest sum m w^2/2,
 ///
-/// where a tenth of W allows for the error of its sums over points and intervals, and the
-/// last term for sums over lumped masses; a root at rest has w = 0. Without the tenth a
-/// weightless strand in wind breaks the bound by 1 % however short its steps: the energy
-/// is the model's, the work is that on lumped masses.
+/// where a tenth of W allows for the error of its sums over points and intervals. The
+/// last term allows for sums over lumped masses; a root at rest has w = 0. Without the
+/// tenth a weightless strand in wind breaks the bound by 1 % however short its steps: the
+/// energy is the model's, the work is that on lumped masses.
 ///
 /// Speed: E minus the lowest potential so far bounds the kinetic energy. If a tenth of
 /// the strand has all of it and turns about its own start, its tip moves at sqrt(30)

@@ -31,9 +31,9 @@ std::string remedy(std::string_view integrator, const Options& options,
                    Limit limit = Limit::none);
 
 /// Checks one system for physically impossible states, so that no run ends "ok" with
-/// invalid results: numbers that are not finite; a segment stretched or compressed by
-/// more than half of its length; more energy than the initial energy plus the work done;
-/// a point faster than that energy permits.
+/// invalid results. Impossible are numbers that are not finite, and a segment stretched
+/// or compressed by more than half of its length. So are more energy than the initial
+/// energy plus the work done, and a point faster than that energy permits.
 ///
 /// Energy and speed: as EnergyAccount, with the slack m g L + E_0/10. m g L is the energy
 /// gained by hanging down; a tenth of E_0, the initial kinetic and elastic energy, allows
@@ -59,7 +59,8 @@ class Guard {
   /// Checks this state unconditionally.
   bool judge(double t, In q, In v);
   const std::optional<Breach>& breach() const { return breach_; }
-  /// Until the last check. Without meaning where impulses or other strands act.
+  /// Returns the dissipation of the method until the last check. Meaningless where
+  /// impulses or other strands act.
   MethodDissipation dissipation() const { return meter_.dissipation(); }
 
   /// All data gathered since start(); recall() lets another guard of an identically

@@ -8,8 +8,8 @@
 
 namespace tress::simulation {
 
-/// A state is checked after so many steps, or so much time (s), and fails with a segment
-/// that is off its length by more than so much of it.
+/// Intervals between checks of a state, in steps and in time (s), and the largest change
+/// of a segment's length relative to its length.
 constexpr int guarded_every = 4;
 constexpr double guarded_for = 2e-3, most_stretch = 0.5;
 

@@ -8,9 +8,9 @@
 
 namespace tress::simulation {
 
-/// Curvature (1/m) of a line at its point i, those of its ends as at their neighbours: of
-/// the circle that turns from one chord into the next over half of each; 0 for a line of
-/// two points. `at(i)`: place of a point.
+/// Returns the curvature (1/m) of a line at its point i: that of the circle that turns
+/// from one chord into the next over half of each. Ends have the curvature of their
+/// neighbours; a line of two points has 0. `at(i)`: place of a point.
 template <class At>
 double line_curvature(const At& at, std::size_t i, std::size_t points) {
   if (points < 3) return 0;

@@ -15,9 +15,9 @@ struct ContactForce {
   Vec force;           // N
 };
 
-/// An effect that stores the last potential energy it returned: after a query of a
-/// model's energy, the part of each effect is known, and on demand its contact forces at
-/// the points where the model has them act. One per strand.
+/// Effect that stores the last potential energy it returned. After a query of a model's
+/// energy, the part of each effect is known. Contact forces at the points where the model
+/// has them act are available on demand. One per strand.
 class Metered final : public Effect {
  public:
   explicit Metered(std::shared_ptr<const Effect> effect) : effect_(std::move(effect)) {}
@@ -25,7 +25,8 @@ class Metered final : public Effect {
   double last() const { return last_->potential; }  // J
   /// Whether queries of the energy look for contact forces too.
   void look(bool forces) const { last_->look = forces; }
-  /// Of the last query that looked: places (m) and forces (N), 3 numbers each.
+  /// Returns the places (m) of the last query that recorded forces, 3 numbers each;
+  /// forces() returns the forces (N).
   In places() const { return last_->places; }
   In forces() const { return last_->forces; }
 
@@ -64,7 +65,7 @@ class Metered final : public Effect {
   }
   std::optional<Outline> outline(double t) const override { return effect_->outline(t); }
   bool contact() const override { return effect_->contact(); }
-  /// Its energy is known to this one too.
+  /// Returns a copy for one strand whose energy is also recorded by this effect.
   std::unique_ptr<Effect> for_strand(std::size_t points) const override {
     std::shared_ptr<Effect> own = effect_->for_strand(points);
     if (own == nullptr) return {};

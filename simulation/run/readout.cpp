@@ -59,7 +59,7 @@ Readout::Readout(const Scene& scene, const World& world)
     add("control_mesh_j", "energy of the links that hold");
   }
   if (scene.failed_strands == FailedStrands::stay) {
-    add("lost_strands", "strands that have failed and stay where they are");
+    add("failed_strands", "strands that have failed and stay where they are");
   }
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");

@@ -28,8 +28,9 @@ class Readout {
   /// `world`: any of this scene.
   Readout(const Scene& scene, const World& world);
 
-  /// Points of each line that is drawn, in the order of Frame3d's: a strand, or a chain
-  /// of segments of a tree, which begins at the point that it is attached to.
+  /// Returns the number of points of each line that is drawn, in the order of Frame3d's.
+  /// A line is a strand, or a chain of segments of a tree, which begins at the point of
+  /// attachment.
   const std::vector<int>& lines() const { return lines_; }
   std::size_t points() const { return drawn_.size(); }
 

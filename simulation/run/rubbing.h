@@ -14,9 +14,9 @@
 
 namespace tress::simulation {
 
-/// Strands that touch exactly, each or some advanced by a method of their own: they move
-/// as if they were alone, then impulses at the end of the step keep them from passing
-/// through each other and through obstacles (StrandFriction).
+/// Coupling of strands with exact contact, each or several advanced by a method of their
+/// own. They first move without contact. Impulses at the end of the step then keep them
+/// from passing through each other and through obstacles (StrandFriction).
 class Rubbing final : public StrandCoupling {
  public:
   /// Obstacles are found among the effects. Throws InputError on strands with branches.

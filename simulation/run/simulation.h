@@ -22,7 +22,7 @@ struct State {
 
 State initial_state(const System& system);
 
-/// How a run ended; the state is the one at `t`.
+/// Result of a run; the state is the one at `t`.
 struct Simulation {
   Status status;
   std::string failure;
@@ -43,8 +43,8 @@ Simulation simulate(std::string_view integrator, System& system, const Options& 
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, double t_end, const Observer& each_step = {});
 
-/// As simulate(), with a method constructed by the caller, who can query its stats during
-/// the run.
+/// Runs as simulate() does, with a method constructed by the caller, who can query its
+/// stats during the run.
 Simulation run_method(Integrator& method, System& system, const State& start,
                       std::span<const double> stops,
                       const std::function<void(const State&)>& at_stop,

@@ -44,11 +44,11 @@ struct SteppedSystem {
   void take_method(std::string_view method, const Options& options);
   /// Starts from a state; the guard is not started.
   void start(double begin, State state);
-  /// To `end`, unless it has failed before. The guard also checks the last state: where
-  /// the integrator failed, and if `last`.
+  /// Advances to `end`, unless it has failed before. The guard also checks the last state
+  /// if `last`, and where the integrator failed.
   void advance(const IntegratorEntry& method, const Options& options, double end,
                bool last);
-  /// It has failed, and stays at this state, at rest: readouts see it from now on.
+  /// Keeps the failed system at this state, at rest: readouts see it from now on.
   void stay(In at);
   /// q at the start of the last advance().
   In begun() const { return begun_; }
@@ -56,11 +56,12 @@ struct SteppedSystem {
   void keep(double at, In new_q, In new_v);
 
   bool breached() const { return guard && guard->breach(); }
-  /// What ended it: the guard's finding, or the integrator's own words. No remedy.
+  /// Returns the reason of the failure: the guard's finding, or the integrator's message.
+  /// Contains no remedy.
   std::string failure() const;
   /// The bound that ended it.
   Limit limit() const;
-  /// Since start().
+  /// Returns the counts since start().
   Stats stats() const;
   // What readouts see.
   In seen_q() const { return stays_ ? In(q) : integrator->q(); }

@@ -12,15 +12,14 @@
 
 namespace tress::simulation {
 
-/// What acts between strands each of which, or some as one system, is advanced by a
-/// method of its own. A step is before_step(); all systems advance, each followed by
-/// prepare(); after_step(); exchange(). Points are those of all strands, strand after
-/// strand, 3 numbers each.
+/// Coupling of strands, each or several advanced by a method of their own. A step is
+/// before_step(); all systems advance, each followed by prepare(); after_step();
+/// exchange(). Points are those of all strands, strand after strand, 3 numbers each.
 class StrandCoupling {
  public:
   virtual ~StrandCoupling() = default;
 
-  /// What acts on a strand while it advances; null: nothing.
+  /// Returns the effect of the others on a strand while it advances; null: nothing.
   virtual std::unique_ptr<const models::Effect> effect(std::size_t /*strand*/) const {
     return {};
   }

@@ -29,7 +29,8 @@ class StrandMaker {
   const IntegratorEntry& method() const { return *method_; }
   const Options& options() const { return options_; }
 
-  /// A strand as a system of its own; `number`: of it, in messages. Without integrator.
+  /// Makes a strand as a system of its own, without integrator. `number`: the strand's
+  /// number in messages.
   SteppedSystem one(const StrandToMake& strand, std::size_t number) const;
   /// Several of equal discretisation as one system; empty: the model has no such form for
   /// them.

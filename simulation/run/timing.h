@@ -11,9 +11,9 @@ namespace tress::simulation {
 /// The middle value (mean of the two middle ones); 0 if empty.
 double median(std::vector<double> values);
 
-/// Wall time of one call (s). Not the processor time of the thread, which omits the
-/// machine's other load: on a virtual machine that clock may stand still for some
-/// milliseconds, and neither minimum nor median of several times corrects that.
+/// Returns the wall time of one call (s). Processor time of the thread is not used: on a
+/// virtual machine that clock may stand still for some milliseconds. Neither minimum nor
+/// median of several times corrects that.
 template <typename F>
 double seconds_of(F&& f) {
   using Clock = std::chrono::steady_clock;
@@ -63,7 +63,7 @@ Timing time_calls(int repeats, F&& f) {
   return summarize(seconds);
 }
 
-/// As above, after one unmeasured call (caches, lazy allocation).
+/// Measures as above, after one unmeasured call (caches, lazy allocation).
 template <typename F>
 Timing time_it(int repeats, F&& f) {
   f();

@@ -33,7 +33,9 @@ void World::restore(const Snapshot& snapshot) {
       all.memory.insert(all.memory.end(), one.memory.begin(), one.memory.end());
     }
     body.start(t_, std::move(all));
-    const auto of_body = [&](const LostStrand& one) { return one.strand == body.first; };
+    const auto of_body = [&](const FailedStrand& one) {
+      return one.strand == body.first;
+    };
     if (std::ranges::any_of(snapshot.lost, of_body)) body.stay(body.integrator->q());
   }
   lost_ = snapshot.lost;

@@ -12,7 +12,7 @@
 #include "integrators/control/step_control.h"
 #include "models/groom/coupled_strands.h"
 #include "simulation/rest/held_shape.h"
-#include "simulation/run/lost_strand.h"
+#include "simulation/run/failed_strand.h"
 #include "simulation/run/rubbing.h"
 #include "simulation/run/strand_coupling.h"
 #include "simulation/run/strand_maker.h"
@@ -29,10 +29,10 @@ struct Snapshot {
   std::vector<OfStrand> strands;
   std::vector<double> guards;  // their Guards::memory(); empty: they start here
   std::vector<std::vector<double>> couplings;  // StrandCoupling::memory() of each
-  std::vector<LostStrand> lost;
+  std::vector<FailedStrand> lost;
 
-  /// Adds the strands of one system: parts of q and v of so many coordinates, and of its
-  /// memory.
+  /// Adds the strands of one system: parts of q and v with these numbers of coordinates,
+  /// and parts of its memory.
   void add(In q, In v, In memory, const std::vector<std::size_t>& coordinates,
            const std::vector<std::size_t>& memories);
 };
@@ -50,22 +50,22 @@ struct Energies {
   std::vector<double> effects;  // of make_effects(), in the scene's order
 };
 
-/// A constructed scene: systems and integrators of its strands, its effects, and the
+/// Constructed scene: systems and integrators of its strands, its effects, and the
 /// coupling of strands. Effects that the scene does not name are not built.
 ///
-/// Strands that touch exchange their positions between steps (coupling = lagged): during
+/// Strands that touch exchange their positions between steps (coupling = lagged). During
 /// a step each sees the others at their positions at its start, so strands run on several
 /// threads with the same result. With a tolerance every strand takes its own steps
-/// between two exchanges, during which it sees the others move as the last pass has found
-/// them; the intervals are under the same error control (world_exchange.cpp). With
-/// coupling = monolithic they are one system. Exact contact between them acts by impulses
-/// at the ends of steps (Rubbing). Strands of equal
-/// discretisation run four at a time if the model supports it (ModelEntry::on_strands).
-/// Where failed strands stay (Scene::failed_strands), each is a system of its own.
+/// between two exchanges. It then sees the others move as in the last pass. The intervals
+/// are under the same error control (world_exchange.cpp). With coupling = monolithic they
+/// are one system. Exact contact between them acts by impulses at the ends of steps
+/// (Rubbing). Strands of equal discretisation run four at a time if the model supports it
+/// (ModelEntry::on_strands). Where failed strands stay (Scene::failed_strands), each is a
+/// system of its own.
 class World {
  public:
-  /// Throws InputError if model, strand and effects are incompatible. `held`: that of an
-  /// earlier world of the same scene, which is found anew if it is empty.
+  /// Constructs a scene. Throws InputError if model, strand and effects are incompatible.
+  /// `held`: that of an earlier world of the same scene, recomputed if empty.
   explicit World(const Scene& scene, int threads = 1, std::vector<HeldShape> held = {});
 
   void restore(const Snapshot& snapshot);
@@ -78,14 +78,15 @@ class World {
   const std::string& failure() const { return failure_; }
   /// Strands that have failed and stay where they were at the start of their last
   /// advance(), in the order in which they did. Energies leave them out.
-  const std::vector<LostStrand>& lost() const { return lost_; }
+  const std::vector<FailedStrand>& lost() const { return lost_; }
   bool lost(std::size_t strand) const { return stay_ && bodies_[strand].stays(); }
-  /// Of all strands. Empty: without guards, or where what changes energy is not a power:
-  /// impulses of rigid contact and of friction between strands, other strands that move.
+  /// Returns the dissipation of all strands. Empty without guards, or where energy
+  /// changes by other means than power: impulses of rigid contact and of friction between
+  /// strands, other strands that move.
   std::optional<MethodDissipation> dissipation() const;
   /// Why the motion of a strand was not smooth; empty: no such event was seen.
   std::string not_smooth() const;
-  /// What a guard found, or null.
+  /// Returns the breach that a guard found, or null.
   const Breach* breach() const;
   /// Largest of all strands so far; 0 if the method has none (ErrorIndicator).
   double error_indicator() const;
@@ -97,15 +98,15 @@ class World {
   /// Since restore(); none where exchanges follow the step.
   const Exchanges& exchanges() const { return exchanges_; }
 
-  /// What holds each strand; empty unless the scene's rest is inverse.
+  /// Returns the held shape of each strand; empty unless the scene's rest is inverse.
   const std::vector<HeldShape>& held() const { return held_; }
 
   std::size_t strands() const { return points_.size(); }
   std::size_t systems() const { return bodies_.size(); }
-  /// From the systems' Energetics.
+  /// Returns the energies of the systems' Energetics.
   Energies energies();
-  /// Of effects on each strand that are contact, where the models have them act, by
-  /// strand; without those between strands.
+  /// Returns the contact forces of effects on each strand, at the points where the models
+  /// have them act, by strand; without those between strands.
   std::vector<ContactForce> contact_forces();
   double stretch();  // largest |length/rest - 1|, 0 if not available
   // Null if the scene names none.
@@ -140,7 +141,7 @@ class World {
     PointNorm norm;
     void mark();
     void rewind();
-    /// Its points among those of all strands.
+    /// Returns its points among those of all strands.
     In part(In all) const { return all.subspan(3 * first_point, 3 * points); }
   };
 
@@ -166,7 +167,7 @@ class World {
     }
   };
   void look(const Read& known, void (World::*read)(std::size_t, double));
-  /// Those of the points of a body, which is at t, unless they are known.
+  /// Reads the positions of a body's points at t, unless they are known.
   void read_positions(std::size_t k, double t);
   void read_velocities(std::size_t k, double t);
   Status couple(double h);
@@ -199,7 +200,7 @@ class World {
   Read x_, u_;
   double t_ = 0;
   std::string failure_;
-  std::vector<LostStrand> lost_;
+  std::vector<FailedStrand> lost_;
   Crew crew_;
 };
 

@@ -133,7 +133,7 @@ bool may_cut_at_rest(const Scene& scene) {
          std::ranges::all_of(scene.tables->sources, [](const StrandSource& source) {
            const Parameters& p = source.table.values();
            return !source.groom && p.numbers("points").empty() &&
-                  p.number("grading") == 1 && p.word("cuts") == "grading";
+                  p.number("grading") == 1 && p.word("mesh") == "grading";
          });
 }
 
@@ -150,7 +150,7 @@ Scene every_strand(Scene scene, std::size_t most) {
                        clear_detail(groom);
                        if (all <= most) return;
                        if (groom.values().word("file").empty()) {
-                         set_whole(groom, "density_1_m2", 0);
+                         set_whole(groom, "density_per_m2", 0);
                        }
                        set_whole(groom, "count", share_of(most, all, strands));
                      });

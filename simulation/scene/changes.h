@@ -38,7 +38,7 @@ Scene with_elements(Scene scene, int elements);
 /// above.
 Scene with_elements_of_strands(Scene scene, std::span<const int> elements);
 /// Returns the scene with `elements` elements that share the bending of a strand at
-/// rest: cuts = "rest", or "rest_linear" where the scene's model is super_clothoid.
+/// rest: mesh = "rest", or "rest_linear" where the scene's model is super_clothoid.
 /// Only of [strand] tables, without points.
 Scene with_elements_at_rest(Scene scene, int elements);
 bool may_cut_at_rest(const Scene& scene);
@@ -46,7 +46,7 @@ bool may_cut_at_rest(const Scene& scene);
 Scene with_twice_the_elements(Scene scene);
 
 /// Returns the scene with every strand of its grooms simulated, none a follower, and
-/// equal numbers of elements in all strands of a table; grooms of fewer strands if
+/// equal numbers of elements in all strands of a table. Grooms keep fewer strands if
 /// there are more than `most` altogether. The scene may be that of an outline.
 Scene every_strand(Scene scene, std::size_t most);
 /// Returns the scene with `guides` guides, at most the number of strands. The grooms

@@ -20,8 +20,8 @@ constexpr int most_fitted_elements = 200;
 
 constexpr Parameter file_keys[] = {
     {.name = "file",
-     .help = "strands from a .hair, .data, .bin, .ply, .usda or .vtp, instead of from "
-             "numbers: all keys of the head, of shape and length are left out, count "
+     .help = "strands from a .hair, .data, .bin, .ply, .usda or .vtp instead of from "
+             "numbers. Keys of the head, of shape and of length are left out. count "
              "selects a number of strands, evenly spread",
      .text = true},
     {.name = "unit",
@@ -34,8 +34,9 @@ constexpr Parameter file_keys[] = {
      .min = 0,
      .max = 1e6},
     {.name = "up",
-     .help = "axis of the file that points up; file: as it or its format says (.usda: "
-             "y), or else guessed from hair that bends as it hangs, and printed",
+     .help =
+         "axis of the file that points up. file: that of the file or its format (.usda: "
+         "y), otherwise guessed from hair that bends as it hangs, and printed",
      .choices = "file|x|y|z|-x|-y|-z"},
     {.name = "position_m",
      .help = "file: place of its origin x, y, z (m)",
@@ -50,9 +51,9 @@ constexpr Parameter file_keys[] = {
      .max = 1e9,
      .whole = true},
     {.name = "bad_strands",
-     .help = "file: strands of fewer than two points, with repeated points, with points "
-             "that are not finite, or (.usda) with a number of points that does not suit "
-             "their basis; drop: left out, and counted",
+     .help = "file: treatment of strands with fewer than two points, repeated points, or "
+             "points that are not finite. In a .usda also of strands with a number of "
+             "points that does not suit their basis. drop: left out, and counted",
      .choices = "refuse|drop"},
     {.name = "hidden_strands",
      .help =
@@ -65,7 +66,7 @@ constexpr Parameter file_keys[] = {
      .min = 0,
      .max = 1e6,
      .whole = true},
-    {.name = "cuts",
+    {.name = "mesh",
      .help =
          "file: where elements end: half by length and half by turning, or all equal, "
          "as a head of hair needs them",
@@ -176,7 +177,7 @@ std::shared_ptr<const FittedGroom> fit_file_groom(const Table& groom,
   fit.elements = p.whole("elements");
   fit.tolerance_m = detail_tolerance(groom);
   fit.tolerance_rel = p.number("fit_tolerance");
-  fit.by_turning = p.word("cuts") == "turning";
+  fit.by_turning = p.word("mesh") == "turning";
   fit.between = p.word("fit") == "edges" ? Between::edges : Between::helices;
   constexpr unsigned most_threads = 16;
   const unsigned threads =

@@ -21,12 +21,12 @@ constexpr double pi = std::numbers::pi;
 
 constexpr Parameter own_parameters[] = {
     {.name = "count",
-     .help = "number of strands, 0: by density_1_m2",
+     .help = "number of strands, 0: by density_per_m2",
      .number = 100,
      .min = 0,
      .max = 1e6,
      .whole = true},
-    {.name = "density_1_m2",
+    {.name = "density_per_m2",
      .help = "count = 0: strands per area (1/m^2)",
      .number = 0,
      .min = 0,
@@ -94,17 +94,16 @@ constexpr Parameter own_parameters[] = {
 
 constexpr Parameter detail_keys[] = {
     {.name = "fit_tolerance",
-     .help =
-         "file: each strand gets as few elements as bring it this near to its points, "
-         "over its length, up to `elements`; 0: all get `elements`; tolerance_m is "
-         "the same in m",
+     .help = "file: largest distance of a strand from its points, over its length, which "
+             "chooses its number of elements up to `elements`. 0: all get `elements`; "
+             "tolerance_m is the same in m",
      .number = 0,
      .min = 0,
      .max = 1},
     {.name = "tolerance_m",
-     .help = "level of detail: each strand gets as few elements as its shape at rest "
-             "needs to be within this distance, up to `elements`, by its length, curl "
-             "and weight (m); 0: all get `elements`",
+     .help = "level of detail: largest distance of a strand from its shape at rest (m). "
+             "It chooses the number of elements, up to `elements`, by length, curl and "
+             "weight. 0: all get `elements`",
      .number = 0,
      .min = 0,
      .max = 1e3},
@@ -113,7 +112,7 @@ constexpr Parameter detail_keys[] = {
      .number = 0,
      .min = 0,
      .max = 1e6},
-    {.name = "pixels_1_m",
+    {.name = "pixels_per_m",
      .help = "there: pixels by metre, the focal length in pixels over the distance in m",
      .number = 0,
      .min = 0,
@@ -125,11 +124,11 @@ std::size_t count(const Table& table, const Cap& cap, std::size_t most) {
   double wanted = p.number("count");
   std::string_view key = "count";
   if (wanted == 0) {
-    wanted = std::floor(p.number("density_1_m2") * cap.area());
-    key = "density_1_m2";
-  } else if (p.number("density_1_m2") > 0) {
-    throw InputError("density_1_m2 cannot be combined with a count",
-                     table.place("density_1_m2"), "leave it out, or give count = 0");
+    wanted = std::floor(p.number("density_per_m2") * cap.area());
+    key = "density_per_m2";
+  } else if (p.number("density_per_m2") > 0) {
+    throw InputError("density_per_m2 cannot be combined with a count",
+                     table.place("density_per_m2"), "leave it out, or give count = 0");
   }
   if (wanted >= 1 && wanted <= static_cast<double>(most)) {
     return static_cast<std::size_t>(wanted);
@@ -192,15 +191,15 @@ std::span<const Parameter> detail_parameters() { return detail_keys; }
 double detail_tolerance(const Table& groom) {
   const Parameters& p = groom.values();
   const double metres = p.number("tolerance_m"), pixels = p.number("tolerance_px"),
-               size = p.number("pixels_1_m");
+               size = p.number("pixels_per_m");
   const auto refuse_if = [&groom](bool bad, const char* problem) {
     if (!bad) return;
     throw InputError(problem, groom.place("tolerance_px"),
-                     "give tolerance_m, or tolerance_px and pixels_1_m");
+                     "give tolerance_m, or tolerance_px and pixels_per_m");
   };
   refuse_if(metres > 0 && pixels > 0, "tolerance_px cannot be combined with tolerance_m");
-  refuse_if(pixels > 0 && size == 0, "tolerance_px without pixels_1_m");
-  refuse_if(pixels == 0 && size > 0, "pixels_1_m without tolerance_px");
+  refuse_if(pixels > 0 && size == 0, "tolerance_px without pixels_per_m");
+  refuse_if(pixels == 0 && size > 0, "pixels_per_m without tolerance_px");
   return pixels > 0 ? pixels / size : metres;
 }
 

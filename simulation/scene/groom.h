@@ -17,8 +17,8 @@ std::span<const Parameter> detail_parameters();
 /// Throws InputError where the keys contradict each other.
 double detail_tolerance(const Table& groom);
 
-/// Roots at equal shares of the area of the cap: Fibonacci's lattice (i + 1/2)/n, frac(i
-/// golden) mapped to the ellipsoid by its area, tabulated in 256 x 256 cells. A root's
+/// Roots at equal shares of the area of the cap. Fibonacci's lattice (i + 1/2)/n, frac(i
+/// golden) is mapped to the ellipsoid by its area, tabulated in 256 x 256 cells. A root's
 /// tangent lies between the ellipsoid's normal and the combing direction: down along the
 /// surface, and away from the parting.
 class Groom {

@@ -24,17 +24,17 @@ constexpr double must = std::numeric_limits<double>::quiet_NaN();  // be given
 /// quoted on Biomch-L in 1998]. An isotropic material has at most 3.
 constexpr double anisotropy = 3.89 / 0.89;
 
-/// Radius (of the circle of the same area) and ellipticity: cross-sections of 5063, 4079
-/// and 4210 um^2 and ratios of diameters of 1.29, 1.41 and 1.66 for Asian, Caucasian and
-/// African American hair [TRI Princeton, Hair Ethnicity, table 3].
+/// Radius (of the circle of the same area) and ellipticity follow from measured sections.
+/// For Asian, Caucasian and African American hair these are 5063, 4079 and 4210 um^2,
+/// with ratios of diameters of 1.29, 1.41 and 1.66 [TRI Princeton, Hair Ethnicity, table
+/// 3].
 ///
 /// Young's modulus: 3.8 GPa, one value for all, of dry hair at a humidity of 50 % [TRI
-/// Princeton, appendix B]. Wet hair has a half to a third of it [J. Cosmet. Sci. 72
-/// (2021), p. 673].
+/// Princeton, appendix B]. Wet hair has a half to a third of that modulus [J. Cosmet.
+/// Sci. 72 (2021), p. 673].
 ///
-/// From memory, unverified: the density of dry hair, 1320 kg/m^3, and the
-/// curls, of the size that [Bertails et al. 2006] give for African and wavy Caucasian
-/// hair.
+/// From memory, unverified: the density of dry hair, 1320 kg/m^3, and the curls, of the
+/// size that [Bertails et al. 2006] give for African and wavy Caucasian hair.
 ///
 /// Internal friction: 1e-10 kg m^3/s, fitted to an oscillating curly clump [Bertails et
 /// al. 2006, in the course notes of 2008, figure 1.8]: a damping time, friction over E I,

@@ -12,7 +12,7 @@ namespace tress::simulation {
 namespace {
 
 std::string_view wanted(const Parameter& p) {
-  if (p.text) return "a string";
+  if (p.text) return p.rows ? "a list of strings" : "a string";
   if (p.choices == "true|false") return "true or false";
   if (!p.choices.empty()) return "a string";
   if (p.rows)
@@ -67,8 +67,22 @@ std::string rows_text(const Parameter& p, const toml::node& node,
   return text;
 }
 
+/// Strings of a list, joined by commas.
+std::string texts(const Parameter& p, const toml::node& node, const std::string& file) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) wrong_type(p, node, file);
+  std::string text;
+  for (const toml::node& one : *list) {
+    if (!one.is_string()) wrong_type(p, one, file);
+    if (!text.empty()) text += ',';
+    text += printable(scalar_text(one));
+  }
+  return text;
+}
+
 std::string value_text(const Parameter& p, const toml::node& node,
                        const std::string& file) {
+  if (p.text && p.rows) return texts(p, node, file);
   if (p.text || !p.choices.empty()) {
     const bool flag = p.choices == "true|false" && node.is_boolean();
     if (!node.is_string() && !flag) wrong_type(p, node, file);

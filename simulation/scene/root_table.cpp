@@ -36,7 +36,7 @@ constexpr Parameter parameters[] = {
      .components = 3,
      .fallback = "0,0,0"},
     {.name = "amplitude_m",
-     .help = "shake: a sin(2 pi f t); swing: a (1 - cos(2 pi f t)); drop_pull: by a in "
+     .help = "shake: a sin(2 pi f t). swing: a (1 - cos(2 pi f t)). drop_pull: by a in "
              "half a period, back in the next (m)",
      .number = 0.05,
      .min = -largest_number,
@@ -67,8 +67,8 @@ constexpr Parameter parameters[] = {
      .min = 1e-9,
      .max = largest_number},
     {.name = "keyframes",
-     .help = "rows of t, x, y, z, angle (s, m, rad) away from the place at rest, t "
-             "ascending; smooth in between, at rest before and after",
+     .help = "rows of t, x, y, z, angle (s, m, rad) relative to the place at rest, t "
+             "ascending. The motion is smooth in between, at rest before and after",
      .min = -largest_number,
      .max = largest_number,
      .components = 5,

@@ -13,6 +13,7 @@
 #include "models/effects/obstacle.h"
 #include "models/strand/geometry.h"
 #include "simulation/scene/file_groom.h"
+#include "simulation/scene/gradient_table.h"
 #include "simulation/scene/read_table.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/scene_check.h"
@@ -26,8 +27,8 @@ namespace {
 constexpr std::size_t most_effects = 1000, most_groom_files = 100;
 constexpr double most_frames = 1e6;
 
-constexpr std::string_view known_tables[] = {"model", "integrator", "material", "strand",
-                                             "groom", "root",       "effects"};
+constexpr std::string_view known_tables[] = {
+    "model", "integrator", "material", "strand", "groom", "root", "effects", "gradient"};
 constexpr std::string_view material_table[] = {"material"};
 
 /// A scene being read: the parsed text and the part interpreted so far.
@@ -54,6 +55,7 @@ class Reader {
     if (scene_.model->on_strand != nullptr) {
       read_strands(outlined);
       read_effects();
+      if (scene_.tables->gradient) gradient_parameters(scene_);
     } else {
       refuse_strand_tables();
     }
@@ -100,7 +102,7 @@ class Reader {
                        "begin it with title = \"...\"");
     }
     scene_.duration = p.number("duration_s");
-    scene_.frame_rate = p.number("frames_1_s");
+    scene_.frame_rate = p.number("frames_per_s");
     scene_.checkpoint = p.number("checkpoint_s");
     scene_.guard = p.word("guard") == "true";
     scene_.seed = static_cast<std::uint64_t>(p.number("seed"));
@@ -120,8 +122,8 @@ class Reader {
     if (scene_.duration * scene_.frame_rate <= most_frames) return;
     throw InputError(
         fmt::format("{:.0f} frames", scene_.duration * scene_.frame_rate),
-        top.place("frames_1_s"),
-        fmt::format("give frames_1_s times duration_s up to {:.0f}", most_frames));
+        top.place("frames_per_s"),
+        fmt::format("give frames_per_s times duration_s up to {:.0f}", most_frames));
   }
 
   void read_model() {
@@ -165,7 +167,8 @@ class Reader {
       refuse("min_step_s", "is more than max_step_s");
     }
     if (!entry.adaptive && !entry.error_controlled) {
-      refuse("tolerance", fmt::format("is not for {}, which has a fixed step", entry.id));
+      refuse("position_tol_rel",
+             fmt::format("is not for {}, which has a fixed step", entry.id));
     }
     if (entry.adaptive && least) {
       refuse("min_step_s", fmt::format("does nothing with {}", entry.id));
@@ -178,12 +181,12 @@ class Reader {
       refuse(key, "is not for a run with tolerance, from which it follows");
     }
     scene_.options = with_tolerance(entry, scene_.options);
-    places_.tolerance = read.place("tolerance");
+    places_.tolerance = read.place("position_tol_rel");
   }
 
   void refuse_strand_tables() const {
     for (const std::string_view name :
-         {"strand", "groom", "material", "root", "effects"}) {
+         {"strand", "groom", "material", "root", "effects", "gradient"}) {
       const toml::node* node = root_.get(name);
       if (node == nullptr) continue;
       throw InputError(fmt::format("[{}] is not allowed with model {}, which brings its "
@@ -204,6 +207,10 @@ class Reader {
     if (tables.sources.empty()) {
       throw InputError("a scene without strands", file_ + ":1:1",
                        "give a [strand], or a [groom] for many");
+    }
+    if (const toml::table* given = table("gradient")) {
+      tables.gradient =
+          read_table(*given, gradient_table_parameters(), "[gradient]", file_);
     }
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
     series_ = std::make_shared<const StrandSeries>(

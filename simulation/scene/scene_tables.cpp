@@ -7,6 +7,7 @@
 #include "integrators/catalogue.h"
 #include "integrators/integrator_options.h"
 #include "models/effects/catalogue.h"
+#include "simulation/scene/gradient_table.h"
 #include "simulation/scene/groom.h"
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/root_table.h"
@@ -24,7 +25,7 @@ constexpr Parameter top[] = {
      .number = 1,
      .min = 1e-9,
      .max = 1e6},
-    {.name = "frames_1_s",
+    {.name = "frames_per_s",
      .help = "frames of the series and the geometry per simulated time, and one at its "
              "end (1/s)",
      .number = 50,
@@ -36,22 +37,22 @@ constexpr Parameter top[] = {
      .min = 0,
      .max = 1e6},
     {.name = "guard",
-     .help = "end the run where it does what physics rules out: a piece stretched by "
-             "half, a point faster than the energy allows, or more energy than at the "
-             "start by m g L, a tenth of the initial kinetic and elastic energy, and 1.1 "
-             "times the work of loads and root. Coarse but sound steps need that margin; "
-             "what the method created within it is printed. See failed_strands",
+     .help = "end the run at a state that physics rules out. These are a piece stretched "
+             "by half, a point faster than the energy allows, or too much energy. The "
+             "energy may exceed that at the start by m g L and a tenth of the initial "
+             "kinetic and elastic energy. To this, 1.1 times the work of loads and root "
+             "is added. Coarse but sound steps need that margin; the energy that the "
+             "method created within it is printed. See failed_strands",
      .choices = "true|false"},
     {.name = "failed_strands",
-     .help = "outcome of a strand that fails, or that the guard stops: end the run, or "
-             "stay where it is while the others go on; the run then fails at its end. In "
-             "a batch it always stays",
+     .help = "outcome of a strand that fails, or that the guard stops. It ends the run, "
+             "or stays in place while the others continue; the run then fails at its "
+             "end. In a batch it always stays",
      .choices = "end_run|stay"},
     {.name = "rest",
      .help =
-         "natural strains: those of the tables, or inverse: such that all strands are "
-         "at rest as they are at t = 0, under what acts on them then (of wind its "
-         "mean)",
+         "natural strains: those of the tables, or inverse. With inverse all strands are "
+         "at rest in their shape at t = 0, under the loads at t = 0 (the mean of wind)",
      .choices = "natural|inverse"},
     {.name = "unstable",
      .help = "rest = inverse: strands too soft to stay: made twice as stiff as they must "
@@ -105,7 +106,7 @@ std::span<const Parameter> model_table_parameters(const ModelEntry& model) {
 
 std::span<const Parameter> integrator_table_parameters() {
   static const std::string ids =
-      choices_of(integrator_catalogue(), "semi_implicit_euler");
+      choices_of(integrator_catalogue(), "linearly_implicit_euler");
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{
         {.name = "id", .help = "id of the method", .choices = ids}};
@@ -186,6 +187,10 @@ std::vector<TableEntry> table_entries() {
     entry.many = effect.many;
     all.push_back(std::move(entry));
   }
+  all.push_back({.name = "gradient",
+                 .summary = "derivatives of the motion by numbers of the scene, which "
+                            "simulate --gradient writes; without it of no effect",
+                 .parameters = gradient_table_parameters()});
   return all;
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::string range(const Parameter& p) {
-  if (p.text) return "text";
+  if (p.text) return p.rows ? "list of texts" : "text";
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(words_of(p.choices), ", "));
   std::string text = p.whole ? "whole, " : "";
   if (p.min == -infinite && p.max == infinite) {
@@ -121,10 +121,10 @@ constexpr std::string_view defaults_head =
     "title = \"a hair that swings\"\n"
     "source = \"simulate --print-defaults\"\n";
 
-/// The keys shown, in the order of the page, some with a value that suits the scene
-/// better than the default: a method that does not damp what it should keep, the internal
-/// friction of measured hair (E I times 2 ms, E = 3.9 GPa) and the drag of still air on a
-/// hair, 72 um thick.
+/// Keys shown, in the order of the page. Some have a value that suits the scene better
+/// than the default. These are a method that does not damp what it should keep, the
+/// internal friction of measured hair (E I times 2 ms, E = 3.9 GPa) and the drag of
+/// still air on a hair, 72 um thick.
 struct Shown {
   std::string_view table, keys;
 };
@@ -159,7 +159,7 @@ std::string scene_schema() {
   page += fmt::format(
       "\nA file has at most {} MiB. A scene has at most {} strands and {} elements. One "
       "that runs "
-      "as a batch\n(`simulate --as head`) makes its strands one at a time and has at "
+      "as a batch\n(`simulate --as batch`) makes its strands one at a time and has at "
       "most {} "
       "strands and {} elements.\n",
       most_toml_bytes >> 20, held_at_once.strands, held_at_once.elements,
@@ -180,7 +180,7 @@ std::string scene_schema() {
 
 std::string scene_defaults() {
   std::string scene(defaults_head);
-  add_values(scene, top_parameters(), "duration_s|frames_1_s");
+  add_values(scene, top_parameters(), "duration_s|frames_per_s");
   scene += "\n[model]\n";
   add_values(scene, model_table_parameters(find_model("super_helix")), "id");
   for (const TableEntry& entry : table_entries()) {

@@ -26,7 +26,7 @@ constexpr Parameter shape_table[] = {
      .number = 0.02,
      .min = -1e3,
      .max = 1e3},
-    {.name = "wave_1_m",
+    {.name = "wave_per_m",
      .help = "wavy: largest curvature (1/m)",
      .number = 50,
      .min = -1e6,
@@ -36,7 +36,7 @@ constexpr Parameter shape_table[] = {
      .number = 0.03,
      .min = 1e-9,
      .max = 1e6},
-    {.name = "fuzz_1_m",
+    {.name = "fuzz_per_m",
      .help = "fuzzy: root mean square of either curvature (1/m)",
      .number = 50,
      .min = 0,
@@ -49,8 +49,8 @@ constexpr Parameter shape_table[] = {
 };
 
 constexpr Use use_table[] = {{"helix", "curl_radius_m|curl_pitch_m"},
-                             {"wavy", "wave_1_m|wavelength_m"},
-                             {"fuzzy", "fuzz_1_m|correlation_m"}};
+                             {"wavy", "wave_per_m|wavelength_m"},
+                             {"fuzzy", "fuzz_per_m|correlation_m"}};
 
 constexpr std::size_t waves = 32;
 struct Wave {
@@ -99,10 +99,10 @@ Shape natural_shape(const Table& table, const StrandMaterial& material,
     return helix_shape(material.curl_radius, material.curl_pitch);
   }
   if (shape == "wavy") {
-    return wavy_shape(p.number("wave_1_m"), p.number("wavelength_m"));
+    return wavy_shape(p.number("wave_per_m"), p.number("wavelength_m"));
   }
   if (shape == "fuzzy") {
-    return fuzzy_shape(p.number("fuzz_1_m"), p.number("correlation_m"), seed, stream);
+    return fuzzy_shape(p.number("fuzz_per_m"), p.number("correlation_m"), seed, stream);
   }
   return uniform_shape({});
 }

@@ -35,15 +35,16 @@ constexpr Parameter own_parameters[] = {
      .components = 3,
      .fallback = "1,0,0"},
     {.name = "normal",
-     .help = "direction of the section's axis e1 at the root, as far as it is across the "
-             "tangent: positive curvature about it bends towards -(tangent x normal)",
+     .help =
+         "direction of the section's axis e1 at the root; its component across the "
+         "tangent counts. Positive curvature about it bends towards -(tangent x normal)",
      .min = -most,
      .max = most,
      .components = 3,
      .fallback = "0,1,0"},
     {.name = "points",
      .help = "rows of x, y, z (m): the natural shape as a smooth curve through at least "
-             "three points; they stand for length_m, position_m, root_tangent and shape",
+             "three points. They replace length_m, position_m, root_tangent and shape",
      .min = -1e3,
      .max = 1e3,
      .components = 3,
@@ -53,17 +54,15 @@ constexpr Parameter own_parameters[] = {
          "points: they are the shape at rest; straight: a straight strand is bent into "
          "them at t = 0, as in a knot",
      .choices = "points|straight"},
-    {.name = "cuts",
-     .help =
-         "placement of the elements: by grading, or with equal shares of the curvature "
-         "at rest, clamped and under its weight; rest_linear: for curvature that is "
-         "linear in an element (super_clothoid)",
+    {.name = "mesh",
+     .help = "placement of the elements: by grading, or with equal shares of the "
+             "curvature at rest, clamped and under its weight. rest_linear: for "
+             "curvature that is linear in an element (super_clothoid)",
      .choices = "grading|rest|rest_linear"},
     {.name = "tolerance_m",
-     .help =
-         "largest distance from the shape at rest, which chooses the number of elements, "
-         "up to `elements` (m); `simulate` tries the motion and adds elements where it "
-         "needs them; 0: `elements`",
+     .help = "largest distance (m) from the shape at rest, which chooses the number of "
+             "elements, up to `elements`. `simulate` tries the motion and adds elements "
+             "where it needs them. 0: `elements`",
      .number = 0,
      .min = 0,
      .max = 1e3},
@@ -71,7 +70,7 @@ constexpr Parameter own_parameters[] = {
 
 void refuse_beside_points(const Table& table) {
   for (const char* key :
-       {"length_m", "position_m", "root_tangent", "shape", "cuts", "tolerance_m"}) {
+       {"length_m", "position_m", "root_tangent", "shape", "mesh", "tolerance_m"}) {
     if (!table.given(key)) continue;
     throw InputError(std::string(key) + " cannot be combined with points",
                      table.place(key), "leave one of them out");
@@ -109,10 +108,10 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
   const Parameters& p = table.values();
   const double tolerance = p.number("tolerance_m");
   const int most = p.whole("elements");
-  const bool linear = p.word("cuts") == "rest_linear";
+  const bool linear = p.word("mesh") == "rest_linear";
   refuse_if(linear && tolerance > 0,
-            "a tolerance cannot be combined with cuts = \"rest_linear\"",
-            table.place("tolerance_m"), "give elements, or cuts = \"rest\"");
+            "a tolerance cannot be combined with mesh = \"rest_linear\"",
+            table.place("tolerance_m"), "give elements, or mesh = \"rest\"");
   try {
     if (linear) {
       Strand strand = cut_into(rod, linear_cut(rod, most), initial_shape(table, {}));
@@ -131,7 +130,7 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& failure) {
-    throw InputError(failure.what(), table.place("cuts"), "leave out cuts");
+    throw InputError(failure.what(), table.place("mesh"), "leave out cuts");
   }
 }
 
@@ -140,8 +139,8 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
                  const Frame& frame, bool clamped) {
   const Parameters& p = table.values();
   const double length = p.number("length_m"), tolerance = p.number("tolerance_m");
-  if (p.word("cuts") != "grading") {
-    refuse_if(!clamped, "no rest of a strand that nothing holds", table.place("cuts"),
+  if (p.word("mesh") != "grading") {
+    refuse_if(!clamped, "no rest of a strand that nothing holds", table.place("mesh"),
               "leave out one of them");
     refuse_grading(table, "cuts at rest");
     return cut_at_rest(table, {material.material,

@@ -38,7 +38,7 @@ Strand cut_strand(const Table& table, const StrandMaterial& material, double len
                   const Shape& natural, const Shape& initial = {}, int elements = 0);
 
 /// Returns the smallest number of equal elements, up to the table's, that represents
-/// the shape at rest within `tolerance` (m); `tangent`: at the root.
+/// the shape at rest within `tolerance` (m); `jacobian`: at the root.
 int needed_elements(const Table& table, const StrandMaterial& material, double length,
                     const Shape& natural, const Vec& tangent, double tolerance);
 

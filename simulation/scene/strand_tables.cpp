@@ -182,8 +182,8 @@ StrandTables with_elements(StrandTables tables, std::span<const int> elements) {
 
 StrandTables with_cuts(StrandTables tables, std::string_view cuts) {
   for (StrandSource& source : tables.sources) {
-    if (source.groom || source.table.values().word("cuts") == cuts) continue;
-    source.table.set("cuts", std::string(cuts), source.table.place("cuts"));
+    if (source.groom || source.table.values().word("mesh") == cuts) continue;
+    source.table.set("mesh", std::string(cuts), source.table.place("mesh"));
   }
   return tables;
 }

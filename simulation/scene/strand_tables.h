@@ -22,10 +22,12 @@ struct StrandSource {
   std::shared_ptr<const PlacedGroom> file = {};
 };
 
-/// The tables, as read, from which the strands of a scene are made.
+/// The tables, as read, from which the strands of a scene are made, and [gradient], which
+/// names numbers of them.
 struct StrandTables {
   Table material, root;
   std::vector<StrandSource> sources;  // each [strand], then each [groom]
+  std::optional<Table> gradient = {};
 };
 
 struct CutStrands {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "integrators/integrator_options.h"
+#include "simulation/scene/gradient_table.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -36,6 +37,15 @@ std::string quoted(std::string_view text) {
     all += c;
   }
   return all + '"';
+}
+
+/// "a,b": ["a", "b"].
+std::string quoted_list(std::string_view list) {
+  std::string all;
+  for (const std::string& one : names_of(list)) {
+    all += (all.empty() ? "" : ", ") + quoted(std::string_view(one));
+  }
+  return "[" + all + "]";
 }
 
 void add_header(std::string& text, std::string_view name) {
@@ -76,7 +86,7 @@ void add_top(std::string& text, const Scene& scene) {
     if (p.name == "title") return scene.title;
     if (p.name == "source") return scene.source;
     if (p.name == "duration_s") return number_text(scene.duration);
-    if (p.name == "frames_1_s") return number_text(scene.frame_rate);
+    if (p.name == "frames_per_s") return number_text(scene.frame_rate);
     if (p.name == "checkpoint_s") return number_text(scene.checkpoint);
     if (p.name == "guard") return scene.guard ? "true" : "false";
     if (p.name == "failed_strands") {
@@ -122,6 +132,9 @@ void add_strands(std::string& text, const StrandTables& tables) {
   }
   add_header(text, "[root]");
   add_given(text, tables.root);
+  if (!tables.gradient) return;
+  add_header(text, "[gradient]");
+  add_given(text, *tables.gradient);
 }
 
 void add_effects(std::string& text, const Scene& scene) {
@@ -138,6 +151,7 @@ void add_effects(std::string& text, const Scene& scene) {
 
 std::string toml_value(const Parameter& parameter, std::string_view text) {
   if (parameter.choices == "true|false") return std::string(text);
+  if (parameter.text && parameter.rows) return quoted_list(text);
   if (parameter.text || !parameter.choices.empty()) return quoted(text);
   const bool many = parameter.rows || parameter.components > 1;
   return many ? list(text, parameter.rows) : std::string(text);

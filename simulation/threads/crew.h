@@ -20,7 +20,7 @@ class Crew {
   /// Calls work(i) once for every i < count and returns when all is done. `work` must not
   /// throw.
   void run(std::size_t count, const std::function<void(std::size_t)>& work);
-  /// The same with the number of the worker, which no two calls have at the same time:
+  /// Runs `work` with the number of the worker, which no two calls have at the same time:
   /// for memory that calls overwrite.
   void run(std::size_t count,
            const std::function<void(std::size_t i, std::size_t worker)>& work);

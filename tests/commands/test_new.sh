@@ -8,11 +8,12 @@ trap 'rm -rf "$work"' EXIT
 house=$work/house
 lists=(models/catalogue.cpp models/CMakeLists.txt models/effects/catalogue.cpp
   integrators/catalogue.cpp integrators/CMakeLists.txt experiments/CMakeLists.txt)
-mkdir -p "$house"/{models/{elements,effects},integrators,experiments,tests,cmake}
+mkdir -p "$house"/{models/{elements,effects},integrators,experiments,tests,cmake,python}
 for file in tress .clang-format tests/CMakeLists.txt "${lists[@]}"; do
   cp "$repository/$file" "$house/$file"
 done
 cp -r "$repository/cmake/new" "$house/cmake/new"
+cp -r "$repository/python/tress_command" "$house/python/tress_command"
 
 # shellcheck source=tests/support/expect.sh
 . "$repository/tests/support/expect.sh"

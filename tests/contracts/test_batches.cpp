@@ -66,7 +66,7 @@ Course of_strands(const Scene& scene) {
     EXPECT_EQ(world.advance(scene.time_of(frame)), Status::ok) << world.failure();
     course.frames.push_back(world.positions());
   }
-  for (const LostStrand& one : world.lost()) course.lost.push_back(one.strand);
+  for (const FailedStrand& one : world.lost()) course.lost.push_back(one.strand);
   std::ranges::sort(course.lost);
   return course;
 }
@@ -150,8 +150,8 @@ bool is_one_system(std::string_view effect) {
 }
 
 TEST_P(Batches, AreTheSameAsStrandsWithEveryEffect) {
-  const IntegratorEntry& integrator =
-      find_integrator(GetParam()->id == "xpbd_cosserat" ? "xpbd" : "semi_implicit_euler");
+  const IntegratorEntry& integrator = find_integrator(
+      GetParam()->id == "xpbd_cosserat" ? "xpbd" : "linearly_implicit_euler");
   for (const models::EffectEntry& effect : models::effects()) {
     std::string table = fmt::format("[effects.{}]\n", effect.id);
     if (effect.id == "strand_interaction") table += "coupling = \"lagged\"\n";
@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(Models, Batches, testing::ValuesIn(strand_models()),
 /// same place.
 std::string partly_failing(std::string_view model, std::string_view method, int only) {
   std::string text = fmt::format(
-      "title = \"some fail\"\nduration_s = 0.02\nframes_1_s = 200\nfailed_strands = "
+      "title = \"some fail\"\nduration_s = 0.02\nframes_per_s = 200\nfailed_strands = "
       "\"stay\"\n[model]\nid = \"{}\"\n[integrator]\nid = \"{}\"\ndt_s = 0.0025\n"
       "[material]\nname = \"hair.caucasian\"\n[effects.gravity]\n[effects.trap]\n",
       model, method);
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
     Batches, FailingStrands,
     testing::Combine(testing::Values("super_clothoid", "der", "corde", "kirchhoff_nodal",
                                      "lifted_curls", "force_transport"),
-                     testing::Values("semi_implicit_euler", "backward_euler", "bdf2",
+                     testing::Values("linearly_implicit_euler", "backward_euler", "bdf2",
                                      "newmark")),
     [](const auto& of) {
       return fmt::format("{}_{}", std::get<0>(of.param), std::get<1>(of.param));
@@ -256,7 +256,7 @@ TEST(FailedStrands, EndTheRunByDefault) {
 }
 
 TEST(FailedStrands, AreRefusedWhereStrandsAreOneSystem) {
-  const std::string text = partly_failing("der", "semi_implicit_euler", -1);
+  const std::string text = partly_failing("der", "linearly_implicit_euler", -1);
   for (const auto& [table, why] :
        {std::pair{"[effects.strand_interaction]\ncoupling = \"monolithic\"\n",
                   "strands that are one system"},
@@ -272,7 +272,7 @@ TEST(FailedStrands, AreRefusedWhereStrandsAreOneSystem) {
 }
 
 constexpr const char* rubbing =
-    "title = \"b\"\nduration_s = 0.03\nframes_1_s = 100\n[model]\nid = \"der\"\n"
+    "title = \"b\"\nduration_s = 0.03\nframes_per_s = 100\n[model]\nid = \"der\"\n"
     "[integrator]\nid = \"backward_euler\"\ndt_s = 0.002\n[groom]\ncount = 7\n"
     "length_m = 0.06\nelements = 4\n[root]\nmotion = \"rotate\"\n[effects.gravity]\n"
     "[effects.strand_interaction]\ncoupling = \"lagged\"\n[[effects.body]]\n"
@@ -326,7 +326,7 @@ TEST(ReplicatedHead, IsTheSameBitsForAnyNumberOfRanksAndThreads) {
 
 TEST(ReplicatedHead, HoldsStrandsAtRestAsAWorldDoes) {
   const std::string text =
-      "title = \"b\"\nduration_s = 0.02\nframes_1_s = 100\nrest = \"inverse\"\n"
+      "title = \"b\"\nduration_s = 0.02\nframes_per_s = 100\nrest = \"inverse\"\n"
       "failed_strands = \"stay\"\n[model]\nid = \"der\"\n[integrator]\n"
       "id = \"backward_euler\"\ndt_s = 0.005\n[groom]\ncount = 3\nlength_m = 0.05\n"
       "elements = 4\n[effects.gravity]\n";

@@ -20,7 +20,7 @@ struct ControlledHair {
 
 inline const std::vector<ControlledHair>& controlled_hairs() {
   const auto wavy = [](const std::string& wave, const std::string& length) {
-    return "shape = \"wavy\"\nwave_1_m = " + wave + "\nwavelength_m = " + length + "\n";
+    return "shape = \"wavy\"\nwave_per_m = " + wave + "\nwavelength_m = " + length + "\n";
   };
   const auto curled = [](const std::string& radius, const std::string& pitch) {
     return "shape = \"helix\"\ncurl_radius_m = " + radius + "\ncurl_pitch_m = " + pitch +
@@ -57,7 +57,7 @@ inline simulation::Scene scene_of(const ControlledHair& hair, std::string_view m
   const std::string air =
       hair.drag == "0" ? "" : "[effects.linear_drag]\ndrag_kg_m_s = " + hair.drag + "\n";
   return simulation::parse_scene(
-      "title = \"a hair\"\nframes_1_s = 60\nduration_s = " + std::string(duration) +
+      "title = \"a hair\"\nframes_per_s = 60\nduration_s = " + std::string(duration) +
           "\n[model]\nid = \"" + std::string(model) + "\"\n[integrator]\n" +
           std::string(integrator) + "\n[material]\nname = \"custom\"\nradius_m = " +
           hair.radius + "\nellipticity = " + hair.ellipticity + "\nyoungs_modulus_pa = " +

@@ -18,9 +18,9 @@ using namespace testing_support;
 constexpr const char* models[] = {"super_helix", "articulated_chain", "der"};
 constexpr const char* methods[] = {
     "id = \"backward_euler\"\ndt_s = 0.002", "id = \"implicit_midpoint\"\ndt_s = 0.002",
-    "id = \"bdf2\"\ndt_s = 0.002", "id = \"tr_bdf2\"\ntolerance = 1e-3",
-    "id = \"esdirk43\"\ntolerance = 1e-3"};
-constexpr const char* exact = "id = \"esdirk43\"\ntolerance = 1e-6";
+    "id = \"bdf2\"\ndt_s = 0.002", "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3",
+    "id = \"esdirk43\"\nposition_tol_rel = 1e-3"};
+constexpr const char* exact = "id = \"esdirk43\"\nposition_tol_rel = 1e-6";
 constexpr const char* duration = "0.2";
 constexpr double coverage = 0.9;
 
@@ -80,8 +80,8 @@ TEST(ErrorBound, CoversTheSpaceErrorOfNineRunsInTen) {
   Coverage found;
   for (const ControlledHair& hair : controlled_hairs()) {
     for (const char* const model : models) {
-      const Scene scene =
-          scene_of(hair, model, "id = \"esdirk43\"\ntolerance = 1e-5", duration, 8);
+      const Scene scene = scene_of(
+          hair, model, "id = \"esdirk43\"\nposition_tol_rel = 1e-5", duration, 8);
       found.add(scene, with_elements(scene, 32), space_error(scene, 1));
     }
   }

@@ -50,12 +50,12 @@ std::string ending(World& world, const Scene& scene) {
 /// leaves e^-100.
 TEST(FieldCase, ObliqueSectionBendsAboutItsOwnAxes) {
   const Scene scene = scene_of(
-      "duration_s = 1\nframes_1_s = 10\n[model]\nid = \"super_helix\"\n[integrator]\n"
+      "duration_s = 1\nframes_per_s = 10\n[model]\nid = \"super_helix\"\n[integrator]\n"
       "id = \"backward_euler\"\ndt_s = 1e-3\n" +
       custom(1e-3, 1e9, 1000, 2) +
       "[strand]\nlength_m = 0.1\nelements = 20\nroot_tangent = [1, 0, 0]\n"
       "normal = [0, 0.8660254037844386, 0.5]\n[effects.gravity]\n"
-      "[effects.linear_drag]\ndrag_kg_m_s = 0\nmass_damping_1_s = 200\n");
+      "[effects.linear_drag]\ndrag_kg_m_s = 0\nmass_damping_per_s = 200\n");
   World world(scene);
   ASSERT_EQ(ending(world, scene), "");
   EXPECT_NEAR(tip(world).y, 0.3186e-3, 2e-3 * 0.3186e-3);
@@ -77,7 +77,8 @@ TEST(FieldCase, LimpStrandSwingsInTheFirstModeOfAChain) {
               ", 0, " + std::to_string(-s) + "]";
   }
   const Scene scene = scene_of(
-      "duration_s = 0.44\nframes_1_s = 500\n[model]\nid = \"super_helix\"\n[integrator]\n"
+      "duration_s = 0.44\nframes_per_s = 500\n[model]\nid = "
+      "\"super_helix\"\n[integrator]\n"
       "id = \"esdirk43\"\ndt_s = 0.001\n" +
       custom(1e-3, 1e5, 1000, 1) +
       "[strand]\nelements = 20\nnatural = \"straight\"\nnormal = [0, 1, 0]\npoints = [" +
@@ -95,7 +96,7 @@ TEST(FieldCase, LimpStrandSwingsInTheFirstModeOfAChain) {
 }
 
 std::string pendulum(const std::string& integrator) {
-  return "duration_s = 4\nframes_1_s = 50\n[model]\nid = \"inextensible_chain\"\n"
+  return "duration_s = 4\nframes_per_s = 50\n[model]\nid = \"inextensible_chain\"\n"
          "links = 1\n[integrator]\n" +
          integrator;
 }
@@ -161,7 +162,7 @@ TEST(FieldCase, PendulumIsRefusedWithAReasonWhereAFormDoesNotApply) {
 }
 
 std::string moved(const std::string& integrator) {
-  return "duration_s = 0.3\nframes_1_s = 100\n[model]\nid = \"inextensible_strand\"\n"
+  return "duration_s = 0.3\nframes_per_s = 100\n[model]\nid = \"inextensible_strand\"\n"
          "[integrator]\n" +
          integrator + custom(5e-4, 1e8, 1200, 1) +
          "[strand]\nlength_m = 0.2\nelements = 10\nroot_tangent = [0, 0, -1]\n[root]\n"
@@ -196,7 +197,7 @@ TEST(FieldCase, MethodsAgreeFromAStartWithAMovingRoot) {
 /// where 2 x - x^2 = 0.29/0.5: x = 0.3519.
 Scene slope(const std::string& law) {
   return scene_of(
-      "duration_s = 0.2\nframes_1_s = 30\n[model]\nid = \"super_helix\"\n[integrator]\n"
+      "duration_s = 0.2\nframes_per_s = 30\n[model]\nid = \"super_helix\"\n[integrator]\n"
       "id = \"backward_euler\"\ndt_s = 0.001\n[material]\nname = \"hair.asian\"\n"
       "ellipticity = 1\n[strand]\nlength_m = 0.1\nelements = 10\n"
       "root_tangent = [1, 0, -0.29]\n[root]\nmotion = \"free\"\n[effects.gravity]\n"

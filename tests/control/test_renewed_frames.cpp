@@ -34,7 +34,7 @@ class CarriedMotion
 TEST_P(CarriedMotion, IsOneMotionInNewCoordinates) {
   const auto [model, nodes] = GetParam();
   const auto system = make_model(
-      model, {{"elements", "6"}, {"motion", "free"}, {"natural_curvature_1_m", "40"}});
+      model, {{"elements", "6"}, {"motion", "free"}, {"natural_curvature_per_m", "40"}});
   State state = initial_state(*system);
   const double c = std::cos(1.3), s = std::sin(1.3);
   std::vector<double> a(state.q.size());
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Maximal, CarriedMotion,
 /// Height of the tip of a released hair, by `modulus` times that of hair.asian.
 double tip(const std::string& integrator, double modulus) {
   const Scene scene = parse_scene(
-      "title = \"t\"\nduration_s = 0.4\nframes_1_s = 10\n[model]\nid = \"der\"\n"
+      "title = \"t\"\nduration_s = 0.4\nframes_per_s = 10\n[model]\nid = \"der\"\n"
       "[integrator]\nid = \"" +
           integrator +
           "\"\ndt_s = 0.004\n[material]\nname = \"hair.asian\"\nyoungs_modulus_pa = " +

@@ -28,7 +28,7 @@ SceneRun run_of(const Scene& scene) {
 Scene hair(const std::string& model, const std::string& integrator,
            const std::string& strand, const std::string& effects) {
   return parse_scene(
-      "title = \"t\"\nduration_s = 0.3\nframes_1_s = 60\n[model]\nid = \"" + model +
+      "title = \"t\"\nduration_s = 0.3\nframes_per_s = 60\n[model]\nid = \"" + model +
           "\"\n[integrator]\n" + integrator +
           "\n[material]\nname = \"hair.asian\"\n[strand]\nelements = 10\n" +
           "root_tangent = [1, 0, 0]\n" + strand + effects,

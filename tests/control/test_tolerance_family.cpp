@@ -31,7 +31,8 @@ TEST_P(ToleranceFamily, TighterTolerancesKeepTheErrorOverTheTolerance) {
   const ControlledHair& hair = controlled_hairs()[GetParam().hair];
   const auto scene = [&](const std::string& id, const std::string& tolerance) {
     return scene_of(hair, GetParam().model,
-                    "id = \"" + id + "\"\ntolerance = " + tolerance, "1", hair.elements);
+                    "id = \"" + id + "\"\nposition_tol_rel = " + tolerance, "1",
+                    hair.elements);
   };
   const simulation::Scene reference = scene("esdirk43", "1e-7");
   for (const char* const id : {"tr_bdf2", "esdirk43"}) {
@@ -54,9 +55,9 @@ TEST_P(ToleranceFamily, TighterTolerancesKeepTheErrorOverTheTolerance) {
 TEST(WavyHair, KeepsTheErrorOverTheToleranceUnderGravityAlone) {
   const auto scene = [](const std::string& id, const std::string& tolerance) {
     return simulation::parse_scene(
-        "title = \"a wavy hair\"\nframes_1_s = 100\nduration_s = 1\n[model]\n"
+        "title = \"a wavy hair\"\nframes_per_s = 100\nduration_s = 1\n[model]\n"
         "id = \"super_helix\"\n[integrator]\nid = \"" +
-            id + "\"\ntolerance = " + tolerance +
+            id + "\"\nposition_tol_rel = " + tolerance +
             "\n[material]\nname = \"hair.asian\"\n[strand]\nlength_m = 0.2\n"
             "elements = 8\nroot_tangent = [1, 0, 0]\nshape = \"wavy\"\n"
             "[effects.gravity]\n",

@@ -143,7 +143,7 @@ TEST(Advise, WritesTheToleranceThatItSays) {
   EXPECT_THAT(line_of(result.out, "take "),
               HasSubstr(fmt::format("esdirk43, tolerance {} (adaptive, mean step ",
                                     scene.options.tolerance)));
-  EXPECT_EQ(winner_of(process).number("tolerance"), scene.options.tolerance);
+  EXPECT_EQ(winner_of(process).number("position_tol_rel"), scene.options.tolerance);
   World world(scene);
   EXPECT_EQ(world.advance(scene.duration), Status::ok) << world.failure();
 }

@@ -19,7 +19,7 @@ using experiments::cost_of_accuracy::Method;
 
 const char* const curly = R"(
 title = "curly # not a comment"
-frames_1_s = 50
+frames_per_s = 50
 [model]
 id = "mass_spring"
 torsion = "altitude"
@@ -41,12 +41,12 @@ TEST(TrialScene, HasTheChoiceAndNothingElseChanged) {
   const Scratch folder;
   const Scene given = read_open_scene(folder.write("curly.toml", curly));
   const Method method{{&find_model("super_helix"),
-                       {{"modes", "bend"}, {"tangent", "stiff"}},
+                       {{"modes", "bend"}, {"jacobian", "elastic"}},
                        "implicit_midpoint"}};
   const Scene scene = trial_scene(given, method, 9, 7, 60);
   EXPECT_EQ(scene.model->id, "super_helix");
   EXPECT_EQ(scene.model_options.word("modes"), "bend");
-  EXPECT_EQ(scene.model_options.word("tangent"), "stiff");
+  EXPECT_EQ(scene.model_options.word("jacobian"), "elastic");
   EXPECT_EQ(scene.integrator, "implicit_midpoint");
   EXPECT_EQ(scene.options.step, 1.0 / (60 * 7));  // to the last bit
   EXPECT_EQ(scene.options.linear, LinearKind::automatic);
@@ -79,11 +79,11 @@ TEST(TrialScene, ElementsShareWhatBendsTheStrandAtRest) {
   row.set("elements", 9).set("dt_s", 1.0 / 420);
   EXPECT_TRUE(configuration(row).method.cut_at_rest);
   EXPECT_EQ(configuration(row).accuracy.step, 1.0 / 420);
-  EXPECT_NE(scene_text(trial_scene(given, method, 9, 7, 60)).find("cuts = \"rest\""),
+  EXPECT_NE(scene_text(trial_scene(given, method, 9, 7, 60)).find("mesh = \"rest\""),
             std::string::npos);
   // Cuts are no physics.
   std::string at_rest = curly;
-  at_rest.replace(at_rest.find("elements = 17"), 13, "cuts = \"rest\"");
+  at_rest.replace(at_rest.find("elements = 17"), 13, "mesh = \"rest\"");
   const Scene cut = read_open_scene(folder.write("cut.toml", at_rest));
   const auto among = [](const Scene& scene, bool both) {
     const MethodChoice choice{.models = {"super_helix"},
@@ -196,13 +196,13 @@ TEST(Methods, KnowNoToleranceWhereTheTangentDecidesAboutSteps) {
   const Scene given = read_open_scene(TRESS_SCENES "/accuracy/side_wind.toml");
   int by_tolerance = 0, by_steps = 0;
   for (const Method& method :
-       methods(given, {{"articulated_chain"}, {"tr_bdf2"}, {"tangent"}})) {
-    const bool short_steps = method.word("tangent") == "less_implicit";
+       methods(given, {{"articulated_chain"}, {"tr_bdf2"}, {"jacobian"}})) {
+    const bool short_steps = method.word("jacobian") == "elastic_local";
     EXPECT_FALSE(short_steps && method.by_tolerance);
     if (method.by_tolerance) ++by_tolerance;
     if (short_steps) ++by_steps;
-    for (const Method& other : with_other_words(given, method, "tangent")) {
-      EXPECT_FALSE(other.by_tolerance && other.word("tangent") == "less_implicit");
+    for (const Method& other : with_other_words(given, method, "jacobian")) {
+      EXPECT_FALSE(other.by_tolerance && other.word("jacobian") == "elastic_local");
     }
   }
   EXPECT_EQ(by_tolerance, 4);  // exact and stiff, extrapolated or not
@@ -243,16 +243,16 @@ TEST(Methods, DifferInOneWord) {
   const Scratch folder;
   const Scene given = read_open_scene(folder.write("curly.toml", curly));
   const Method method{{&find_model("super_helix"),
-                       {{"modes", "bend"}, {"tangent", "stiff"}},
+                       {{"modes", "bend"}, {"jacobian", "elastic"}},
                        "implicit_midpoint"}};
   const Method reordered{{&find_model("super_helix"),
-                          {{"tangent", "stiff"}, {"modes", "bend"}},
+                          {{"jacobian", "elastic"}, {"modes", "bend"}},
                           "implicit_midpoint"}};
   EXPECT_TRUE(same(method, reordered));
   const auto others = with_other_words(given, method, "modes");
   ASSERT_EQ(others.size(), 1u);  // bend_planar refuses a curl
   EXPECT_EQ(others.front().word("modes"), "bend_twist");
-  EXPECT_EQ(others.front().word("tangent"), "stiff");
+  EXPECT_EQ(others.front().word("jacobian"), "elastic");
   EXPECT_FALSE(same(method, others.front()));
   EXPECT_TRUE(with_other_words(given, method, "bending").empty());
 }
@@ -269,8 +269,9 @@ TEST(Methods, AreThoseAskedFor) {
   EXPECT_EQ(some[0].word("modes"), "bend_twist");
   EXPECT_EQ(some[1].word("modes"), "bend");
   // bend_planar refuses a curl: two modes, two tangents.
-  EXPECT_EQ(methods(given, {{"super_helix"}, {"rk4"}, {"modes", "tangent=stiff"}}).size(),
-            4u);
+  EXPECT_EQ(
+      methods(given, {{"super_helix"}, {"rk4"}, {"modes", "jacobian=elastic"}}).size(),
+      4u);
 }
 
 }  // namespace tress::test_trial_scene

@@ -274,9 +274,9 @@ class SimulateOnDevice : public testing::Test {
                            const std::string& duration = "0.1",
                            const std::string& step = "0.004") {
     return "title = \"head\"\nduration_s = " + duration +
-           "\nframes_1_s = 20\n[model]\nid = "
-           "\"super_helix\"\ntangent = \"stiff\"\n[integrator]\nid = "
-           "\"semi_implicit_euler\"\ndt_s = " +
+           "\nframes_per_s = 20\n[model]\nid = "
+           "\"super_helix\"\njacobian = \"elastic\"\n[integrator]\nid = "
+           "\"linearly_implicit_euler\"\ndt_s = " +
            step +
            "\n[material]\nname = "
            "\"hair.caucasian\"\n[groom]\ncount = 21\nelements = 6\nlength_m = "
@@ -287,7 +287,7 @@ class SimulateOnDevice : public testing::Test {
                   const std::string& folder =
                       std::filesystem::path(FAKE_CUDA).parent_path().string()) {
     return toy.run(
-        arguments + " --as head --out out --progress none",
+        arguments + " --as batch --out out --progress none",
         "export TRESS_FAKE_CUDA='" + fails + "' LD_LIBRARY_PATH='" + folder + "';");
   }
   nlohmann::json outcome(const std::string& name) const {
@@ -298,12 +298,12 @@ class SimulateOnDevice : public testing::Test {
 
 TEST_F(SimulateOnDevice, GivesTheStateOfTheProcessorAndSaysWhereItRan) {
   ASSERT_EQ(run("head.toml").code, 0);
-  const std::string want = outcome("head").at("state");
+  const std::string want = outcome("head").at("state_hash");
   EXPECT_EQ(outcome("head").at("device"), "cpu");
   for (const char* device : {"gpu", "auto"}) {
     const Toy::Result there = run(std::string("head.toml --device ") + device);
     ASSERT_EQ(there.code, 0) << there.err;
-    EXPECT_EQ(outcome("head").at("state"), want);
+    EXPECT_EQ(outcome("head").at("state_hash"), want);
     EXPECT_EQ(outcome("head").at("device"), "no device (host twin)");
     EXPECT_THAT(there.err, HasSubstr("head: on no device (host twin)"));
   }
@@ -311,7 +311,7 @@ TEST_F(SimulateOnDevice, GivesTheStateOfTheProcessorAndSaysWhereItRan) {
 
 TEST_F(SimulateOnDevice, GoesOnWithoutItOrEndsInOneLine) {
   ASSERT_EQ(run("head.toml").code, 0);
-  const std::string want = outcome("head").at("state");
+  const std::string want = outcome("head").at("state_hash");
   const std::string broken = toy.path("broken");
   std::filesystem::create_directory(broken);
   std::ofstream(broken + "/libcuda.so.1") << "no library";
@@ -327,7 +327,7 @@ TEST_F(SimulateOnDevice, GoesOnWithoutItOrEndsInOneLine) {
     EXPECT_EQ(open.code, 0) << open.err;
     EXPECT_THAT(open.err, HasSubstr("stays on the processor: "));
     EXPECT_THAT(open.err, HasSubstr(reason));
-    EXPECT_EQ(outcome("head").at("state"), want);
+    EXPECT_EQ(outcome("head").at("state_hash"), want);
     EXPECT_EQ(outcome("head").at("device"), "cpu");
   };
   const std::string fake = std::filesystem::path(FAKE_CUDA).parent_path().string();
@@ -339,7 +339,7 @@ TEST_F(SimulateOnDevice, GoesOnWithoutItOrEndsInOneLine) {
 }
 
 // Frames of one step each: the last step of a frame may lose strands.
-TEST_F(SimulateOnDevice, NamesALostStrandOnceWhereverItRuns) {
+TEST_F(SimulateOnDevice, NamesAFailedStrandOnceWhereverItRuns) {
   toy.write(
       "lossy.toml",
       scene("[effects.gravity]\ngravity_m_s2 = [0, 0, -1e5]\n[effects.linear_drag]\n"
@@ -347,11 +347,11 @@ TEST_F(SimulateOnDevice, NamesALostStrandOnceWhereverItRuns) {
             "3", "0.05"));
   for (const std::string scene : {"lossy.toml", "lossy.toml --no-guard"}) {
     ASSERT_EQ(run(scene).code, 3);
-    const std::string want = toy.read("out/lossy.lost.csv");
-    EXPECT_GT(outcome("lossy").at("lost_strands"), 0);
+    const std::string want = toy.read("out/lossy.failed.csv");
+    EXPECT_GT(outcome("lossy").at("failed_strands"), 0);
     for (const char* fails : {"no_device", ""}) {
       EXPECT_EQ(run(scene + " --device auto", fails).code, 3);
-      EXPECT_EQ(toy.read("out/lossy.lost.csv"), want) << scene << fails;
+      EXPECT_EQ(toy.read("out/lossy.failed.csv"), want) << scene << fails;
     }
   }
 }
@@ -376,7 +376,7 @@ TEST_F(SimulateOnDevice, SaysWhichScenesItDoesNotKnow) {
   const Toy::Result strands =
       toy.run("head.toml --as strands --device gpu --out out --progress none");
   EXPECT_EQ(strands.code, 2);
-  EXPECT_THAT(strands.err, HasSubstr("give --as head, or --device cpu"));
+  EXPECT_THAT(strands.err, HasSubstr("give --as batch, or --device cpu"));
 }
 
 /// `scaling`, the same.

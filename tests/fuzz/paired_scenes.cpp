@@ -130,7 +130,7 @@ std::string with_short_steps(const std::string& scene) {
 
 bool same_with_short_steps(const std::string& scene, const Program& simulate) {
   const std::string finer = with_short_steps(scene);
-  const Outcome head = run(finer, simulate, "head"),
+  const Outcome head = run(finer, simulate, "batch"),
                 strands = run(finer, simulate, "strands");
   if (head.run.code != 0 || strands.run.code != 0) return false;
   const double off = apart(columns(head.stem + ".csv"), columns(strands.stem + ".csv"));
@@ -151,13 +151,14 @@ bool has(const std::string& scene, std::string_view words) {
 /// A run of strands that fail and do not stay has no further frames.
 std::string verdict_of_replicated(const std::string& scene, int code, const Columns& head,
                                   const Columns& strands) {
-  if (!strands.contains("lost_strands")) {
+  if (!strands.contains("failed_strands")) {
     if (code != tress::experiments::done) return "agree: both fail, replicated";
-  } else if (head.at("lost_strands") != strands.at("lost_strands")) {
+  } else if (head.at("failed_strands") != strands.at("failed_strands")) {
     return "DIFFER: other strands fail";
   }
   const double off = apart(head, strands);
-  const bool bits = strands.contains("lost_strands") && !has(scene, "strand_interaction");
+  const bool bits =
+      strands.contains("failed_strands") && !has(scene, "strand_interaction");
   std::printf("  %.2g%s\n", off, bits ? " of the same bits" : "");
   if (!(off <= (bits ? 0 : newton))) return "DIFFER: energies of replicated systems";
   return bits ? "agree to the last bit, replicated" : "agree to 1e-6, replicated";
@@ -166,7 +167,7 @@ std::string verdict_of_replicated(const std::string& scene, int code, const Colu
 /// What came of a pair in words; "agree ...", "refused", or a finding.
 std::string verdict(const std::string& scene, const Program& simulate) {
   using namespace tress::experiments;
-  const Outcome head = run(scene, simulate, "head"),
+  const Outcome head = run(scene, simulate, "batch"),
                 strands = run(scene, simulate, "strands");
   for (const Outcome* one : {&head, &strands}) {
     if (one->run.code == usage_error) return "refused";

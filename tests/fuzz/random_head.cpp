@@ -63,9 +63,10 @@ std::string with_lanes(Draw& draw) {
   const std::string_view model =
       draw.one_of({"super_helix", "articulated_chain", "mass_spring"});
   const std::string_view method =
-      draw.one_of({"semi_implicit_euler", "semi_implicit_euler", "backward_euler",
+      draw.one_of({"linearly_implicit_euler", "linearly_implicit_euler", "backward_euler",
                    "linearly_implicit_midpoint", "tr_bdf2"});
-  const bool springs = model == "mass_spring", single = method == "semi_implicit_euler";
+  const bool springs = model == "mass_spring",
+             single = method == "linearly_implicit_euler";
   const double length = draw.of_size(0.02, 0.8), radius = draw.of_size(1e-5, 4e-4),
                modulus = draw.of_size(1e5, 1e10);
   const double density = draw.one_of({100.0, 1300.0, 8000.0});
@@ -73,12 +74,13 @@ std::string with_lanes(Draw& draw) {
   const double step = draw.of_size(1e-4, 2e-2);
   const int steps = draw.one_of({10, 20, 40, 80});
   std::string text = fmt::format(
-      "title = \"pair\"\nduration_s = {:.6g}\nframes_1_s = {:.6g}\n[model]\nid = "
+      "title = \"pair\"\nduration_s = {:.6g}\nframes_per_s = {:.6g}\n[model]\nid = "
       "\"{}\"\n",
       steps * step, 10 / (steps * step), model);
   if (!springs) {
-    text += fmt::format("tangent = \"{}\"\nmodes = \"{}\"\n", single ? "stiff" : "exact",
-                        draw.one_of({"bend_twist", "bend_twist", "bend"}));
+    text +=
+        fmt::format("jacobian = \"{}\"\nmodes = \"{}\"\n", single ? "elastic" : "exact",
+                    draw.one_of({"bend_twist", "bend_twist", "bend"}));
   }
   text += fmt::format(
       "[integrator]\nid = \"{}\"\ndt_s = {:.6g}\n[material]\nname = \"custom\"\n"
@@ -139,7 +141,7 @@ std::string integrator(Draw& draw, const integrators::IntegratorEntry& entry,
                         name(draw.of(entry.formulations).formulation));
   }
   if (entry.error_controlled && draw.chance(0.4)) {
-    return text + fmt::format("tolerance = {:.2g}\nmin_step_s = 1e-6\n",
+    return text + fmt::format("position_tol_rel = {:.2g}\nmin_step_s = 1e-6\n",
                               draw.of_size(1e-4, 1e-2));
   }
   if (entry.adaptive) {
@@ -191,7 +193,7 @@ std::string of_anything(Draw& draw) {
   const double length = draw.of_size(0.02, 0.4), step = draw.of_size(1e-4, 5e-3);
   const int steps = draw.one_of({4, 8, 16}), count = draw.one_of({1, 2, 3, 6});
   std::string text =
-      fmt::format("title = \"pair\"\nduration_s = {:.6g}\nframes_1_s = {:.6g}\n",
+      fmt::format("title = \"pair\"\nduration_s = {:.6g}\nframes_per_s = {:.6g}\n",
                   steps * step, 4 / (steps * step));
   if (draw.chance(0.7)) text += "failed_strands = \"stay\"\n";
   if (draw.chance(0.1)) text += "rest = \"inverse\"\nunstable = \"keep\"\n";

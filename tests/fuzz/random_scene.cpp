@@ -76,7 +76,7 @@ class Writer {
     scene_.weight_work = scene_.mass * (gravity_ * length_) + force_ * total_ * length_;
     if (touching_) scene_.weight_work += total_ * contact_energy;
     const std::string top = fmt::format(
-        "title = \"extreme\"\nduration_s = {:.17g}\nframes_1_s = {:.17g}\nseed = {}\n",
+        "title = \"extreme\"\nduration_s = {:.17g}\nframes_per_s = {:.17g}\nseed = {}\n",
         duration_, frames_ / duration_, draw_.whole(1, 1000));
     scene_.text = top + text_;
     return scene_;
@@ -154,7 +154,7 @@ class Writer {
         break;
       case 1:
         shape +=
-            fmt::format("shape = \"wavy\"\nwave_1_m = {:.3g}\nwavelength_m = {:.3g}\n",
+            fmt::format("shape = \"wavy\"\nwave_per_m = {:.3g}\nwavelength_m = {:.3g}\n",
                         draw_.spread(1, 500), draw_.spread(0.3, 3) * length_);
         break;
       case 2:

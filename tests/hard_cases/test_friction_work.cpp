@@ -100,9 +100,10 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, FrictionWork,
     testing::Values(Tried{"grazing_exact", {"backward_euler", "bdf2", "tr_bdf2"}},
                     Tried{"cone_exact", {"backward_euler", "bdf2", "tr_bdf2"}},
-                    Tried{"grazing_impulse", {"backward_euler", "semi_implicit_euler"}},
-                    Tried{"cone_impulse", {"backward_euler", "semi_implicit_euler"}},
-                    Tried{"coil_impulse", {"backward_euler", "semi_implicit_euler"}}),
+                    Tried{"grazing_impulse",
+                          {"backward_euler", "linearly_implicit_euler"}},
+                    Tried{"cone_impulse", {"backward_euler", "linearly_implicit_euler"}},
+                    Tried{"coil_impulse", {"backward_euler", "linearly_implicit_euler"}}),
     testing::PrintToStringParamName());
 
 }  // namespace tress::test_friction_work

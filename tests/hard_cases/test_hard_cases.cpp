@@ -217,7 +217,7 @@ TEST(HardCaseJudge, ImpulsesKeepTurnsApart) {
         {}};
     return survive(attempt, {}, [] { return Reference{}; });
   };
-  for (const std::string_view able : {"semi_implicit_euler", "backward_euler"}) {
+  for (const std::string_view able : {"linearly_implicit_euler", "backward_euler"}) {
     const Survival s = run(able);
     EXPECT_EQ(s.outcome, Outcome::stable) << s.why;
     EXPECT_LT(*s.measure, 0.01) << *s.measure;
@@ -417,12 +417,12 @@ TEST(HardCaseGrid, HasEveryCellOnce) {
   // Three integrators at two steps on each model and system of particles, bdf2 at one and
   // tr_bdf2 at one tolerance.
   EXPECT_EQ(grid.cells.size(), 8 * grid.references);
-  line.set = {{"tolerance", "1e-3"}};
+  line.set = {{"position_tol_rel", "1e-3"}};
   const Grid chosen = hard_grid(line, Settings(line, hard_case_settings()));
   EXPECT_EQ(chosen.cells.size(), grid.references);
   for (const Cell& cell : chosen.cells) {
     EXPECT_EQ(cell.attempt.pace, (Pace{longest, 1e-3}));
-    EXPECT_EQ(cell.identity().number("tolerance"), 1e-3);
+    EXPECT_EQ(cell.identity().number("position_tol_rel"), 1e-3);
     EXPECT_EQ(cell.attempt.options.tolerance, 0);  // that of the reference
   }
   line.set = {{"case", "straihgt"}};
@@ -434,7 +434,7 @@ using State = Verdicts::State;
 
 Row claimed(std::string_view hard, std::string_view passed, std::string_view outcome) {
   Row row;
-  row.set("case", hard).set("model", "super_helix").set("variant", "tangent=exact");
+  row.set("case", hard).set("model", "super_helix").set("variant", "jacobian=exact");
   row.set("integrator", "backward_euler").set("dt_s", 1.0 / 30);
   return row.set("passed", passed).set("outcome", outcome).set("why", "broke");
 }
@@ -465,7 +465,7 @@ TEST(HardCaseClaims, FailOnAWrongTable) {
 
 Row by_tolerance(std::string_view hard, std::string_view outcome, double error) {
   Row row;
-  row.set("case", hard).set("model", "super_helix").set("variant", "tangent=exact");
+  row.set("case", hard).set("model", "super_helix").set("variant", "jacobian=exact");
   row.set("integrator", "tr_bdf2").set("measure", 0.5).set("limit", 1.0);
   Pace{longest, 1e-3}.identify(row);
   row.set("outcome", outcome).set("passed", outcome.starts_with("stable"));
@@ -504,7 +504,7 @@ TEST(HardCaseClaims, NothingPassesByToleranceThatIsWrong) {
 TEST(HardCaseClaims, LongCurlAndConeAreAccurateByTolerance) {
   for (const std::string_view hard : {"long_curl", "cone"}) {
     const std::string claim =
-        std::string(hard) + ": super_helix, exact tangent, tr_bdf2 is accurate";
+        std::string(hard) + ": super_helix, exact Jacobian, tr_bdf2 is accurate";
     const double none = std::nan("");
     EXPECT_EQ(state_of(by_tolerance(hard, "stable and accurate", 1e-3), claim),
               State::held);
@@ -537,7 +537,7 @@ TEST(HardCaseClaims, ExactContactHoldsWhatFellOnlyForTheSameRun) {
   EXPECT_EQ(of(risen(15)).value, 15);
   EXPECT_EQ(of(risen(14)).state, State::broken);
   std::vector<Row> other = risen(15);
-  other.back().set("integrator", "semi_implicit_euler");
+  other.back().set("integrator", "linearly_implicit_euler");
   EXPECT_EQ(of(other).state, State::broken);
   other = risen(15);
   other.front().set("outcome", "stable");  // did not fall

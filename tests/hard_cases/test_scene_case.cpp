@@ -225,7 +225,7 @@ TEST(SceneCase, IsTriedAtItsTolerance) {
   std::string text = soft;
   const std::string method = "id = \"backward_euler\"\ndt_s = 0.002";
   text.replace(text.find(method), method.size(),
-               "id = \"tr_bdf2\"\ntolerance = 0.005\nmax_step_s = 0.02");
+               "id = \"tr_bdf2\"\nposition_tol_rel = 0.005\nmax_step_s = 0.02");
   const std::string file = file_of("tolerance.toml", text);
   CommandLine line;
   line.models = {"der"};
@@ -235,10 +235,10 @@ TEST(SceneCase, IsTriedAtItsTolerance) {
     EXPECT_EQ(row.text("outcome"), "stable") << row.text("why");
     if (row.text("integrator") != "tr_bdf2") continue;
     paces.push_back(std::string(row.text("dt_s")) + " " +
-                    std::string(row.text("tolerance")));
+                    std::string(row.text("position_tol_rel")));
   }
   EXPECT_EQ(paces, (std::vector<std::string>{"0.02 0.005", "0.03333333333333333 0.001"}));
-  EXPECT_EQ(rows(file, line, {{"tolerance", "0.005"}}).size(), 1U);
+  EXPECT_EQ(rows(file, line, {{"position_tol_rel", "0.005"}}).size(), 1U);
 }
 
 // Error control holds constraints by projection, where fixed steps hold index 3.
@@ -247,7 +247,7 @@ TEST(SceneCase, ModelsWithConstraintsAreTriedByTolerance) {
   line.models = {"inextensible_strand"};
   line.integrators = {"tr_bdf2"};
   const auto found =
-      rows(file_of("constrained.toml", soft), line, {{"tolerance", "1e-3"}});
+      rows(file_of("constrained.toml", soft), line, {{"position_tol_rel", "1e-3"}});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found.front().text("formulation"), "projection");
   EXPECT_EQ(found.front().text("outcome"), "stable") << found.front().text("why");

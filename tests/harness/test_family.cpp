@@ -259,7 +259,7 @@ constexpr double asked = 1e-3;
 
 std::vector<Row> by_tolerance(const Rod& hair, std::string_view model, double calls) {
   Row row;
-  row.set("model", model).set("tolerance", asked).set("most_calls", calls);
+  row.set("model", model).set("position_tol_rel", asked).set("most_calls", calls);
   return tolerance.run(hair, row);
 }
 

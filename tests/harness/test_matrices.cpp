@@ -60,7 +60,7 @@ double solver_error(const std::string& model, const std::string& options) {
 // in the coordinates' scales, some 1e3 here, multiplies that.
 TEST(Matrices, OfAStepAreThoseThatTheModelSolvesWith) {
   for (const char* model : {"super_helix", "articulated_chain", "der"}) {
-    EXPECT_LT(solver_error(model, "tangent = \"exact\""), 1e-6) << model;
+    EXPECT_LT(solver_error(model, "jacobian = \"exact\""), 1e-6) << model;
   }
   for (const char* model : {"corde", "mass_spring"}) {
     EXPECT_LT(solver_error(model, ""), 1e-6) << model;
@@ -68,7 +68,7 @@ TEST(Matrices, OfAStepAreThoseThatTheModelSolvesWith) {
 }
 
 TEST(Matrices, OfTheResidualAgreeWithTheSparseForm) {
-  Moment now = moment(strand_by("der", "tangent = \"exact\""), 0, 0.05);
+  Moment now = moment(strand_by("der", "jacobian = \"exact\""), 0, 0.05);
   const std::vector<Named> all = matrices_of(now, h);
   const Weights of[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (std::size_t i = 0; i < 3; ++i) {

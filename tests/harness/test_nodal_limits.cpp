@@ -43,7 +43,7 @@ TEST(NodalLimits, AreLeftOutWhereOtherRowsAreAskedFor) {
     EXPECT_GT(grid_rows(line(set)), 0u) << set.front().first;
   }
   EXPECT_EQ(grid_rows(line({{"study", "nodal"}})), 0u);
-  CommandLine one = line({{"tangent", "exact"}});
+  CommandLine one = line({{"jacobian", "exact"}});
   one.integrators = {"rk4"};
   one.elements = {7, 9};
   ASSERT_EQ(nodal(one).size(), 2u);

@@ -294,7 +294,8 @@ TEST(OscillationFit, TheOwnDampingOfAMethodIsATimeError) {
 Parameters weightless() {
   Parameters p = planar(16);
   set_known(
-      p, {{"gravity_m_s2", "0"}, {"initial", "bent"}, {"initial_curvature_1_m", "0.5"}});
+      p,
+      {{"gravity_m_s2", "0"}, {"initial", "bent"}, {"initial_curvature_per_m", "0.5"}});
   return p;
 }
 

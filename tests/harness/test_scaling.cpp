@@ -51,7 +51,7 @@ TEST(ScalingGrid, HasEverySolverTangentAndModeOnce) {
   for (const ScalingCase& c : cases({})) {
     EXPECT_TRUE(rows.insert(describe(c.identity())).second) << describe(c.identity());
     series.insert(
-        std::string(c.model->id).append(c.solver).append(c.tangent).append(c.modes));
+        std::string(c.model->id).append(c.solver).append(c.jacobian).append(c.modes));
     if (c.structure != straight) continue;
     int& largest = c.solver == "composite" ? largest_composite : largest_recursive;
     largest = std::max(largest, c.elements);
@@ -71,7 +71,8 @@ TEST(ScalingGrid, HasEverySolverTangentAndModeOnce) {
 TEST(ScalingGrid, KeepsWhatTheCommandLineNames) {
   CommandLine line;
   line.elements = {300};
-  line.set = {{"solver", "composite"}, {"tangent", "stiff"}, {"structure", "straight"}};
+  line.set = {
+      {"solver", "composite"}, {"jacobian", "elastic"}, {"structure", "straight"}};
   line.models = {"articulated_chain"};
   const auto rows = cases(line);
   ASSERT_EQ(rows.size(), 1u);
@@ -112,11 +113,11 @@ TEST(ScalingGrid, TheSeedsFramesAreBesideItsMethodsOnly) {
   double composite_30 = 0, recursive_30 = 0, willow = 0;
   int given = 0;
   for (const ScalingCase& c : cases({})) {
-    const auto fps = c.seed_fps();
+    const auto fps = c.published_fps();
     if (!fps) continue;
     ++given;
     EXPECT_TRUE(c.in_seed_table());
-    EXPECT_EQ(c.tangent, "stiff");
+    EXPECT_EQ(c.jacobian, "elastic");
     EXPECT_NE(c.model->id, "articulated_chain");
     if (c.structure == "willow") willow = *fps;
     if (c.elements != 30) continue;
@@ -134,7 +135,7 @@ Row row(std::string_view structure, std::string_view solver, int elements, doubl
         std::string_view modes = "bend_twist") {
   Row r;
   r.set("structure", structure).set("model", "super_helix").set("solver", solver);
-  r.set("tangent", "stiff").set("modes", modes).set("elements", elements);
+  r.set("jacobian", "elastic").set("modes", modes).set("elements", elements);
   r.set("cost_per_step_s", cost);
   return r.set("cost_per_element_step_s", cost / elements);
 }

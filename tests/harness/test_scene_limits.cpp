@@ -114,7 +114,7 @@ TEST_F(SceneLimit, HoldsOverFiveTimesTheScene) {
   const auto lines = stability_answer(found);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0],
-              HasSubstr("springs, mass_spring: rk4 (tangent exact): stable up to "));
+              HasSubstr("springs, mass_spring: rk4 (jacobian exact): stable up to "));
   EXPECT_THAT(lines[0], HasSubstr(", unstable at 1.5 times that ("));
   EXPECT_THAT(lines[0], HasSubstr("; judged over 250 ms; "));
 }
@@ -130,7 +130,7 @@ TEST_F(SceneLimit, OfAMethodThatTheModelCannotTakeIsARefusal) {
   EXPECT_EQ(
       stability_answer(found),
       std::vector<std::string>{
-          "helix, super_helix: not driven by xpbd (tangent exact) (--list says why)"});
+          "helix, super_helix: not driven by xpbd (jacobian exact) (--list says why)"});
 }
 
 TEST_F(SceneLimit, EndsWithItsWork) {

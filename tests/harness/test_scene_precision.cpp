@@ -38,7 +38,7 @@ duration_s = 0.1
 id = "super_helix"
 
 [integrator]
-id = "semi_implicit_euler"
+id = "linearly_implicit_euler"
 dt_s = 0.001
 
 [effects.gravity]
@@ -88,7 +88,7 @@ id = "super_helix_tree"
 tree = "palm_tree"
 
 [integrator]
-id = "semi_implicit_euler"
+id = "linearly_implicit_euler"
 dt_s = 0.001
 )";
 
@@ -157,11 +157,11 @@ TEST(ScenePrecision, ByToleranceHasTheErrorAskedFor) {
   int steps = 0, tolerances = 0;
   for (const Row& row : precision(file("soft.toml", soft), line)) {
     ASSERT_TRUE(row.ok()) << row.text("reason");
-    ++(row.has("tolerance") ? tolerances : steps);
-    EXPECT_NE(row.has("tolerance"), row.has("dt_s"));
-    EXPECT_EQ(row.has("tolerance"), row.has("achieved_over_asked"));
-    if (!row.has("tolerance")) continue;
-    EXPECT_LE(row.number("achieved_over_asked"), 1);
+    ++(row.has("position_tol_rel") ? tolerances : steps);
+    EXPECT_NE(row.has("position_tol_rel"), row.has("dt_s"));
+    EXPECT_EQ(row.has("position_tol_rel"), row.has("error_over_tolerance"));
+    if (!row.has("position_tol_rel")) continue;
+    EXPECT_LE(row.number("error_over_tolerance"), 1);
     EXPECT_NE(row.text("formulation"), "index3");
   }
   EXPECT_EQ(steps, 8);
@@ -184,7 +184,7 @@ TEST(ScenePrecision, InAllEndsAtTheErrorOfTheElements) {
 }
 
 TEST(ScenePrecision, OfACurlyStrandInTheWindOnASphereIsATable) {
-  const CommandLine line = line_of({"super_helix", "der"}, {"semi_implicit_euler"});
+  const CommandLine line = line_of({"super_helix", "der"}, {"linearly_implicit_euler"});
   std::set<std::string> kinds, models;
   for (const Row& row : precision(file("curly.toml", curly), line)) {
     EXPECT_FALSE(row.text("error_kind").empty() && row.ok());
@@ -216,7 +216,7 @@ TEST(ScenePrecision, OfExplicitStepsEndsWithTheWorkOfARun) {
 }
 
 TEST(ScenePrecision, OfStrandsThatTouchHasNoTotalError) {
-  CommandLine line = line_of({"super_helix"}, {"semi_implicit_euler"});
+  CommandLine line = line_of({"super_helix"}, {"linearly_implicit_euler"});
   line.set = {{"error", "total"}};
   const auto rows = precision(
       file("touching.toml", falling("", "[effects.strand_interaction]\n")), line);

@@ -13,17 +13,17 @@ using namespace experiments::constraint_drift;
 using namespace experiments::stability_limit;
 
 Row row(std::string_view scene, std::string_view integrator, std::string_view solver,
-        std::string_view tangent, double stable, double unstable) {
+        std::string_view jacobian, double stable, double unstable) {
   Row r;
   r.set("scene", scene).set("model", "super_helix").set("integrator", integrator);
-  r.set("solver", solver).set("tangent", tangent).set("modes", "bend_twist");
+  r.set("solver", solver).set("jacobian", jacobian).set("modes", "bend_twist");
   r.set("elements", 20).set("damping", "none");
   return r.set("dt_max_s", stable).set("dt_first_unstable_s", unstable);
 }
 
-Row semi_implicit(std::string_view solver, double stable, double unstable,
-                  std::string_view tangent = "stiff") {
-  return row("whip", "semi_implicit_euler", solver, tangent, stable, unstable);
+Row linearly_implicit(std::string_view solver, double stable, double unstable,
+                      std::string_view jacobian = "elastic") {
+  return row("whip", "linearly_implicit_euler", solver, jacobian, stable, unstable);
 }
 
 constexpr double none = std::numeric_limits<double>::infinity();  // an empty cell
@@ -44,15 +44,15 @@ std::vector<Verdicts::Verdict> verdicts(const std::vector<Row>& rows) {
 }
 
 TEST(StabilityClaims, BracketsThatOverlapAreTheSameLimit) {
-  const auto same = verdicts(
-      {semi_implicit("recursive", 1.00, 1.05), semi_implicit("composite", 1.04, 1.09)});
+  const auto same = verdicts({linearly_implicit("recursive", 1.00, 1.05),
+                              linearly_implicit("composite", 1.04, 1.09)});
   ASSERT_EQ(same.size(), 1u);
   EXPECT_TRUE(same[0].held);
   EXPECT_DOUBLE_EQ(same[0].value, 1.04);
   for (const auto& [recursive, composite] : {std::pair{1.00, 1.06}, {1.06, 1.00}}) {
     const auto other =
-        verdicts({semi_implicit("recursive", recursive, 1.05 * recursive),
-                  semi_implicit("composite", composite, 1.05 * composite)});
+        verdicts({linearly_implicit("recursive", recursive, 1.05 * recursive),
+                  linearly_implicit("composite", composite, 1.05 * composite)});
     ASSERT_EQ(other.size(), 1u);
     EXPECT_FALSE(other[0].held);
     EXPECT_DOUBLE_EQ(other[0].value, 1.06);
@@ -60,20 +60,20 @@ TEST(StabilityClaims, BracketsThatOverlapAreTheSameLimit) {
 }
 
 TEST(StabilityClaims, ALimitAtTheCapIsAboveEveryOther) {
-  EXPECT_TRUE(verdicts({semi_implicit("recursive", 0.1, none),
-                        semi_implicit("composite", 0.1, none)})[0]
+  EXPECT_TRUE(verdicts({linearly_implicit("recursive", 0.1, none),
+                        linearly_implicit("composite", 0.1, none)})[0]
                   .held);
-  EXPECT_FALSE(verdicts({semi_implicit("recursive", 0.1, none),
-                         semi_implicit("composite", 0.08, 0.084)})[0]
+  EXPECT_FALSE(verdicts({linearly_implicit("recursive", 0.1, none),
+                         linearly_implicit("composite", 0.08, 0.084)})[0]
                    .held);
 }
 
 TEST(StabilityClaims, LessImplicitMayBeBelowStiffButNotAbove) {
-  EXPECT_TRUE(verdicts({semi_implicit("recursive", 1.00, 1.05),
-                        semi_implicit("recursive", 0.01, 0.0105, "less_implicit")})[0]
+  EXPECT_TRUE(verdicts({linearly_implicit("recursive", 1.00, 1.05),
+                        linearly_implicit("recursive", 0.01, 0.0105, "elastic_local")})[0]
                   .held);
-  EXPECT_FALSE(verdicts({semi_implicit("recursive", 1.00, 1.05),
-                         semi_implicit("recursive", 1.05, 1.10, "less_implicit")})[0]
+  EXPECT_FALSE(verdicts({linearly_implicit("recursive", 1.00, 1.05),
+                         linearly_implicit("recursive", 1.05, 1.10, "elastic_local")})[0]
                    .held);
 }
 
@@ -81,9 +81,9 @@ TEST(StabilityClaims, LessImplicitMayBeBelowStiffButNotAbove) {
 // to 0.4 should have.
 TEST(StabilityClaims, SearchesAreComparedWhereBothGotTo) {
   const auto compared = [](double finest) {
-    Row cut = semi_implicit("recursive", 1.00, 1.05);
+    Row cut = linearly_implicit("recursive", 1.00, 1.05);
     cut.set("search_done", false).set("dt_finest_s", finest);
-    return verdicts({cut, semi_implicit("composite", 0.5, 0.52)});
+    return verdicts({cut, linearly_implicit("composite", 0.5, 0.52)});
   };
   EXPECT_TRUE(compared(0.6).empty());
   ASSERT_EQ(compared(0.4).size(), 1u);
@@ -91,17 +91,17 @@ TEST(StabilityClaims, SearchesAreComparedWhereBothGotTo) {
 }
 
 TEST(StabilityClaims, RowsWithoutALimitSayNothing) {
-  Row failed = semi_implicit("recursive", 5, 6);
+  Row failed = linearly_implicit("recursive", 5, 6);
   failed.failed("gave_up", "");
-  EXPECT_TRUE(verdicts({failed, semi_implicit("composite", 1, 2)}).empty());
-  EXPECT_TRUE(verdicts({semi_implicit("recursive", 1, 2)}).empty());
+  EXPECT_TRUE(verdicts({failed, linearly_implicit("composite", 1, 2)}).empty());
+  EXPECT_TRUE(verdicts({linearly_implicit("recursive", 1, 2)}).empty());
 }
 
 TEST(StabilityClaims, TheShakenStrandDecidesOnTheTwoTangents) {
   const auto shaken = [](double implicit, double semi) {
-    return verdicts(
-        {row("shake", "backward_euler", "recursive", "exact", implicit, none),
-         row("shake", "semi_implicit_euler", "recursive", "stiff", semi, 1.05 * semi)});
+    return verdicts({row("shake", "backward_euler", "recursive", "exact", implicit, none),
+                     row("shake", "linearly_implicit_euler", "recursive", "elastic", semi,
+                         1.05 * semi)});
   };
   const auto good = shaken(0.033, 0.0019), bad = shaken(0.0329, 0.002);
   ASSERT_EQ(good.size(), 2u);
@@ -110,10 +110,10 @@ TEST(StabilityClaims, TheShakenStrandDecidesOnTheTwoTangents) {
   EXPECT_FALSE(bad[0].held || bad[1].held);
 }
 
-// Five claims: of two solvers, of two tangents, of the shaken strand by two tangents, and
-// of tolerances.
+// Five claims: of two solvers, of two Jacobians, of the shaken strand by two Jacobians,
+// and of tolerances.
 TEST(StabilityClaims, OfRowsThatWereNotRunAreNotJudged) {
-  const auto unjudged = all_of({semi_implicit("recursive", 1, 2)});
+  const auto unjudged = all_of({linearly_implicit("recursive", 1, 2)});
   ASSERT_EQ(unjudged.size(), 5u);
   for (const auto& verdict : unjudged) {
     EXPECT_EQ(verdict.state, Verdicts::State::not_judged) << verdict.claim;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/numerics/tip_track.h"
-#include "experiments/peers/peer.h"
+#include "experiments/other_simulators/simulator.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/problems/strand_reference.h"
 #include "experiments/problems/strand_scenes.h"
@@ -18,7 +18,7 @@
 namespace tress::test_strand_precision {
 
 using namespace experiments;
-using namespace experiments::peers;
+using namespace experiments::other_simulators;
 using namespace experiments::work_precision;
 
 // ---- the track of a tip -----------------------------------------------------------
@@ -130,7 +130,7 @@ std::unique_ptr<System> swinging(std::string_view model, int elements) {
   ModelSettings settings = find_strand_scene("swing").settings;
   settings.emplace_back("elements", std::to_string(elements));
   settings.emplace_back("modes", "bend");
-  settings.emplace_back("tangent", "stiff");
+  settings.emplace_back("jacobian", "elastic");
   return make_model(model, settings);
 }
 
@@ -183,12 +183,12 @@ TEST(ConvergedModel, ThrowsWhenItsRunFails) {
 // ---- the scene --------------------------------------------------------------------
 
 TEST(SwingScene, IsTheOneOfThePeers) {
-  using peers::Swing;
+  using other_simulators::Swing;
   const ModelEntry& model = find_model("super_helix");
   Parameters p(setup_parameters(model), "super_helix");
   for (const auto& [key, value] : find_strand_scene("swing").settings) p.set(key, value);
   const Strand made = strand(p);
-  // Peers count in mm, mg and s.
+  // OtherSimulators count in mm, mg and s.
   EXPECT_NEAR(made.length(), 1e-3 * Swing::length, 1e-15);
   EXPECT_NEAR(made.mass(), 1e-6 * Swing{1}.mass(), 1e-20);
   const CrossSection& section = made.segments.front().section;
@@ -208,9 +208,9 @@ TEST(SwingScene, IsTheOneOfThePeers) {
     EXPECT_EQ(root.x.x, 0);
     EXPECT_EQ(root.x.z, 0);
     EXPECT_EQ(root.frame.e0.x, 1);
-    // What the peers' links feel at rest seen from the clamp, m/s^2.
+    // What the other simulators' links feel at rest seen from the clamp, m/s^2.
     const Vec felt = 1e-3 * Swing::gravity(t);
-    const double damping = p.number("mass_damping_1_s");
+    const double damping = p.number("mass_damping_per_s");
     EXPECT_NEAR(-root.a.y - damping * root.v.y, felt.y, 1e-12);
     EXPECT_NEAR(-p.number("gravity_m_s2"), felt.z, 1e-12);
   }
@@ -239,13 +239,13 @@ TEST(StrandGrid, IdentitiesDifferAndIntegratorsAreThere) {
         << describe(c.identity());
     integrators.insert(c.integrator);
     if (c.error_kind == "time") {
-      EXPECT_EQ(c.elements, peer_elements);
+      EXPECT_EQ(c.elements, simulator_elements);
       EXPECT_EQ(c.grading, 1);
     }
   }
   for (const std::string_view id :
        {"implicit_midpoint", "linearly_implicit_midpoint", "generalized_alpha", "newmark",
-        "bdf2", "ida", "cvode_bdf", "arkode_dirk", "semi_implicit_euler", "rk4"}) {
+        "bdf2", "ida", "cvode_bdf", "arkode_dirk", "linearly_implicit_euler", "rk4"}) {
     EXPECT_TRUE(integrators.contains(id)) << id;
   }
 }
@@ -279,7 +279,7 @@ TEST(StrandGrid, ParametersAreThoseOfTheRow) {
   for (const StrandCase& c : strand_cases(line, settings)) {
     const Parameters p = c.parameters(settings);
     EXPECT_EQ(p.word("modes"), "bend_twist");
-    EXPECT_EQ(p.word("tangent"), c.tangent);
+    EXPECT_EQ(p.word("jacobian"), c.jacobian);
     EXPECT_EQ(p.whole("elements"), c.elements);
     EXPECT_EQ(p.whole("quadrature"), 8);
     EXPECT_EQ(p.word("motion"), "swing");

@@ -106,7 +106,7 @@ id = "mass_spring"
 
 [integrator]
 id = "tr_bdf2"
-tolerance = 0.003
+position_tol_rel = 0.003
 
 [material]
 name = "custom"

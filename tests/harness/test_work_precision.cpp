@@ -154,9 +154,9 @@ TEST(StrandRuns, ByToleranceHaveTheTimeErrorThatWasAskedFor) {
     EXPECT_FALSE(row.has("dt_s"));
     EXPECT_GT(row.number("smallest_step_s"), 0);
     // The largest distance of a tip is not below its root mean square.
-    EXPECT_GE(row.number("achieved_over_asked") * row.number("tolerance"),
+    EXPECT_GE(row.number("error_over_tolerance") * row.number("position_tol_rel"),
               row.number("error_rel"));
-    EXPECT_LE(row.number("achieved_over_asked"), 1);
+    EXPECT_LE(row.number("error_over_tolerance"), 1);
   }
   EXPECT_EQ(controlled, 6);  // two methods, three tolerances
 }
@@ -175,20 +175,20 @@ TEST(ProblemRuns, ByToleranceMeasureTheBodyOverItsLength) {
   line.repeat = 1;
   line.integrators = {"esdirk43"};
   for (const char* const scene : {"beam", "chain_10", "andrews_squeezer"}) {
-    line.set = {{"scene", scene}, {"tolerance", "0.5"}};
+    line.set = {{"scene", scene}, {"position_tol_rel", "0.5"}};
     int controlled = 0;
     for (const Case& work : problem_runs(line, Settings(line, row_settings()))) {
-      if (!work.identity.has("tolerance")) {
+      if (!work.identity.has("position_tol_rel")) {
         EXPECT_TRUE(work.identity.has("dt_s"));
         continue;
       }
       ++controlled;
-      if (work.identity.number("tolerance") < 1e-2) continue;
+      if (work.identity.number("position_tol_rel") < 1e-2) continue;
       Row row = work.identity;
       work.run(row, Deadline(600));
       ASSERT_TRUE(row.ok()) << scene << ": " << row.text("reason");
-      EXPECT_GT(row.number("achieved_over_asked"), 0);
-      EXPECT_LE(row.number("achieved_over_asked"), 1) << scene;
+      EXPECT_GT(row.number("error_over_tolerance"), 0);
+      EXPECT_LE(row.number("error_over_tolerance"), 1) << scene;
     }
     EXPECT_EQ(controlled, 3) << scene;
   }
@@ -239,7 +239,7 @@ std::vector<Row> by_tolerance(const std::vector<double>& ratios) {
   for (const double ratio : ratios) {
     Row row;
     row.set("scene", "swing").set("integrator", "esdirk43").set("model", "super_helix");
-    row.set("tolerance", tolerance).set("achieved_over_asked", ratio);
+    row.set("position_tol_rel", tolerance).set("error_over_tolerance", ratio);
     rows.push_back(row);
     tolerance /= 10;
   }

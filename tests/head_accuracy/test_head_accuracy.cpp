@@ -247,7 +247,7 @@ TEST(HeadStudy, IsReproducible) {
   const auto first = rows_of(scene, plan);
   plan.comparison.threads = 3;
   const auto again = rows_of(scene, plan);
-  for (const char* kind : {"cheapest", "bits", "as_given"}) {
+  for (const char* kind : {"cheapest", "precision", "as_given"}) {
     const Row &a = only_one(first, kind), &b = only_one(again, kind);
     for (const Column& column : head_columns()) {
       if (column.timing) continue;
@@ -301,8 +301,9 @@ TEST(HeadStudy, AdvisedSceneIsTheRun) {
 // --- the program -----------------------------------------------------------------------
 
 const std::string strand_scene =
-    "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"super_helix\"\ntangent = "
-    "\"stiff\"\n[integrator]\nid = \"semi_implicit_euler\"\ndt_s = 0.003\n[strand]\n";
+    "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"super_helix\"\njacobian = "
+    "\"elastic\"\n[integrator]\nid = \"linearly_implicit_euler\"\ndt_s = "
+    "0.003\n[strand]\n";
 
 TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
   struct Bad {
@@ -326,7 +327,7 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
               "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"der\"\n[groom]\n");
     toy.write("springs.toml",
               "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"mass_spring\"\n"
-              "tangent = \"filtered\"\n[integrator]\nid = \"semi_implicit_euler\"\n"
+              "jacobian = \"filtered\"\n[integrator]\nid = \"linearly_implicit_euler\"\n"
               "dt_s = 0.003\n[groom]\n");
     const auto before = toy.files();
     const Toy::Result result = toy.run(bad.arguments);

@@ -54,7 +54,7 @@ TEST(BlockDescent, ConvergedSweepsAreBackwardEulerOfALinearSystem) {
         }
         for (const char* primal : {"1", "4"}) {
           const Words words{{"sweeps", "1000"},        {"sweep_order", order},
-                            {"block", block},          {"penalty_1_s2", "200"},
+                            {"block", block},          {"penalty_per_s2", "200"},
                             {"primal_sweeps", primal}, {"start", "adaptive"}};
           EXPECT_LE(
               apart(at_end("vbd_augmented", line, options_of(step, words), 5 * step),
@@ -96,7 +96,7 @@ TEST(BlockDescent, RigidRowsAreRefusedByDescentAloneAndHeldByMultipliers) {
               testing::HasSubstr("rows without compliance"));
   EXPECT_EQ(refusal(find_integrator("vbd_augmented"), rigid, Formulation::parametric),
             "");
-  const Words words{{"sweeps", "1000"}, {"penalty_1_s2", "1000"}};
+  const Words words{{"sweeps", "1000"}, {"penalty_per_s2", "1000"}};
   const auto x = at_end("vbd_augmented", rigid, options_of(step, words), 3 * step);
   for (std::size_t i = 0; i + 1 < x.size(); ++i) EXPECT_NEAR(x[i + 1] - x[i], 1, 1e-12);
 }
@@ -205,7 +205,7 @@ double from_direct(std::string_view id, const Words& words) {
   const ModelEntry& model = find_model("mass_spring");
   Parameters p(setup_parameters(model), "test");
   set_known(p, find_strand_scene("swing").settings);
-  set_known(p, {{"elements", "20"}, {"mass_damping_1_s", "0"}});
+  set_known(p, {{"elements", "20"}, {"mass_damping_per_s", "0"}});
   const auto system = model.make(p);
   const auto tips = [&](std::string_view method, const Words& of_method) {
     const TipRun run =
@@ -267,8 +267,8 @@ TEST(StableCosseratRods, RepeatedStepsOfAnOrientationBalanceIt) {
     const auto system = make_model(model, {{"elements", "3"},
                                            {"motion", "shake_rotate"},
                                            {"ellipticity", "1.5"},
-                                           {"natural_curvature_1_m", "8"},
-                                           {"natural_twist_1_m", "5"},
+                                           {"natural_curvature_per_m", "8"},
+                                           {"natural_twist_per_m", "5"},
                                            {"internal_friction_kg_m3_s", "1e-9"}});
     ComplianceForm& form = *system->compliance_form();
     const auto n = static_cast<std::size_t>(system->layout().coordinates);
@@ -331,7 +331,7 @@ TEST(StableCosseratRods, ConvergedSweepsAreBackwardEulersWithoutRotaryInertia) {
   const auto strand_of = [](const char* inertia) {
     return make_model("xpbd_cosserat", {{"elements", "3"},
                                         {"radius_m", "1e-3"},
-                                        {"natural_curvature_1_m", "8"},
+                                        {"natural_curvature_per_m", "8"},
                                         {"youngs_modulus_pa", "1e6"},
                                         {"motion", "shake_rotate"},
                                         {"norm", "1e4"},

@@ -129,16 +129,16 @@ INSTANTIATE_TEST_SUITE_P(Esdirk, Table, testing::ValuesIn(all_methods),
                          [](const auto& test) { return test.param.id; });
 
 /// A soft strand whose root translates and turns, as in test_strands.
-std::unique_ptr<System> strand(std::string_view tangent) {
+std::unique_ptr<System> strand(std::string_view jacobian) {
   const ModelEntry& entry = find_model("super_helix");
   Parameters p(setup_parameters(entry), "model super_helix");
   p.set("elements", "3");
   p.set("radius_m", "1e-3");
-  p.set("natural_curvature_1_m", "8");
+  p.set("natural_curvature_per_m", "8");
   p.set("youngs_modulus_pa", "1e6");
-  p.set("mass_damping_1_s", "2");
+  p.set("mass_damping_per_s", "2");
   p.set("motion", "shake_rotate");
-  p.set("tangent", tangent);
+  p.set("jacobian", jacobian);
   return entry.make(p);
 }
 
@@ -156,7 +156,7 @@ TEST_P(Strand, KeepsItsOrderWithOneInexactMatrixAStep) {
   ASSERT_EQ(reference.to(end_time), Status::ok);
   std::vector<double> steps, errors;
   for (const int count : {100, 200, 400}) {
-    const auto system = strand("stiff");
+    const auto system = strand("elastic");
     Options options;
     options.step = end_time / count;
     options.refresh = Refresh::every_step;
@@ -176,14 +176,14 @@ TEST_P(Strand, KeepsItsOrderWithOneInexactMatrixAStep) {
 }
 
 /// A curl that falls, by tolerance.
-Stats falling_curl(std::string_view id, const char* model, std::string_view tangent,
+Stats falling_curl(std::string_view id, const char* model, std::string_view jacobian,
                    double tolerance) {
   const ModelEntry& entry = find_model(model);
   Parameters p(setup_parameters(entry), std::string("model ") + model);
   p.set("elements", "13");
   p.set("length_m", "0.15");
-  p.set("natural_curvature_1_m", "90");
-  p.set("tangent", tangent);
+  p.set("natural_curvature_per_m", "90");
+  p.set("jacobian", jacobian);
   const auto system = entry.make(p);
   Options options;
   options.tolerance = tolerance;
@@ -193,12 +193,12 @@ Stats falling_curl(std::string_view id, const char* model, std::string_view tang
   return drive.integrator->stats();
 }
 
-// What less_implicit leaves out of its matrix makes Newton's iteration diverge beyond a
+// What elastic_local leaves out of its matrix makes Newton's iteration diverge beyond a
 // length of step that no tolerance changes.
 TEST_P(Strand, TakesShortStepsForATangentThatLacksTerms) {
   const std::string id = GetParam().id;
-  const Stats stiff = falling_curl(id, "articulated_chain", "stiff", 0.1);
-  const Stats less = falling_curl(id, "articulated_chain", "less_implicit", 0.1);
+  const Stats stiff = falling_curl(id, "articulated_chain", "elastic", 0.1);
+  const Stats less = falling_curl(id, "articulated_chain", "elastic_local", 0.1);
   EXPECT_EQ(stiff.rejected_by_newton, 0);
   EXPECT_GT(less.steps, 3 * stiff.steps);
   EXPECT_GT(less.rejected_by_newton, 0);

@@ -87,7 +87,7 @@ TEST_P(NotFinite, OfAnEffectNamesItAndThePoint) {
 // Fixed steps of 1 ms find it in the 21st, whatever part of the step they look at.
 TEST_P(NotFinite, OfAnEffectIsInTheFailureWithTheStepAndItsTime) {
   for (const std::string_view integrator :
-       {"semi_implicit_euler", "backward_euler", "implicit_midpoint", "bdf2",
+       {"linearly_implicit_euler", "backward_euler", "implicit_midpoint", "bdf2",
         "generalized_alpha"}) {
     const auto system = make(poisoned);
     EXPECT_THAT(failure(integrator, *system, initial_state(*system)),

@@ -331,7 +331,7 @@ std::vector<Method> holding() {
   std::vector<Method> all;
   for (const Method& method : methods(false)) {
     const bool index3 = method.formulation == Formulation::index3 &&
-                        method.entry->id != "semi_implicit_euler";  // one Newton step
+                        method.entry->id != "linearly_implicit_euler";  // one Newton step
     if (method.formulation == Formulation::projection ||
         method.formulation == Formulation::rattle || index3 ||
         method.formulation == Formulation::correction) {

@@ -42,15 +42,15 @@ std::unique_ptr<System> strand(std::string_view model) {
     p.set("elements", model == "super_clothoid" ? "1" : "3");  // waves as slow
     p.set("radius_m", "1e-3");
     // Joints that stay bent where their dihedral angles jump if they are straightened.
-    p.set("natural_curvature_1_m", model == "lifted_curls" ? "25" : "8");
-    p.set("natural_curvature2_1_m", "5");
+    p.set("natural_curvature_per_m", model == "lifted_curls" ? "25" : "8");
+    p.set("natural_curvature2_per_m", "5");
     p.set("youngs_modulus_pa", "1e6");
   } else {  // the palm tree is of wood: softened until it sways like the strand
     p.set("youngs_modulus_pa", "1e5");
   }
   // Penalties and quaternions as slow as the rest.
   set_known(p, {{"coupling", "1"}, {"norm", "1"}, {"edge_inertia", "0.5"}});
-  p.set("mass_damping_1_s", "2");
+  p.set("mass_damping_per_s", "2");
   p.set("motion", "shake_rotate");
   return entry.make(p);
 }

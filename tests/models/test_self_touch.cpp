@@ -80,7 +80,7 @@ TEST(StiffSelfTouch, IsDefiniteHoweverStrongTheContactIs) {
   for (const char* solver : {"recursive", "composite"}) {
     for (const double stiffness : {10.0, 1e3, 1e6}) {
       const Spiral of{
-          "super_helix", {{"tangent", "stiff"}, {"solver", solver}}, stiffness};
+          "super_helix", {{"jacobian", "elastic"}, {"solver", solver}}, stiffness};
       const auto system = spiral_of(of);
       States s(*system, 3);
       s.shake(0.01);

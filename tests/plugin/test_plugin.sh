@@ -16,7 +16,7 @@ ln -s "$repository/tests" "$work/tests"
 cd "$work"
 
 # --- the page's own commands, as they stand ------------------------------------------------
-mapfile -t commands < <(node "$repository/tests/commands/page_commands.mjs" "$repository" \
+mapfile -t commands < <(python3 "$repository/tests/commands/page_commands.py" "$repository" \
   docs/plugins.md '^(build/|cmake -S|cmake --build)')
 ((${#commands[@]} >= 8)) || { echo "docs/plugins.md has lost its commands"; exit 1; }
 for command in "${commands[@]}"; do
@@ -101,7 +101,7 @@ refused "a model 'simo_reissner' already" "$program" --plugin "$library" --plugi
 
 # --- tables of other plug-ins do not mix ---------------------------------------------------
 rows=(--models der --elements 1 --set scene=release --set damping=none
-  --integrators semi_implicit_euler --quick --out one.csv)
+  --integrators linearly_implicit_euler --quick --out one.csv)
 expect 0 . "$program" --plugin "$library" "${rows[@]}"
 refused 'other settings' "$program" "${rows[@]}" --resume
 refused 'other settings' "$program" --plugin "$spoilt" "${rows[@]}" --resume

@@ -18,7 +18,7 @@ function page(tables) {
 
 test('steps come longest first; a capped one is a bound; a reason stands for none', () => {
   const html = page({
-    'stability_limit.csv': `scene,integrator,tangent,dt_max_s,limited_by,realtime_factor,reason
+    'stability_limit.csv': `scene,integrator,jacobian,dt_max_s,limited_by,realtime_factor,reason
 mine,rk4,,,energy,,no <step>
 mine,bdf2,exact,0.002,energy,4,
 mine,backward_euler,exact,0.1,cap,100,
@@ -33,35 +33,35 @@ mine,backward_euler,exact,0.1,cap,100,
 
 test('what is stable by tolerance stands in a table of its own', () => {
   const html = page({
-    'stability_limit.csv': `study,scene,integrator,tangent,dt_max_s,limited_by,realtime_factor,tolerance_loosest,tolerance_tightest,steps_usual,reason
+    'stability_limit.csv': `study,scene,integrator,jacobian,dt_max_s,limited_by,realtime_factor,tolerance_loosest,tolerance_tightest,steps_usual,reason
 file,mine,bdf2,exact,0.002,energy,4,,,,
 tolerance,mine,tr_bdf2,exact,,cap,,0.1,0.0001,321,
 tolerance,mine,esdirk43,exact,,energy,,,,,no <tolerance>
 `,
   });
-  assert.match(html, /<td>tr_bdf2, tangent exact<\/td><td>1e-1<\/td><td>1e-4<\/td><td>321<\/td>/);
-  assert.match(html, /<td>esdirk43, tangent exact<\/td><td>none<\/td><td>no &lt;tolerance&gt;<\/td>/);
+  assert.match(html, /<td>tr_bdf2, jacobian exact<\/td><td>1e-1<\/td><td>1e-4<\/td><td>321<\/td>/);
+  assert.match(html, /<td>esdirk43, jacobian exact<\/td><td>none<\/td><td>no &lt;tolerance&gt;<\/td>/);
   assert.equal(html.match(/tr_bdf2/g).length, 1);
 });
 
 test('outcomes stand beside each other by step, the shortest first; what failed says why', () => {
   const html = page({
     'hard_cases.csv': `case,model,variant,integrator,dt_s,outcome,passed,why
-mine,der,tangent=exact,rk4,0.03,unstable,false,too <fast> at t = 0.1 s
-mine,der,tangent=exact,rk4,0.003,stable,true,nothing to compare with
-mine,der,tangent=stiff,rk4,0.03,unstable,false,unstable: a piece is off
+mine,der,jacobian=exact,rk4,0.03,unstable,false,too <fast> at t = 0.1 s
+mine,der,jacobian=exact,rk4,0.003,stable,true,nothing to compare with
+mine,der,jacobian=elastic,rk4,0.03,unstable,false,unstable: a piece is off
 mine,xpbd_cosserat,,bdf2,0.03,stable,true,nothing to compare with
 `,
   });
   assert.match(html, /<th>step 3 ms<\/th><th>step 30 ms<\/th>/);
-  assert.match(html, /<td>der, tangent=exact, rk4<\/td><td>stable<\/td><td>unstable: too &lt;fast&gt; at t = 0.1 s<\/td>/);
+  assert.match(html, /<td>der, jacobian=exact, rk4<\/td><td>stable<\/td><td>unstable: too &lt;fast&gt; at t = 0.1 s<\/td>/);
   assert.match(html, /<td>unstable: a piece is off<\/td>/);
   assert.match(html, /<td>xpbd_cosserat, bdf2<\/td><td><\/td><td>stable<\/td>/);
 });
 
 test('tolerances stand behind the steps, the tightest first', () => {
   const html = page({
-    'hard_cases.csv': `case,model,variant,integrator,dt_s,tolerance,outcome,passed,why
+    'hard_cases.csv': `case,model,variant,integrator,dt_s,position_tol_rel,outcome,passed,why
 mine,der,,tr_bdf2,0.03,1e-2,stable,true,
 mine,der,,tr_bdf2,0.03,1e-3,unstable,false,fell
 mine,der,,tr_bdf2,0.03,,stable,true,
@@ -77,13 +77,13 @@ test('effects and advice are shown in words', () => {
 mine,none,,,,
 mine,wind,0.25,0.5,keep,
 `,
-    'cost_of_accuracy.csv': `kind,model,modes,tangent,options,elements,integrator,dt_s,error_rel,ms_per_frame,reason
+    'cost_of_accuracy.csv': `kind,model,modes,jacobian,options,elements,integrator,dt_s,error_rel,ms_per_frame,reason
 winner,der,,exact,,8,bdf2,0.001,0.005,2,
 front,der,,exact,,9,bdf2,0.001,0.004,3,
 `,
   });
   assert.match(html, /<td>wind<\/td><td>25 %<\/td><td>50 %<\/td><td>keep<\/td>/);
-  assert.match(html, /<td>take<\/td><td>der, tangent exact, 8 elements, bdf2, dt 1 ms<\/td><td>0.5 %<\/td>/);
+  assert.match(html, /<td>take<\/td><td>der, jacobian exact, 8 elements, bdf2, dt 1 ms<\/td><td>0.5 %<\/td>/);
   assert.match(html, /9 elements/);
 });
 

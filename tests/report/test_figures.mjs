@@ -1,47 +1,119 @@
-// Rules of the figures that need no drawing: `node --test tests/report/test_figures.mjs`.
+// How figures look, drawn from the fixture and from the tables: `node --test tests/report/test_figures.mjs`.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
-import { paper_theme, spread } from '../../experiments/report/figures/common.mjs';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { contrast, degrees, lightness, told_apart } from './colour_vision.mjs';
+import { colour_scales, drawings, fixed_colours, is_themed, size_of } from './drawn.mjs';
+import { fixture_directory, remove, report_root } from './support.mjs';
+import { dark_theme, paper_theme } from '../../experiments/report/figures/common.mjs';
 import {
   cell_fills,
   families,
-  model_style,
+  palette,
   series_style,
   shapes,
 } from '../../experiments/report/figures/palette.mjs';
-import { model_steps } from '../../experiments/report/figures/model_steps.mjs';
-import { nodal_steps } from '../../experiments/report/figures/nodal_steps.mjs';
-import { limit_spec, stability_limit } from '../../experiments/report/figures/stability_limit.mjs';
-import { validation_cells } from '../../experiments/report/figures/validation.mjs';
-import { validation_orders } from '../../experiments/report/figures/validation_orders.mjs';
-import { drift_findings } from '../../experiments/report/src/findings/drift.mjs';
-import { control_findings } from '../../experiments/report/src/findings/tolerance.mjs';
-import { hard_cases, hard_findings } from '../../experiments/report/figures/hard_cases.mjs';
-import { divided_heads } from '../../experiments/report/figures/divided_heads.mjs';
-import { damping } from '../../experiments/report/figures/damping.mjs';
-import { hard_rows, judged, not_compared } from '../../experiments/report/src/hard.mjs';
-import { work_findings } from '../../experiments/report/src/findings/work.mjs';
-import { outcome_text } from '../../experiments/report/src/outcome.mjs';
-import { stability_findings } from '../../experiments/report/src/findings/stability.mjs';
+import { hard_cases } from '../../experiments/report/figures/hard_cases.mjs';
+import { cost_of_accuracy } from '../../experiments/report/figures/cost_of_accuracy.mjs';
+import { hard_cases_summary } from '../../experiments/report/figures/hard_cases_summary.mjs';
 
-// Relative luminance of sRGB, from 0 to 1, as CIE L*.
-function lightness(hex) {
-  const linear = [1, 3, 5]
-    .map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
-    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
-  const y = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
-  return y > 0.008856 ? 116 * Math.cbrt(y) - 16 : 903.3 * y;
+// Figures are read by everybody: colours of one figure are told apart by three quarters of all
+// viewers at a glance, whatever their colour vision.
+const least_difference = 1.5;
+const pairs_of = (list) => list.flatMap((a, i) => list.slice(i + 1).map((b) => [a, b]));
+
+function assert_told_apart(colours, size, where) {
+  for (const [a, b] of pairs_of(colours)) {
+    if (is_themed(a) && is_themed(b)) continue;
+    const difference = told_apart(a, b, size);
+    assert.ok(difference >= least_difference, `${where}: ${a} and ${b} differ by ${difference}`);
+  }
 }
 
-// A difference of 1 to 2 in L* is just noticeable, 12 is plain; 100 is the paper.
+test('ToldApart_FindsColoursThatOneKindOfVisionConfuses', () => {
+  // Okabe and Ito's bluish green next to a grey.
+  assert.ok(told_apart('#009e73', '#7a7f87') < 1);
+  assert.ok(told_apart('#0072b2', '#d55e00') > 3);
+  assert.ok(Math.abs(lightness('#ffffff') - 100) < 0.1 && Math.abs(lightness('#777777') - 50) < 0.5);
+});
+
+// WCAG asks 4.5 of text. Marks of data are larger and have a shape as well.
+test('Colours_AreReadableOnLightAndOnDark', () => {
+  for (const theme of [paper_theme, dark_theme]) {
+    for (const name of ['text', 'muted'])
+      assert.ok(contrast(theme[name], theme.background) >= 4.5, `${name} ${theme[name]}`);
+    for (const colour of palette) assert.ok(contrast(colour, theme.background) >= 2.2, colour);
+  }
+  for (const { fill, text } of Object.values(cell_fills))
+    assert.ok(contrast(fill, text) >= 3.6, fill);
+  const style = readFileSync(join(report_root, 'src/browser/style.css'), 'utf8');
+  const dark = style.slice(style.indexOf('prefers-color-scheme: dark'));
+  for (const [name, of] of Object.entries({ text: 'text', muted: 'muted', grid: 'grid', axis: 'axis', bad: 'bad', background: 'card' }))
+    assert.ok(dark.includes(`--${of}: ${dark_theme[name]};`), name);
+});
+
+const repository = fileURLToPath(new URL('../../', import.meta.url));
+const tall = { most: 1200, readme: 700, width: 1060 };
+
+const fixture = fixture_directory();
+after(() => remove(fixture));
+
+for (const [name, directory] of [
+  ['OfTheFixture', fixture],
+  ['OfTheTables', join(repository, 'results')],
+]) {
+  test(`Figures${name}_AreReadInTenSeconds`, async () => {
+    const drawn = await drawings(directory);
+    assert.ok(drawn.length > 15, `${drawn.length} figures`);
+    const readme = readFileSync(join(repository, 'docs/templates/README.md'), 'utf8');
+    for (const { id, spec, svg } of drawn) {
+      const { width, height } = size_of(svg);
+      const most = readme.includes(`${id}.svg`) ? tall.readme : tall.most;
+      assert.ok(height <= most && width <= tall.width, `${id}: ${width} by ${height}`);
+      const title = spec.title.text.join(' ');
+      assert.ok(spec.title.text.length <= 3 && title.length > 15, `${id}: ${title}`);
+      assert.doesNotMatch(title + spec.title.subtitle.join(' '), /undefined|NaN|Infinity|null/, id);
+      if (name === 'OfTheTables') assert.match(title, /\d/, `${id} states no number: ${title}`);
+      assert.match(svg, /<title>[^<]{15,}<\/title><desc>[^<]{40,}<\/desc>/, id);
+      assert.match(svg, /@media \(prefers-color-scheme:dark\)/, id);
+    }
+  });
+
+  test(`Series${name}_ShareNoColour`, async () => {
+    for (const { id, spec } of await drawings(directory)) {
+      const scales = colour_scales(spec);
+      const entries = scales.flatMap(({ names, colours }) => names.map((of, i) => [of, colours[i]]));
+      const colour_of = new Map(entries);
+      for (const [of, colour] of entries)
+        assert.equal(colour_of.get(of), colour, `${id}: ${of} has two colours`);
+      const colours = [...colour_of.values(), ...new Set(fixed_colours(spec))];
+      assert.equal(new Set([...colour_of.values()]).size, colour_of.size, `${id}: a colour twice`);
+      assert.ok(new Set(colours).size <= palette.length, `${id}: ${colours.length} colours`);
+      const cells = scales.length > 0 && scales.every((scale) => scale.cells);
+      assert_told_apart([...new Set(colours)], cells ? degrees.cell : degrees.mark, id);
+      // Colour is never the only sign of a series: it has a shape of its own as well.
+      for (const { names, cells: filled } of scales) {
+        if (filled || names.length < 2) continue;
+        const marked = scales.find(
+          (scale) => String(scale.names) === String(names) && scale.shapes.length > 1,
+        );
+        assert.ok(marked, `${id}: ${names} have no shapes`);
+        assert.equal(new Set(marked.shapes).size, marked.shapes.length, id);
+      }
+    }
+  });
+}
+
 test('CellFills_DifferInGrey', () => {
   const all = Object.values(cell_fills)
     .map(({ fill }) => lightness(fill))
     .concat(100)
     .sort((a, b) => a - b);
-  all.slice(1).forEach((l, i) => assert.ok(l - all[i] >= 12, all.join(' ')));
-  for (const { fill, text } of Object.values(cell_fills))
-    assert.ok(Math.abs(lightness(fill) - lightness(text)) >= 40, fill);
+  // A difference of 1 to 2 in L* is just noticeable; 100 is the paper.
+  all.slice(1).forEach((l, i) => assert.ok(l - all[i] >= 10, all.join(' ')));
+  assert_told_apart(Object.values(cell_fills).map(({ fill }) => fill), degrees.cell, 'cells');
 });
 
 test('Shapes_AreOneForEachIntegrator', () => {
@@ -51,145 +123,6 @@ test('Shapes_AreOneForEachIntegrator', () => {
   // work_precision draws methods that take a step or a tolerance twice.
   const drawn = [...known, 'tr_bdf2 (tolerance)', 'esdirk43 (tolerance)'];
   assert.equal(new Set(series_style(drawn).shapes).size, drawn.length);
-});
-
-const by_tolerance = (integrator, tolerance, achieved_over_asked, more = {}) => ({
-  scene: 'swing',
-  model: 'super_helix',
-  error_kind: 'time',
-  status: 'ok',
-  integrator,
-  tolerance,
-  achieved_over_asked,
-  ...more,
-});
-
-test('ControlFindings_CountTheRunsWithinTheBoundsAndNameTheWorst', () => {
-  const work_precision = [
-    by_tolerance('tr_bdf2', 1e-2, 0.04),
-    by_tolerance('tr_bdf2', 1e-3, 0.5),
-    by_tolerance('tr_bdf2', 1e-4, 2),
-    by_tolerance('tr_bdf2', 1e-5, 90, { below_reference: 'true' }),
-    by_tolerance('esdirk43', 1e-2, 0.1),
-    by_tolerance('esdirk43', 1e-3, null, { status: 'solver_error' }),
-  ];
-  assert.deepEqual(control_findings({ work_precision }), [
-    'tr_bdf2: error over tolerance 0.04 to 2, between 0.05 and 1 in 1 of 3 runs; above the ' +
-      'tolerance in 1, most on super helix (swing, 1e-4: 2).',
-    'esdirk43: error over tolerance 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
-  ]);
-  assert.deepEqual(control_findings({}), []);
-});
-
-test('Outcome_SaysErrorsWithTheirHorizonOrWhyThereAreNone', () => {
-  assert.equal(outcome_text({}), '');
-  assert.equal(outcome_text(undefined), '');
-  const text = outcome_text({
-    steps: 50,
-    rejected_steps: 3,
-    time_error_max_rel: 0.02,
-    time_error_rms_rel: 0.01,
-    time_horizon_s: 0.5,
-    space_error_missing: 'the model brings its own elements',
-  });
-  assert.equal(
-    text,
-    '50 steps, 3 rejected. Estimated error in time, over the length: at most 0.02, root mean ' +
-      'square 0.01, until 0.5 s, from where the run and a finer one are different motions. ' +
-      'No error in space: the model brings its own elements.',
-  );
-});
-
-test('Spread_KeepsTheOrderAndTheGap', () => {
-  assert.deepEqual(spread([50, 10, 52], 13, 330), [50, 10, 63]);
-  assert.deepEqual(spread([329, 330, 5], 10, 330), [320, 330, 5]);
-});
-
-test('OrdersOfTwoPoints_AreDashed', () => {
-  const rows = [10, 20, 40].map((elements) => ({
-    test: 'cantilever',
-    model: 'der',
-    elements,
-    parameter: 1,
-    error_rel: 1 / elements ** 2,
-  }));
-  const two = rows.slice(0, 2).map((row) => ({ ...row, model: 'corde' }));
-  const drawn = validation_orders.rows({ validation: [...rows, ...two] });
-  assert.deepEqual(
-    drawn.map(({ points }) => points),
-    [3, 3, 3, 2, 2],
-  );
-});
-
-test('Studies_OfOneTableAreDrawnApart', () => {
-  const row = {
-    scene: 'release',
-    model: 'super_helix',
-    integrator: 'semi_implicit_euler',
-    solver: 'recursive',
-    tangent: 'stiff',
-    modes: 'bend_twist',
-    damping: 'none',
-    elements: 20,
-    dt_max_s: 1e-3,
-    status: 'ok',
-  };
-  const drawn = (study, figure) => figure.rows({ stability_limit: [{ ...row, study }] }).length;
-  assert.deepEqual(
-    [stability_limit, model_steps, nodal_steps].map((figure) => drawn('grid', figure)),
-    [1, 1, 0],
-  );
-  assert.deepEqual(
-    [stability_limit, model_steps, nodal_steps].map((figure) => drawn('nodal', figure)),
-    [0, 0, 1],
-  );
-  const nodal = { ...row, study: 'nodal', status: 'gave_up' };
-  assert.deepEqual(stability_findings({ stability_limit: [nodal] }), []);
-  const limit = { study: 'limit', status: 'unstable' };
-  assert.deepEqual(drift_findings({ constraint_drift: [limit] }), []);
-});
-
-test('FreeFlight_IsNoTestOfAModel', () => {
-  const row = { model: 'der', elements: 10, status: 'ok' };
-  const cells = validation_cells({
-    validation: [
-      { ...row, test: 'cantilever', error_rel: 0.001, tolerance: 0.01, judged: 'true', passed: 'true' },
-      { ...row, test: 'free_flight', integrator: 'rk4', status: 'diverged' },
-    ],
-  });
-  assert.deepEqual(
-    cells.map(({ test: name }) => name),
-    ['cantilever'],
-  );
-});
-
-test('LowerBounds_AreNotJoinedToLimits', () => {
-  const row = (elements, dt_max_s, limited_by) => ({
-    scene: 'shake',
-    model: 'der',
-    integrator: 'semi_implicit_euler',
-    damping: 'none',
-    method: 'der',
-    elements,
-    dt_max_s,
-    limited_by,
-    status: 'ok',
-  });
-  const rows = [row(5, 0.01, 'energy'), row(10, 0.1, 'cap'), row(20, 0.02, 'energy')];
-  const { concat } = limit_spec(rows, model_style(['der']), {
-    width: 1000,
-    theme: paper_theme,
-  });
-  const [line, , , filled, hollow] = concat[0].layer.map(({ data }) => data.values);
-  assert.deepEqual(
-    line.map(({ elements, stretch }) => [elements, stretch]),
-    [
-      [5, 0],
-      [20, 1],
-    ],
-  );
-  assert.deepEqual(filled.map(({ elements }) => elements), [5, 20]);
-  assert.deepEqual(hollow.map(({ elements }) => elements), [10]);
 });
 
 const hard_run = (more) => ({
@@ -203,69 +136,23 @@ const hard_run = (more) => ({
   ...more,
 });
 
-test('StableWithoutAReference_HasAMarkOfItsOwn', () => {
-  const tables = {
-    hard_cases: [
-      hard_run({ model: 'der' }),
-      hard_run({ model: 'corde', error_rel: 0.2 }),
-      hard_run({ model: 'xpbd', error_rel: 0.01, outcome: 'stable and accurate' }),
-    ],
-  };
-  assert.deepEqual(
-    hard_rows(tables).map((row) => row.outcome),
-    [not_compared, 'stable', 'stable and accurate'],
+// A title is a sentence about this table: it follows the table.
+test('Titles_FollowTheTable', () => {
+  const run = (model, outcome, error_rel) => hard_run({ model, outcome, error_rel, dt_s: 1 / 30 });
+  const runs = [run('der', 'stable and accurate', 0.01), run('corde', 'stable', 0.2), run('xpbd', 'unstable')];
+  const title = (list) => hard_cases_summary.headline({ hard_cases: list });
+  assert.equal(
+    title(runs),
+    'backward_euler at 33.3 ms is stable in 67 % of 3 stress tests and accurate in 33 %',
   );
-  assert.deepEqual(hard_cases.rows(tables).map((row) => row.letter), ['N', 'S', 'A']);
-});
-
-test('AShortenedCase_CountsOnlyWhereItWasRunWhole', () => {
-  const long = (more) => hard_run({ case: 'million_steps', steps: 5000, error_rel: 0.2, ...more });
-  const tables = {
-    hard_cases: [long(), long({ dt_s: 1 / 30 }), hard_run({ error_rel: 0.1 }), hard_run({ dt_s: 1 / 30, error_rel: 0.1 })],
-    hard_cases_million_steps: [long({ steps: 1e6, outcome: 'unstable' })],
-  };
-  assert.deepEqual(
-    judged(tables).map((row) => [row.case, row.dt_s, row.outcome]),
-    [['cone', 1e-3, 'stable'], ['cone', 1 / 30, 'stable'], ['million_steps', 1e-3, 'unstable']],
+  assert.match(title([...runs, run('swing', 'unstable')]), /50 % of 4 stress tests and accurate in 25 %/);
+  const cost = (kind, wall_s_per_sim_s, more) => ({
+    scene: 'whip', kind, model: 'der', integrator: 'bdf2', elements: 5, status: 'ok', error_rel: 0.01, wall_s_per_sim_s, ...more,
+  });
+  const costs = (wall) => [cost('winner', 1e-3, { target_error_rel: 0.01 }), cost('as_given', wall)];
+  assert.match(
+    cost_of_accuracy.headline({ cost_of_accuracy: costs(0.02) }),
+    /^A tip error of 1 % costs 1 ms to 1 ms .*take 20 to 20 times as long$/,
   );
-  assert.match(hard_findings(tables)[0], /survives 1 of the 1 cases/);
-  assert.ok(hard_cases.rows(tables).some((row) => row.situation === 'million steps, cut to 5000'));
-  const whole = { hard_cases: [long({ steps: 1e6 })] };
-  assert.equal(judged(whole).length, 1, 'a table that was run whole is not cut');
-});
-
-test('HardCases_SayWhichLetterIsWhichStep', () => {
-  const rows = [1e-3, 1 / 30].map((dt_s) => hard_run({ dt_s }));
-  const [{ title }] = hard_cases.spec({ hard_cases: rows }, { width: 1000, theme: paper_theme }).concat;
-  assert.equal(title.subtitle, 'from left to right in each cell: 1 ms, 33.3 ms');
-});
-
-test('DividedHeads_DrawWhatWasMeasured', () => {
-  const row = { effects: 'drag', status: 'ok', beside: 1, strands: 1000, ranks: 2 };
-  const tables = {
-    divided_heads: [
-      { ...row, kind: 'measured', cost_per_step_s: 2e-3, model_cost_per_step_s: 1.9e-3 },
-      { ...row, kind: 'measured', beside: 2, cost_per_step_s: 3e-3 },
-      { ...row, kind: 'predicted', beside: null, ranks: 64, strands: 1e6, model_cost_per_step_s: 1e-3 },
-    ],
-  };
-  const { concat } = divided_heads.spec(tables, { width: 1000, theme: paper_theme });
-  const points = concat[0].layer.find(({ mark }) => mark.type === 'point');
-  assert.deepEqual(points.data.values.map((one) => one.cost_ms), [2]);
-});
-
-test('Damping_KeepsTheSign', () => {
-  const row = { model: 'der', integrator: 'bdf2', dt_s: 1e-3, status: 'ok' };
-  const tables = { damping: [{ ...row, energy_lost_rel: 0.1 }, { ...row, energy_lost_rel: -0.2 }] };
-  assert.deepEqual(damping.rows(tables).map(({ sign }) => sign), ['lost', 'gained']);
-  const { concat } = damping.spec(tables, { width: 1000, theme: paper_theme });
-  assert.deepEqual(concat.map(({ title }) => title), ['der: energy lost', 'der: energy gained']);
-});
-
-test('Cheapest_NamesItsField', () => {
-  const row = { scene: 'beam', error_kind: 'time', status: 'ok', wall_s_per_sim_s: 1, error_rel: 1e-3 };
-  const say = (...integrators) =>
-    work_findings({ work_precision: integrators.map((integrator) => ({ ...row, integrator })) })[0];
-  assert.match(say('rk4'), /\(the only integrator run\): error 0.01 with rk4/);
-  assert.match(say('rk4', 'bdf2'), /\(of 2 integrators\)/);
+  assert.match(cost_of_accuracy.headline({ cost_of_accuracy: costs(0.05) }), /50 times as long$/);
 });

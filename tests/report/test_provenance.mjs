@@ -15,18 +15,18 @@ test('tables of one commit need no word', () => {
 test('tables of several commits are named, each with its own', () => {
   const tables = {
     heads: of('0123456789'),
-    peers: of('abcdef0123'),
+    other_simulators: of('abcdef0123'),
     scaling: of('0123456789'),
     swing: {},
   };
   assert.deepEqual(commits_of(tables), [
     ['0123456', ['heads', 'scaling']],
-    ['abcdef0', ['peers']],
+    ['abcdef0', ['other_simulators']],
     ['unknown', ['swing']],
   ]);
   assert.match(
     mixed_commits(tables),
-    /^The tables are of 3 commits, not of one: 0123456 \(heads, scaling\); abcdef0 \(peers\); unknown \(swing\)\. /,
+    /^The tables are of 3 commits, not of one: 0123456 \(heads, scaling\); abcdef0 \(other_simulators\); unknown \(swing\)\. /,
   );
 });
 

@@ -144,8 +144,9 @@ std::string refusal(const std::string& scene) {
 TEST(ControlMeshScene, WhatItCannotDoIsRefusedWithTheReason) {
   const std::string mesh = "[effects.control_mesh]\n";
   EXPECT_EQ(refusal(text("super_helix", mesh)), "none");
-  EXPECT_THAT(refusal(text("super_helix", mesh, "id = \"tr_bdf2\"\ntolerance = 1e-3")),
-              testing::HasSubstr("found once a step"));
+  EXPECT_THAT(
+      refusal(text("super_helix", mesh, "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3")),
+      testing::HasSubstr("found once a step"));
   EXPECT_THAT(
       refusal(text("mass_spring",
                    mesh + "[effects.strand_interaction]\ncoupling = \"monolithic\"\n")),

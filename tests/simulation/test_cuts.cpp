@@ -26,7 +26,7 @@ struct Hair {
     const Scene scene = parse_scene(
         "title = \"t\"\nduration_s = 0.1\n[model]\nid = "
         "\"super_helix\"\n[integrator]\nid "
-        "= \"semi_implicit_euler\"\ndt_s = 0.001\n[material]\nradius_m = " +
+        "= \"linearly_implicit_euler\"\ndt_s = 0.001\n[material]\nradius_m = " +
             text(radius) + "\nyoungs_modulus_pa = " + text(young) +
             "\nellipticity = 1\ndensity_kg_m3 = "
             "1300\n[effects.gravity]\n[strand]\nlength_m = " +
@@ -83,7 +83,7 @@ std::vector<Hair> family() {
       for (const char* tangent : {"[1, 0, 0]", "[1, 0, 1]", "[0.1, 0, -1]"}) {
         for (const char* shape :
              {"shape = \"straight\"\n",
-              "shape = \"wavy\"\nwave_1_m = 30\nwavelength_m = 0.08\n",
+              "shape = \"wavy\"\nwave_per_m = 30\nwavelength_m = 0.08\n",
               "shape = \"helix\"\ncurl_radius_m = 0.015\ncurl_pitch_m = 0.05\n"}) {
           all.push_back({length, 40e-6, young, tangent, shape});
         }
@@ -99,7 +99,7 @@ TEST(Cuts, AsFewElementsAsTheToleranceNeeds) {
   for (const Hair& hair : hairs) {
     const double tolerance = 0.005 * hair.length;
     const std::string keys = "elements = 96\ntolerance_m = " + std::to_string(tolerance);
-    const Strand rest = hair.cut(keys + "\ncuts = \"rest\"\n"), equal = hair.cut(keys);
+    const Strand rest = hair.cut(keys + "\nmesh = \"rest\"\n"), equal = hair.cut(keys);
     const double error = off(hair, rest);
     RecordProperty(std::to_string(hair.length) + hair.tangent + hair.shape +
                        std::to_string(hair.young),
@@ -120,7 +120,7 @@ TEST(Cuts, AHeavyCantileverNeedsFewWhereTheyCount) {
                        (1000 * radius * radius);
   const Hair hair{length, radius, young, "[1, 0, 0]", "shape = \"straight\"\n"};
   const double equal = off(hair, hair.cut("elements = 12\n")) / length,
-               graded = off(hair, hair.cut("elements = 12\ncuts = \"rest\"\n")) / length;
+               graded = off(hair, hair.cut("elements = 12\nmesh = \"rest\"\n")) / length;
   EXPECT_LT(graded, 0.005);
   EXPECT_GT(equal, 10 * graded);
 }
@@ -129,8 +129,8 @@ TEST(Cuts, OtherNumbersOfElementsKeepTheCut) {
   const Scene scene = parse_scene(
       "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"super_helix\"\n[integrator]\nid "
       "= "
-      "\"semi_implicit_euler\"\ndt_s = 0.001\n[material]\nyoungs_modulus_pa = 1e7\n"
-      "[effects.gravity]\n[strand]\nelements = 8\ncuts = \"rest\"\n",
+      "\"linearly_implicit_euler\"\ndt_s = 0.001\n[material]\nyoungs_modulus_pa = 1e7\n"
+      "[effects.gravity]\n[strand]\nelements = 8\nmesh = \"rest\"\n",
       "t.toml");
   const auto grows = [](const Strand& strand) {
     return strand.segments.back().length / strand.segments.front().length;
@@ -144,41 +144,42 @@ TEST(Cuts, OtherNumbersOfElementsKeepTheCut) {
 
 TEST(Cuts, ClothoidsAreCutByWhatTheyNeed) {
   const Hair hair{0.1, 40e-6, 1e7, "[1, 0, 0]", "shape = \"straight\"\n"};
-  const Strand linear = hair.cut("elements = 6\ncuts = \"rest_linear\"\n");
+  const Strand linear = hair.cut("elements = 6\nmesh = \"rest_linear\"\n");
   const Scene scene = parse_scene(
       "title = \"t\"\nduration_s = 0.1\n[model]\nid = "
-      "\"super_clothoid\"\n[integrator]\nid = \"semi_implicit_euler\"\ndt_s = 0.001\n"
+      "\"super_clothoid\"\n[integrator]\nid = \"linearly_implicit_euler\"\ndt_s = 0.001\n"
       "[material]\nradius_m = 40e-6\nyoungs_modulus_pa = 1e7\nellipticity = "
       "1\ndensity_kg_m3 = 1300\n[effects.gravity]\n[strand]\nlength_m = 0.1\n"
       "root_tangent = [1, 0, 0]\n",
       "t.toml");
   ASSERT_TRUE(may_cut_at_rest(scene));
   const Strand of_model = with_elements_at_rest(scene, 6).strands.front();
-  const Strand helices = hair.cut("elements = 6\ncuts = \"rest\"\n");
+  const Strand helices = hair.cut("elements = 6\nmesh = \"rest\"\n");
   ASSERT_EQ(of_model.segments.size(), 6U);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(of_model.segments[i].length, linear.segments[i].length);
   }
   EXPECT_NE(helices.segments[0].length, linear.segments[0].length);
-  EXPECT_THROW(hair.cut("tolerance_m = 0.001\ncuts = \"rest_linear\"\n"), InputError);
+  EXPECT_THROW(hair.cut("tolerance_m = 0.001\nmesh = \"rest_linear\"\n"), InputError);
 }
 
 TEST(Cuts, WhatMakesNoSenseIsRefused) {
   const Hair hair{0.1, 40e-6, 1e9, "[1, 0, 0]", ""};
-  EXPECT_THROW(hair.cut("cuts = \"rest\"\ngrading = 2\n"), InputError);
+  EXPECT_THROW(hair.cut("mesh = \"rest\"\ngrading = 2\n"), InputError);
   EXPECT_THROW(hair.cut("tolerance_m = 0.001\ngrading = 2\n"), InputError);
   EXPECT_THROW(hair.cut("tolerance_m = -1\n"), InputError);
-  EXPECT_THROW(hair.cut("cuts = \"rest\"\n[root]\nmotion = \"free\"\n"), InputError);
+  EXPECT_THROW(hair.cut("mesh = \"rest\"\n[root]\nmotion = \"free\"\n"), InputError);
   const std::string scene =
       "title = \"t\"\n[model]\nid = \"super_helix\"\n[integrator]\nid = "
-      "\"semi_implicit_euler\"\ndt_s = 0.001\n[strand]\npoints = [[0,0,0], [0.1,0,0], "
+      "\"linearly_implicit_euler\"\ndt_s = 0.001\n[strand]\npoints = [[0,0,0], "
+      "[0.1,0,0], "
       "[0.2,0.1,0]]\n";
   EXPECT_NO_THROW(parse_scene(scene, "t.toml"));
-  EXPECT_THROW(parse_scene(scene + "cuts = \"rest\"\n", "t.toml"), InputError);
+  EXPECT_THROW(parse_scene(scene + "mesh = \"rest\"\n", "t.toml"), InputError);
   EXPECT_THROW(parse_scene(scene + "tolerance_m = 0.01\n", "t.toml"), InputError);
   EXPECT_THROW(with_twice_the_elements(parse_scene(
                    "title = \"t\"\n[model]\nid = \"super_helix\"\n[integrator]\nid = "
-                   "\"semi_implicit_euler\"\ndt_s = 0.001\n[strand]\ntolerance_m = "
+                   "\"linearly_implicit_euler\"\ndt_s = 0.001\n[strand]\ntolerance_m = "
                    "0.001\n",
                    "t.toml")),
                InputError);

@@ -51,10 +51,10 @@ TEST(Detail, ElementsFollowLengthWeightCurlAndTolerance) {
 }
 
 std::string groom(const std::string& shape, const std::string& more) {
-  return "title = \"t\"\nduration_s = 0.1\nframes_1_s = 30\n[model]\nid = "
+  return "title = \"t\"\nduration_s = 0.1\nframes_per_s = 30\n[model]\nid = "
          "\"super_helix\"\n"
-         "modes = \"bend_twist\"\ntangent = \"stiff\"\n[integrator]\nid = "
-         "\"semi_implicit_euler\"\ndt_s = 0.0008333333333333334\n[material]\nname = "
+         "modes = \"bend_twist\"\njacobian = \"elastic\"\n[integrator]\nid = "
+         "\"linearly_implicit_euler\"\ndt_s = 0.0008333333333333334\n[material]\nname = "
          "\"hair.caucasian\"\n[effects.gravity]\n[groom]\ncount = 60\nlength_m = "
          "0.12\nlength_variation = 0.6\ncurl_variation = 0.3\n" +
          shape + more;
@@ -175,9 +175,9 @@ TEST_P(DetailOfShapes, StrandsMoveWithinTheToleranceOfTheirLoad) {
 INSTANTIATE_TEST_SUITE_P(
     Grooms, DetailOfShapes,
     testing::Values("shape = \"straight\"\n",
-                    "shape = \"wavy\"\nwave_1_m = 40\nwavelength_m = 0.05\n",
+                    "shape = \"wavy\"\nwave_per_m = 40\nwavelength_m = 0.05\n",
                     "shape = \"helix\"\ncurl_radius_m = 0.01\ncurl_pitch_m = 0.04\n",
-                    "shape = \"fuzzy\"\nfuzz_1_m = 30\ncorrelation_m = 0.03\n"));
+                    "shape = \"fuzzy\"\nfuzz_per_m = 30\ncorrelation_m = 0.03\n"));
 
 Scene classes(const std::string& more = "") {
   return parse_scene(groom("shape = \"helix\"\n", "tolerance_m = 0.002\n" + more),
@@ -187,7 +187,7 @@ Scene classes(const std::string& more = "") {
 TEST(Detail, TheSameInPixels) {
   const Scene metres = classes(),
               pixels = parse_scene(
-                  groom("shape = \"helix\"\n", "tolerance_px = 3\npixels_1_m = 1500\n"),
+                  groom("shape = \"helix\"\n", "tolerance_px = 3\npixels_per_m = 1500\n"),
                   "t.toml");
   ASSERT_EQ(metres.strands.size(), pixels.strands.size());
   for (std::size_t k = 0; k < metres.strands.size(); ++k) {
@@ -196,10 +196,10 @@ TEST(Detail, TheSameInPixels) {
 }
 
 TEST(Detail, WhatMakesNoSenseIsRefused) {
-  for (const char* bad :
-       {"tolerance_m = 0.001\ntolerance_px = 1\npixels_1_m = 1000\n",
-        "tolerance_px = 1\n", "pixels_1_m = 1000\n", "tolerance_m = 0.001\nguides = 5\n",
-        "tolerance_m = 0.001\ngrading = 2\n", "tolerance_m = -1\n"}) {
+  for (const char* bad : {"tolerance_m = 0.001\ntolerance_px = 1\npixels_per_m = 1000\n",
+                          "tolerance_px = 1\n", "pixels_per_m = 1000\n",
+                          "tolerance_m = 0.001\nguides = 5\n",
+                          "tolerance_m = 0.001\ngrading = 2\n", "tolerance_m = -1\n"}) {
     EXPECT_THROW(parse_scene(groom("", bad), "t.toml"), InputError) << bad;
   }
 }
@@ -255,7 +255,7 @@ TEST(HeadClasses, RunAsHeadsWithFilesOfTheirOwn) {
   Toy toy;
   toy.write("t.toml",
             "guard = \"true\"\n" + groom("shape = \"helix\"\n", "tolerance_m = 0.002\n"));
-  const Toy::Result result = toy.run("t.toml --as head --out .");
+  const Toy::Result result = toy.run("t.toml --as batch --out .");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err, testing::HasSubstr("t: heads of equal elements: strands "));
   const auto found = head_classes(read_outline(toy.path("work/t.toml")), 1);
@@ -270,7 +270,7 @@ TEST(HeadClasses, ThatTouchAreRefused) {
   Toy toy;
   toy.write("t.toml", groom("shape = \"helix\"\n",
                             "tolerance_m = 0.002\n[effects.strand_interaction]\n"));
-  const Toy::Result result = toy.run("t.toml --as head --out .");
+  const Toy::Result result = toy.run("t.toml --as batch --out .");
   EXPECT_EQ(result.code, 2);
   EXPECT_EQ(result.error_lines(), 1);
   EXPECT_THAT(result.err, testing::HasSubstr("that touch each other"));

@@ -140,9 +140,9 @@ class DividedHead : public testing::TestWithParam<Scalp> {};
 
 SceneOutline scene(const Scalp& scalp, int count) {
   return parse_outline(
-      fmt::format("title = \"t\"\nduration_s = 1\nframes_1_s = 10\n[model]\n"
-                  "id = \"{}\"\ntangent = \"stiff\"\n[integrator]\n"
-                  "id = \"semi_implicit_euler\"\ndt_s = 0.005\n[material]\n"
+      fmt::format("title = \"t\"\nduration_s = 1\nframes_per_s = 10\n[model]\n"
+                  "id = \"{}\"\njacobian = \"elastic\"\n[integrator]\n"
+                  "id = \"linearly_implicit_euler\"\ndt_s = 0.005\n[material]\n"
                   "name = \"hair.caucasian\"\n[groom]\ncount = {}\nelements = 4\n"
                   "length_m = 0.1\ncurl_variation = 0.5\nshape = \"helix\"\n"
                   "curl_radius_m = 0.01\ncurl_pitch_m = 0.02\n[root]\n"

@@ -22,7 +22,7 @@ constexpr double length = 0.1;  // m
 Scene released(const std::string& integrator, const std::string& model = "super_helix",
                const std::string& more = "") {
   return parse_scene(
-      "title = \"t\"\nduration_s = 0.1\nframes_1_s = 100\n[model]\nid = \"" + model +
+      "title = \"t\"\nduration_s = 0.1\nframes_per_s = 100\n[model]\nid = \"" + model +
           "\"\n[integrator]\n" + integrator +
           "\n[material]\nname = \"hair.asian\"\n[strand]\n"
           "length_m = 0.1\nelements = 8\nroot_tangent = [1, 0, 0]\n" +
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Orders, InTime,
 /// leaves 0.15 of it, and up to (1.2 / 0.95)^2 of that, for steps within the control's
 /// dead band are left as they are.
 TEST(ErrorBars, AToleranceIsComparedWithATenth) {
-  const Scene scene = released("id = \"tr_bdf2\"\ntolerance = 1e-2");
+  const Scene scene = released("id = \"tr_bdf2\"\nposition_tol_rel = 1e-2");
   Scene reference = scene;
   reference.options.tolerance = 1e-6;
   const double found = distance(scene, reference, 1);
@@ -167,7 +167,7 @@ TEST(ErrorBars, AStrandIsTheWorstByItsHorizonThenByItsError) {
 
 TEST(ErrorBars, OwnElementsAreNotDoubledButTheTimePartIsGiven) {
   const Scene tree = parse_scene(
-      "title = \"t\"\nduration_s = 0.1\nframes_1_s = 50\n[model]\nid = "
+      "title = \"t\"\nduration_s = 0.1\nframes_per_s = 50\n[model]\nid = "
       "\"super_helix_tree\"\n"
       "[integrator]\nid = \"implicit_midpoint\"\ndt_s = 0.001\n",
       "tree.toml");
@@ -179,7 +179,8 @@ TEST(ErrorBars, OwnElementsAreNotDoubledButTheTimePartIsGiven) {
 
 TEST(ErrorBars, OnlyAToleranceCanBeVerified) {
   EXPECT_THROW(check_verifiable(released("id = \"tr_bdf2\"\ndt_s = 0.001")), InputError);
-  EXPECT_NO_THROW(check_verifiable(released("id = \"tr_bdf2\"\ntolerance = 1e-3")));
+  EXPECT_NO_THROW(
+      check_verifiable(released("id = \"tr_bdf2\"\nposition_tol_rel = 1e-3")));
 }
 
 }  // namespace tress::test_error_bars

@@ -82,27 +82,29 @@ const Wrong wrong_scenes[] = {
     {"UnknownIntegrator", strand + "[integrator]\nid = \"rk5\"\n", "4:6",
      "did you mean 'rk4'?"},
     {"StepAndTolerance",
-     strand + "[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\ndt_s = 1e-3\n", "6:8",
-     "dt_s is not for a run with tolerance"},
+     strand + "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\ndt_s = 1e-3\n",
+     "6:8", "dt_s is not for a run with tolerance"},
     {"NewtonAndTolerance",
-     strand + "[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\n"
+     strand + "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"
               "newton_tolerance = 1e-3\n",
      "6:20", "newton_tolerance is not for"},
     {"RtolAndTolerance",
-     strand + "[integrator]\nid = \"ida\"\ntolerance = 1e-3\nrtol = 1e-3\n", "6:8",
+     strand + "[integrator]\nid = \"ida\"\nposition_tol_rel = 1e-3\nrtol = 1e-3\n", "6:8",
      "rtol is not for"},
-    {"ToleranceOfAFixedStep", strand + "[integrator]\nid = \"bdf2\"\ntolerance = 1e-3\n",
-     "5:13", "bdf2, which has a fixed step"},
+    {"ToleranceOfAFixedStep",
+     strand + "[integrator]\nid = \"bdf2\"\nposition_tol_rel = 1e-3\n", "5:20",
+     "bdf2, which has a fixed step"},
     {"LeastStepWithoutTolerance",
      strand + "[integrator]\nid = \"tr_bdf2\"\nmin_step_s = 1e-6\n", "5:14",
      "has no effect without tolerance"},
     {"ToleranceOfStrandsThatTouch",
-     strand + "[integrator]\nid = \"ida\"\ntolerance = 1e-3\n"
+     strand + "[integrator]\nid = \"ida\"\nposition_tol_rel = 1e-3\n"
               "[effects.strand_interaction]\n",
-     "5:13", "ida cannot repeat an interval between exchanges"},
+     "5:20", "ida cannot repeat an interval between exchanges"},
     {"LeastStepAboveTheLargest",
-     strand + "[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\nmin_step_s = 1e-2\n"
-              "max_step_s = 1e-3\n",
+     strand +
+         "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\nmin_step_s = 1e-2\n"
+         "max_step_s = 1e-3\n",
      "6:14", "min_step_s is more than max_step_s"},
     {"KeyOfAnotherTable", strand + "[model]\nlength_m = 1\n", "4:1", "unknown key"},
     {"OutOfRange", "[strand]\nlength_m = -1\n", "3:12",
@@ -119,7 +121,7 @@ const Wrong wrong_scenes[] = {
     {"TwoOfOne", strand + "[[effects.gravity]]\n", "3:1", "give one [effects.gravity]"},
     {"FrictionOfAnotherMethod",
      strand + "[integrator]\nid = \"rk4\"\n[effects.strand_friction]\n", "4:6",
-     "use semi_implicit_euler or backward_euler"},
+     "use linearly_implicit_euler or backward_euler"},
     {"FrictionOfOneSystem",
      strand + "[integrator]\nid = \"backward_euler\"\n[effects.strand_interaction]\n"
               "coupling = \"monolithic\"\n[effects.strand_friction]\n",
@@ -172,8 +174,8 @@ const Wrong wrong_scenes[] = {
     {"MassiveStrand", "[strand]\nelements = 99999999\n", "3:12", "out of range"},
     {"WindingElements", "[strand]\nlength_m = 1e6\nshape = \"helix\"\n", "2:1",
      "give more elements"},
-    {"TooManyFrames", "duration_s = 1e6\nframes_1_s = 1e6\n" + strand, "3:14",
-     "frames_1_s times duration_s"},
+    {"TooManyFrames", "duration_s = 1e6\nframes_per_s = 1e6\n" + strand, "3:16",
+     "frames_per_s times duration_s"},
     {"ModelRefuses",
      "[model]\nid = \"super_helix\"\nmodes = \"bend_planar\"\n[strand]\nshape = "
      "\"helix\"\n",

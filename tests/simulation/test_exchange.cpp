@@ -35,7 +35,7 @@ Scene meeting(const std::string& integrator, const std::string& coupling = "lagg
 Scene by_tolerance(const std::string& id, double tolerance,
                    const std::string& coupling = "lagged",
                    const std::string& model = "super_helix") {
-  return meeting("id = \"" + id + "\"\ntolerance = " + std::to_string(tolerance),
+  return meeting("id = \"" + id + "\"\nposition_tol_rel = " + std::to_string(tolerance),
                  coupling, model);
 }
 

@@ -95,8 +95,8 @@ TEST(SmoothLines, CutNothingThatIsStraightAndBearWhatIsDegenerate) {
 /// Four hairs with curls of 117 degrees an element, for 75 frames.
 std::string curls(const std::string& more = "") {
   std::string scene =
-      "title = \"curls\"\nduration_s = 1.5\nframes_1_s = 50\n[integrator]\n"
-      "id = \"semi_implicit_euler\"\ndt_s = 0.02\n[material]\nname = "
+      "title = \"curls\"\nduration_s = 1.5\nframes_per_s = 50\n[integrator]\n"
+      "id = \"linearly_implicit_euler\"\ndt_s = 0.02\n[material]\nname = "
       "\"hair.caucasian\"\n[root]\nmotion = \"fixed\"\n[effects.gravity]\n" +
       more;
   for (int k = 0; k < 4; ++k) {
@@ -220,7 +220,7 @@ TEST(Pictures, OfGltfAreOneMeshWhoseTargetsAreTheLaterFrames) {
 TEST(Pictures, HaveTheStepsThatEachStrandChose) {
   const auto scene = [](const std::string& steps) {
     std::string text =
-        "title = \"two\"\nduration_s = 0.1\nframes_1_s = 20\n[integrator]\nid = "
+        "title = \"two\"\nduration_s = 0.1\nframes_per_s = 20\n[integrator]\nid = "
         "\"tr_bdf2\"\n" +
         steps + "\n[effects.gravity]\n";
     for (const char* strand : {"length_m = 0.05\nelements = 5", "elements = 6"}) {
@@ -228,7 +228,7 @@ TEST(Pictures, HaveTheStepsThatEachStrandChose) {
     }
     return parse_scene(text, "two.toml");
   };
-  const Scene chosen = scene("tolerance = 1e-3");
+  const Scene chosen = scene("position_tol_rel = 1e-3");
   World world(chosen);
   Readout readout(chosen, world);
   const auto channel = std::ranges::find(readout.channels(), "step", &Reading::name);
@@ -285,8 +285,9 @@ TEST(Pictures, RefuseHairsBeforeTheRun) {
 TEST(Pictures, AndProgressBearAnyName) {
   Toy toy;
   const std::string name = "a\"b&c<d\ne";
-  toy.write(name + ".toml",
-            "title = \"t\"\nduration_s = 0.1\nframes_1_s = 20\n[strand]\nelements = 2\n");
+  toy.write(
+      name + ".toml",
+      "title = \"t\"\nduration_s = 0.1\nframes_per_s = 20\n[strand]\nelements = 2\n");
   const Toy::Result run = toy.run("'" + name + ".toml' --out out --progress json --vtk");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(toy.read("out/" + name + "_vtk/" + name + ".pvd"),

@@ -291,14 +291,14 @@ TEST_F(FileGroomScene, HasLanesWithEqualElements) {
   const auto outline = [&](const std::string& keys) {
     const std::string file = folder_ + "head.toml";
     replace_file(file, text(as_it_is + keys,
-                            "[model]\ntangent = \"stiff\"\n[integrator]\nid = "
-                            "\"semi_implicit_euler\"\n"));
+                            "[model]\njacobian = \"elastic\"\n[integrator]\nid = "
+                            "\"linearly_implicit_euler\"\n"));
     return read_outline(file);
   };
   const auto no = no_lanes(outline("").scene);
   ASSERT_TRUE(no);
-  EXPECT_THAT(no->remedy, HasSubstr("cuts = \"equal\""));
-  EXPECT_FALSE(no_lanes(outline("\ncuts = \"equal\"").scene));
+  EXPECT_THAT(no->remedy, HasSubstr("mesh = \"equal\""));
+  EXPECT_FALSE(no_lanes(outline("\nmesh = \"equal\"").scene));
 }
 
 TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {
@@ -313,7 +313,7 @@ TEST_F(FileGroomScene, RefusesKeysThatDoNothing) {
   EXPECT_THAT(refusal("guides = 2\nfit_tolerance = 0.1"),
               HasSubstr("all guide strands must have the same number"));
   for (const char* key :
-       {"unit = \"m\"", "every = 2", "cuts = \"equal\"", "fit_tolerance = 1"}) {
+       {"unit = \"m\"", "every = 2", "mesh = \"equal\"", "fit_tolerance = 1"}) {
     try {
       parse_scene(fmt::format("title = \"t\"\n[groom]\n{}\n", key), "s.toml");
       ADD_FAILURE() << key;

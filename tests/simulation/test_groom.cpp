@@ -66,7 +66,7 @@ TEST(Groom, CountsByDensity) {
   const double area = Cap({}, {0.1, 0.1, 0.1}, {0, 0, 1}, pi / 2).area();
   const auto strands = groomed(
       "half_axes_m = [0.1, 0.1, 0.1]\ncap_axis = [0, 0, 1]\ncap_angle_rad = "
-      "1.5707963267948966\ncount = 0\ndensity_1_m2 = 2000\n");
+      "1.5707963267948966\ncount = 0\ndensity_per_m2 = 2000\n");
   EXPECT_EQ(strands.size(), static_cast<std::size_t>(2000 * area));
 }
 

@@ -154,7 +154,7 @@ TEST_F(GuardTest, FindsAPointThatIsTooFast) {
 /// hanging down, which is less than both could.
 TEST(Guards, KnowTheEnergyOfEachStrandOfASystem) {
   const Scene read =
-      scene({"super_helix\"\ntangent = \"stiff", "semi_implicit_euler", "0.001",
+      scene({"super_helix\"\njacobian = \"elastic", "linearly_implicit_euler", "0.001",
              "elements = 4\n", "motion = \"fixed\"\n", "[effects.gravity]\n"});
   const std::vector<StrandToMake> two(2, StrandToMake{read.strands.front()});
   std::optional<SteppedSystem> made = StrandMaker(read).together(two, 3);
@@ -175,8 +175,8 @@ TEST(Guards, KnowTheEnergyOfEachStrandOfASystem) {
 }
 
 TEST(Guards, RememberWhatEachHasGathered) {
-  const Scene read = scene({"super_helix\"\ntangent = \"stiff", "semi_implicit_euler",
-                            "0.001", "elements = 4\n"});
+  const Scene read = scene({"super_helix\"\njacobian = \"elastic",
+                            "linearly_implicit_euler", "0.001", "elements = 4\n"});
   const std::vector<StrandToMake> two(2, StrandToMake{read.strands.front()});
   std::optional<SteppedSystem> made = StrandMaker(read).together(two, 0);
   ASSERT_TRUE(made && made->guard);
@@ -197,7 +197,7 @@ TEST(Guards, RememberWhatEachHasGathered) {
 TEST(Guard, AllowsWhatWorkGivesHoweverShortTheSteps) {
   for (const char* step : {"0.0017", "0.00017"}) {
     const Said windy{"articulated_chain",
-                     "semi_implicit_euler",
+                     "linearly_implicit_euler",
                      step,
                      "elements = 6\nlength_m = 0.077\n[strand.material]\n"
                      "name = \"custom\"\nradius_m = 7.4e-5\nyoungs_modulus_pa = 8.9e6\n"
@@ -245,23 +245,23 @@ const std::string windy =
 
 TEST(Guard, LeavesHonestScenesAlone) {
   const Said honest[] = {
-      {"super_helix", "semi_implicit_euler", "0.001", curled},
+      {"super_helix", "linearly_implicit_euler", "0.001", curled},
       {"super_helix", "backward_euler", "0.02", curled, turned},
       {"super_helix", "implicit_midpoint", "0.001",
        curled + "initial = \"straight\"\n"},  // prestressed
-      {"super_helix", "semi_implicit_euler", "0.001", curled, turned, windy},
+      {"super_helix", "linearly_implicit_euler", "0.001", curled, turned, windy},
       {"super_helix", "implicit_midpoint", "0.001", curled, "motion = \"fixed\"\n", ""},
       {"super_helix", "generalized_alpha", "0.002", curled,
        "motion = \"free\"\nspin_rad_s = [5, 10, 0]\n", ""},
-      {"der", "semi_implicit_euler", "0.001", curled, shaken},
+      {"der", "linearly_implicit_euler", "0.001", curled, shaken},
       {"der", "backward_euler", "0.001", "elements = 10\n", turned, windy},
       {"corde", "backward_euler", "0.001", "elements = 10\n", turned},
       {"mass_spring", "backward_euler", "0.005", "elements = 20\n", shaken},
       {"articulated_chain", "bdf2", "0.001", curled,
        "motion = \"drop_pull\"\namplitude_m = 0.05\nfrequency_hz = 5\n"},
-      {"kirchhoff_nodal", "semi_implicit_euler", "0.0002", "elements = 10\n",
+      {"kirchhoff_nodal", "linearly_implicit_euler", "0.0002", "elements = 10\n",
        "motion = \"stop\"\nspeed_m_s = 2\ntime_s = 0.01\n"},
-      {"super_helix", "semi_implicit_euler", "0.0005", "elements = 10\n", shaken,
+      {"super_helix", "linearly_implicit_euler", "0.0005", "elements = 10\n", shaken,
        "[effects.gravity]\n[effects.body]\nshape = \"sphere\"\n"
        "centre_m = [0.05, 0, -0.06]\nradius_m = 0.05\n"},
       {"super_helix", "backward_euler", "0.002", "elements = 10\n", turned,

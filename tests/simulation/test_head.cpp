@@ -33,9 +33,9 @@ using testing::HasSubstr;
 
 struct Hair {
   int count = 21, elements = 6;
-  std::string top = "duration_s = 0.2\nframes_1_s = 20\n";
-  std::string model = "id = \"super_helix\"\ntangent = \"stiff\"\n";
-  std::string integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.004\n";
+  std::string top = "duration_s = 0.2\nframes_per_s = 20\n";
+  std::string model = "id = \"super_helix\"\njacobian = \"elastic\"\n";
+  std::string integrator = "id = \"linearly_implicit_euler\"\ndt_s = 0.004\n";
   std::string groom = "";
   std::string root = "motion = \"rotate\"\naxis = [0, 0, 1]\nangle_rad = 0.5\n";
   std::string more = "[effects.gravity]\n[effects.linear_drag]\n";
@@ -49,7 +49,7 @@ std::string text(const Hair& h) {
       h.top, h.model, h.integrator, h.count, h.elements, h.groom, h.root, h.more);
 }
 
-constexpr const char* as_head = "head.toml --as head --out out --progress none ";
+constexpr const char* as_head = "head.toml --as batch --out out --progress none ";
 
 /// Runs it; the result must be `code`.
 Toy::Result run(Toy& toy, const std::string& options, int code = 0) {
@@ -96,19 +96,20 @@ TEST(HeadOfHair, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
     std::vector<double> positions;
     for (const int lane : lanes) {
       for (const int threads : {1, 2, 3}) {
-        run(toy, fmt::format("--bits {} --lanes {} --threads {}", bits, lane, threads));
+        run(toy, fmt::format("--precision {} --simd-width {} --threads {}", bits, lane,
+                             threads));
         const Hdf5File file(path(toy, "out/head.h5"), Hdf5File::Mode::read);
         const auto meta = outcome(toy);
-        EXPECT_EQ(meta.at("lanes"), lane);
-        EXPECT_EQ(meta.at("bits"), bits);
+        EXPECT_EQ(meta.at("simd_width"), lane);
+        EXPECT_EQ(meta.at("precision"), bits);
         if (state.empty()) {
           series = toy.read("out/head.csv");
-          state = meta.at("state");
+          state = meta.at("state_hash");
           positions = positions_of(file);
           EXPECT_EQ(positions.size(), 5U * 2100 * 4 * 3);
         }
         EXPECT_EQ(toy.read("out/head.csv"), series) << lane << ' ' << threads;
-        EXPECT_EQ(meta.at("state"), state) << lane << ' ' << threads;
+        EXPECT_EQ(meta.at("state_hash"), state) << lane << ' ' << threads;
         EXPECT_EQ(positions_of(file), positions) << lane << ' ' << threads;
       }
     }
@@ -121,7 +122,7 @@ struct Acting {
 void PrintTo(const Acting& a, std::ostream* out) { *out << a.name; }  // NOLINT
 /// Models whose heads take all effects.
 constexpr const char* models_in_all[] = {"super_helix", "articulated_chain"};
-/// Those whose heads have all methods, and their tables with the exact tangent.
+/// Those whose heads have all methods, and their tables with the exact Jacobian.
 constexpr const char* models_by_all[] = {"super_helix", "articulated_chain",
                                          "mass_spring", "corde"};
 std::string exact(const std::string& model, int points) {
@@ -137,7 +138,7 @@ std::size_t numbers_of(const std::string& model, const std::string& method) {
              : 2;
 }
 std::string stiff(const std::string& model) {
-  return "id = \"" + model + "\"\ntangent = \"stiff\"\n";
+  return "id = \"" + model + "\"\njacobian = \"elastic\"\n";
 }
 class HeadUnder : public testing::TestWithParam<std::tuple<Acting, const char*>> {};
 
@@ -227,7 +228,7 @@ TEST(HeadOfHair, OfSpringsIsTheSameBitsForAnyNumberOfThreadsAndLanes) {
   for (const bool moves : {false, true}) {
     const SceneOutline outline =
         parse_outline(text({.count = 22,
-                            .model = "id = \"mass_spring\"\ntangent = \"filtered\"\n",
+                            .model = "id = \"mass_spring\"\njacobian = \"filtered\"\n",
                             .root = turning,
                             .more = std::string(air_and_weight) + ellipsoid +
                                     (moves ? "moves = \"head\"\n" : "")}),
@@ -273,9 +274,9 @@ TEST(HeadOfHair, MovesAsTheWorldOfTheSceneDoes) {
     SCOPED_TRACE(options);
     Toy toy;
     toy.write("head.toml", text({.count = 8,
-                                 .model = options + "tangent = \"stiff\"\n",
+                                 .model = options + "jacobian = \"elastic\"\n",
                                  .more = "[effects.gravity]\n[effects.linear_drag]\n"
-                                         "mass_damping_1_s = 0.3\n"}));
+                                         "mass_damping_per_s = 0.3\n"}));
     const Scene scene = read_scene(path(toy, "head.toml"));
     const std::vector<double> want = by_world(scene, 0);
     run(toy, "--frames 64");
@@ -291,7 +292,7 @@ TEST(HeadOfHair, MovesAsTheWorldOfTheSceneDoes) {
 /// On stiffer bodies single corrections, of the world's strands as well, gain energy.
 constexpr const char* soft = "moves = \"head\"\nstiffness_n_m2 = 0.1\n";
 
-/// Integrators with the exact tangent, and the Newton's tolerances that a step of each
+/// Integrators with the exact Jacobian, and the Newton's tolerances that a step of each
 /// leaves at most, of so many first steps (tests/models/head/exact_methods.h).
 struct Exact {
   const char* integrator;
@@ -361,9 +362,10 @@ INSTANTIATE_TEST_SUITE_P(Methods, HeadBy,
                          });
 
 Hair controlled(const char* model, double tolerance) {
-  return {.model = exact(model, 4),
-          .integrator = fmt::format("id = \"tr_bdf2\"\ntolerance = {}\n", tolerance),
-          .more = air_and_weight};
+  return {
+      .model = exact(model, 4),
+      .integrator = fmt::format("id = \"tr_bdf2\"\nposition_tol_rel = {}\n", tolerance),
+      .more = air_and_weight};
 }
 
 TEST(HeadWithATolerance, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
@@ -412,7 +414,7 @@ TEST(HeadWithATolerance, MovesAsTheWorldOfTheSceneDoes) {
     EXPECT_LE(steps, 2 * of_world);
     EXPECT_GT(meta.at("newton_iterations"), 2 * steps);
     EXPECT_GE(meta.at("rejected_by_error"), 0);
-    EXPECT_EQ(meta.at("lost_strands"), 0);
+    EXPECT_EQ(meta.at("failed_strands"), 0);
   }
 }
 
@@ -434,9 +436,9 @@ TEST(HeadWithATolerance, NamesStrandsThatNeedShorterStepsThanAllowed) {
   hair.integrator += "min_step_s = 0.01\n";
   toy.write("head.toml", text(hair));
   run(toy, "", 3);
-  const CsvTable lost = parse_csv(toy.read("out/head.lost.csv"), "csv");
+  const CsvTable lost = parse_csv(toy.read("out/head.failed.csv"), "csv");
   EXPECT_GT(lost.rows.size(), 0U);
-  EXPECT_EQ(outcome(toy).at("lost_strands"), lost.rows.size());
+  EXPECT_EQ(outcome(toy).at("failed_strands"), lost.rows.size());
   EXPECT_GE(outcome(toy).at("rejected_by_error"), lost.rows.size());
 }
 
@@ -449,7 +451,7 @@ TEST(HeadOfHair, MovesAsTheWorldUnderItsEffects) {
     // By longer steps rigid links come apart on a body, as the world's do.
     const bool chains = std::string(model) == "articulated_chain";
     const std::string integrator = fmt::format(
-        "id = \"semi_implicit_euler\"\ndt_s = {}\n", chains ? 0.00025 : 0.004);
+        "id = \"linearly_implicit_euler\"\ndt_s = {}\n", chains ? 0.00025 : 0.004);
     const auto scene_of = [&](Toy& toy, const std::string& effects) {
       toy.write("head.toml", text({.count = 60,
                                    .model = stiff(model) + "quadrature = 8\n",
@@ -484,9 +486,9 @@ TEST(HeadOfHair, OfSpringsMovesAsTheWorldOfTheSceneDoes) {
   const auto scene_of = [](Toy& toy, const std::string& body) {
     toy.write("head.toml",
               text({.count = 12,
-                    .top = "duration_s = 0.05\nframes_1_s = 20\n",
-                    .model = "id = \"mass_spring\"\ntangent = \"filtered\"\n",
-                    .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.001\n",
+                    .top = "duration_s = 0.05\nframes_per_s = 20\n",
+                    .model = "id = \"mass_spring\"\njacobian = \"filtered\"\n",
+                    .integrator = "id = \"linearly_implicit_euler\"\ndt_s = 0.001\n",
                     .groom = "[groom.material]\nyoungs_modulus_pa = 3.89e9\n"
                              "density_kg_m3 = 1300\n",
                     .more = "[effects.gravity]\n[effects.linear_drag]\n" + body}));
@@ -560,7 +562,7 @@ TEST(HeadOfHair, TheSeriesHoldsTheEnergiesOfTheWorld) {
     }
     EXPECT_GT(head.rows[4].number("kinetic_j"), 0);
     EXPECT_GT(head.rows[4].number("fastest_m_s"), 0);
-    EXPECT_EQ(head.rows[4].text("lost_strands"), "0");
+    EXPECT_EQ(head.rows[4].text("failed_strands"), "0");
   }
 }
 
@@ -602,7 +604,7 @@ TEST(HeadOfHair, ThePageShowsSomeOfTheStrands) {
 Hair long_run() {
   return {.count = 400,
           .elements = 10,
-          .top = "duration_s = 2\nframes_1_s = 200\ncheckpoint_s = 0.1\n"};
+          .top = "duration_s = 2\nframes_per_s = 200\ncheckpoint_s = 0.1\n"};
 }
 
 void await(const Toy& toy, const std::string& file, const std::string& before = "") {
@@ -615,7 +617,7 @@ void await(const Toy& toy, const std::string& file, const std::string& before = 
 
 void expect_same_results(const Toy& a, const Toy& b) {
   EXPECT_EQ(a.read("out/head.csv"), b.read("out/head.csv"));
-  EXPECT_EQ(outcome(a).at("state"), outcome(b).at("state"));
+  EXPECT_EQ(outcome(a).at("state_hash"), outcome(b).at("state_hash"));
   EXPECT_EQ(a.read("out/head.json"), b.read("out/head.json"));
   EXPECT_EQ(a.read("out/head.xdmf"), b.read("out/head.xdmf"));
   const Hdf5File first(path(a, "out/head.h5"), Hdf5File::Mode::read),
@@ -633,9 +635,9 @@ TEST(HeadOfHair, KilledItGoesOnAtItsCheckpointWithTheSameBits) {
   run(through, "");
   // Killed twice, and by a signal that it may answer, each time with other lanes.
   const std::string resume = std::string(as_head) + "--resume ";
-  for (const auto& [signal, options] :
-       {std::pair{SIGKILL, "--lanes 8"}, std::pair{SIGKILL, "--lanes 4 --threads 2"},
-        std::pair{SIGTERM, "--lanes 1"}}) {
+  for (const auto& [signal, options] : {std::pair{SIGKILL, "--simd-width 8"},
+                                        std::pair{SIGKILL, "--simd-width 4 --threads 2"},
+                                        std::pair{SIGTERM, "--simd-width 1"}}) {
     const std::string state =
         stopped.exists("out/head.state") ? stopped.read("out/head.state") : "";
     const pid_t process = stopped.start(resume + options);
@@ -671,13 +673,13 @@ TEST(HeadOfHair, KilledItGoesOnAtItsCheckpointWithTheSameBits) {
 // that choose their own are part of it.
 TEST(HeadOfHair, AnInterruptedRunWithoutCheckpointsGoesOnWhereItWas) {
   Hair stepped = long_run();
-  stepped.top = "duration_s = 1\nframes_1_s = 100\n";
-  stepped.integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.0005\n";
+  stepped.top = "duration_s = 1\nframes_per_s = 100\n";
+  stepped.integrator = "id = \"linearly_implicit_euler\"\ndt_s = 0.0005\n";
   Hair by_tolerance = controlled("super_helix", 1e-3),
        springs = controlled("mass_spring", 1e-3);
   for (Hair* const hair : {&by_tolerance, &springs}) {
     hair->count = 100;
-    hair->top = "duration_s = 0.5\nframes_1_s = 100\n";
+    hair->top = "duration_s = 0.5\nframes_per_s = 100\n";
   }
   for (const Hair& hair : {stepped, by_tolerance, springs}) {
     Toy through;
@@ -693,7 +695,7 @@ TEST(HeadOfHair, AnInterruptedRunWithoutCheckpointsGoesOnWhereItWas) {
       await(stopped, begun, stopped.read(begun));
       kill(process, signal);
       EXPECT_EQ(stopped.wait(process).code, signal == SIGTERM ? 130 : 128 + SIGKILL);
-      run(stopped, "--resume --lanes 4");
+      run(stopped, "--resume --simd-width 4");
       expect_same_results(through, stopped);
     }
   }
@@ -731,7 +733,7 @@ TEST(HeadOfHair, ADamagedStateOrFrameIsRefused) {
     toy.write(name, whole);
   }
   // Of other numbers, or of another scene.
-  EXPECT_THAT(run(toy, "--resume --bits 32", 2).err, HasSubstr("head of 64 bits"));
+  EXPECT_THAT(run(toy, "--resume --precision 32", 2).err, HasSubstr("head of 64 bits"));
   EXPECT_THAT(run(toy, "--resume --frames 64", 2).err, HasSubstr("frames of 32"));
   std::filesystem::remove(path(toy, "out/head.h5"));
   expect_one_error(run(toy, "--resume", 2));
@@ -739,10 +741,10 @@ TEST(HeadOfHair, ADamagedStateOrFrameIsRefused) {
 
 // A step of 0.05 s under ten thousand times gravity makes nonsense of hair as soft as
 // jelly within seconds; hair of a stiffness that nothing bends does not move.
-TEST(HeadOfHair, LostStrandsAreNamedAndTheOthersGoOn) {
+TEST(HeadOfHair, FailedStrandsAreNamedAndTheOthersGoOn) {
   const Hair hair{.count = 8,
-                  .top = "duration_s = 3\nframes_1_s = 20\n",
-                  .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.05\n",
+                  .top = "duration_s = 3\nframes_per_s = 20\n",
+                  .integrator = "id = \"linearly_implicit_euler\"\ndt_s = 0.05\n",
                   .groom = "[groom.material]\nyoungs_modulus_pa = 1e3\n",
                   .root = "motion = \"shake\"\namplitude_m = 0.1\nfrequency_hz = 3\n",
                   .more = "[effects.gravity]\ngravity_m_s2 = [0, 0, -1e5]\n"};
@@ -753,13 +755,13 @@ TEST(HeadOfHair, LostStrandsAreNamedAndTheOthersGoOn) {
                                "[strand.material]\nyoungs_modulus_pa = 1e15\n");
     EXPECT_THAT(run(toy, guard ? "--frames 64" : "--frames 64 --no-guard", 3).err,
                 HasSubstr("of 9 strands were lost"));
-    const CsvTable lost = parse_csv(toy.read("out/head.lost.csv"), "csv");
+    const CsvTable lost = parse_csv(toy.read("out/head.failed.csv"), "csv");
     const CsvTable series = parse_csv(toy.read("out/head.csv"), "csv");
     ASSERT_EQ(series.rows.size(), 61U);
     EXPECT_GT(lost.rows.size(), 0U);
-    EXPECT_EQ(series.rows.back().number("lost_strands"),
+    EXPECT_EQ(series.rows.back().number("failed_strands"),
               static_cast<double>(lost.rows.size()));
-    EXPECT_EQ(outcome(toy).at("lost_strands"), lost.rows.size());
+    EXPECT_EQ(outcome(toy).at("failed_strands"), lost.rows.size());
     // In hair that is left there is no more than falling for 3 s gives, with a tenth.
     if (guard) {
       EXPECT_LT(series.rows.back().number("most_kinetic_j"), 1e-4 * 3.3e5 * 3.3e5 / 2);
@@ -792,16 +794,16 @@ TEST(HeadGuard, FindsHairsThatGainEnergyOnAFixedBody) {
   for (const std::string bits : {"64", "32"}) {
     Toy toy;
     toy.write("head.toml",
-              "title = \"head\"\nduration_s = 0.064\nframes_1_s = 200\n[model]\n"
-              "id = \"super_helix\"\ntangent = \"stiff\"\n[integrator]\n"
-              "id = \"semi_implicit_euler\"\ndt_s = 0.002\n[groom]\ncount = 300\n"
+              "title = \"head\"\nduration_s = 0.064\nframes_per_s = 200\n[model]\n"
+              "id = \"super_helix\"\njacobian = \"elastic\"\n[integrator]\n"
+              "id = \"linearly_implicit_euler\"\ndt_s = 0.002\n[groom]\ncount = 300\n"
               "length_m = 0.2\nelements = 5\n[effects.gravity]\n[[effects.body]]\n"
               "shape = \"sphere\"\nradius_m = 0.115\n");
-    const std::string said = run(toy, "--bits " + bits, 3).err;
+    const std::string said = run(toy, "--precision " + bits, 3).err;
     EXPECT_THAT(said, HasSubstr("unstable: "));
     EXPECT_THAT(said, HasSubstr("of 300 strands were lost, the first at t = 0.0"));
     EXPECT_THAT(said, HasSubstr("try a step of 0.0005 s"));
-    EXPECT_THAT(toy.read("out/head.lost.csv"), HasSubstr("energy"));
+    EXPECT_THAT(toy.read("out/head.failed.csv"), HasSubstr("energy"));
     // m g L = 2e-5 J for each of those that are left.
     const CsvTable series = parse_csv(toy.read("out/head.csv"), "csv");
     EXPECT_LT(series.rows.back().number("most_kinetic_j"), 1e-3);
@@ -821,9 +823,9 @@ TEST(HeadGuard, LeavesSoundMotionsAlone) {
                                     ? "[effects.gravity]\n"
                                     : "[effects.gravity]\n[effects.linear_drag]\n";
       toy.write("head.toml",
-                text({.top = "duration_s = 0.02\nframes_1_s = 200\n",
+                text({.top = "duration_s = 0.02\nframes_per_s = 200\n",
                       .model = stiff(model),
-                      .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.0001\n",
+                      .integrator = "id = \"linearly_implicit_euler\"\ndt_s = 0.0001\n",
                       .more = loads + more}));
       EXPECT_EQ(toy.run(std::string(as_head)).code, 0) << model << more;
     }
@@ -834,9 +836,9 @@ TEST(HeadGuard, LeavesSoundMotionsAlone) {
 TEST(HeadGuard, SumsThePotentialsOfEffects) {
   Toy toy;
   toy.write("head.toml",
-            text({.top = "duration_s = 0.02\nframes_1_s = 200\n",
+            text({.top = "duration_s = 0.02\nframes_per_s = 200\n",
                   .model = stiff("articulated_chain"),
-                  .integrator = "id = \"semi_implicit_euler\"\ndt_s = 0.0001\n",
+                  .integrator = "id = \"linearly_implicit_euler\"\ndt_s = 0.0001\n",
                   .more = "[effects.gravity]\n[effects.body]\nshape = \"sphere\"\n"
                           "radius_m = 0.105\nmoves = \"head\"\n"}));
   ASSERT_EQ(toy.run(as_head).code, 0);
@@ -913,7 +915,7 @@ TEST_P(HeadReplicated, WithTheReasonInOneLine) {
   Toy toy;
   Hair hair = GetParam().hair;
   hair.count = 3;
-  hair.top = "duration_s = 0.008\nframes_1_s = 250\n";
+  hair.top = "duration_s = 0.008\nframes_per_s = 250\n";
   toy.write("head.toml", text(hair));
   const std::string said = run(toy, "").err;
   EXPECT_THAT(said, HasSubstr("replicated systems, each as slow as a single strand: no "
@@ -923,7 +925,7 @@ TEST_P(HeadReplicated, WithTheReasonInOneLine) {
   EXPECT_EQ(outcome(toy).at("engine"), "replicated");
   Toy narrow;
   narrow.write("head.toml", text(hair));
-  const Toy::Result refused = run(narrow, "--bits 32", 2);
+  const Toy::Result refused = run(narrow, "--precision 32", 2);
   EXPECT_THAT(refused.err, HasSubstr("no SIMD lanes for " + GetParam().reason));
   EXPECT_EQ(refused.error_lines(), 1) << refused.err;
 }
@@ -934,11 +936,11 @@ INSTANTIATE_TEST_SUITE_P(
         Replicated{"Der", {.model = "id = \"der\"\n"}, "der", "\"mass_spring\""},
         Replicated{"RodsOfQuaternionsOnce",
                    {.model = "id = \"corde\"\n"},
-                   "semi_implicit_euler with an exact Jacobian",
+                   "linearly_implicit_euler with an exact Jacobian",
                    "\"backward_euler\""},
         Replicated{"RodsOfQuaternionsWithATolerance",
                    {.model = "id = \"corde\"\n",
-                    .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n"},
+                    .integrator = "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"},
                    "corde with a tolerance",
                    "dt_s instead of tolerance"},
         Replicated{"CosseratByTrBdf2",
@@ -948,8 +950,8 @@ INSTANTIATE_TEST_SUITE_P(
                    "backward_euler"},
         Replicated{"SpringsExact",
                    {.model = "id = \"mass_spring\"\n"},
-                   "tangent = \"exact\" with semi_implicit_euler",
-                   "give [model] tangent = \"filtered\""},
+                   "jacobian = \"exact\" with linearly_implicit_euler",
+                   "give [model] jacobian = \"filtered\""},
         Replicated{"SpringsThatHoldCurls",
                    {.model = "id = \"mass_spring\"\ntorsion = \"altitude\"\n"},
                    "torsion = \"altitude\"",
@@ -960,21 +962,21 @@ INSTANTIATE_TEST_SUITE_P(
                    "bending = \"angular\""},
         Replicated{"Exact",
                    {.model = "id = \"super_helix\"\n"},
-                   "tangent = \"exact\"",
-                   "tangent = \"stiff\""},
+                   "jacobian = \"exact\"",
+                   "jacobian = \"elastic\""},
         Replicated{"ChainPlanar",
-                   {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n"
+                   {.model = "id = \"articulated_chain\"\njacobian = \"elastic\"\n"
                              "modes = \"bend_planar\"\n",
                     .groom = "shape = \"wavy\"\n"},
                    "modes = \"bend_planar\"",
                    "modes = \"bend_twist\""},
         Replicated{"ChainSolver",
-                   {.model = "id = \"articulated_chain\"\ntangent = \"stiff\"\n"
+                   {.model = "id = \"articulated_chain\"\njacobian = \"elastic\"\n"
                              "solver = \"sparse\"\n"},
                    "solver = \"sparse\"",
                    "leave out [model] solver"},
         Replicated{"Points",
-                   {.model = "tangent = \"stiff\"\nquadrature = 24\n"},
+                   {.model = "jacobian = \"elastic\"\nquadrature = 24\n"},
                    "24 points of an element",
                    "2 to 16"},
         Replicated{"Method",
@@ -982,16 +984,16 @@ INSTANTIATE_TEST_SUITE_P(
                    "bdf2",
                    "\"linearly_implicit_midpoint\", \"backward_euler\" or \"tr_bdf2\""},
         Replicated{"IteratedStiff",
-                   {.model = "tangent = \"stiff\"\n",
+                   {.model = "jacobian = \"elastic\"\n",
                     .integrator = "id = \"backward_euler\"\ndt_s = 0.004\n"},
-                   "tangent = \"stiff\" with backward_euler",
-                   "tangent = \"exact\" to backward_euler"},
-        Replicated{
-            "ToleranceInSoManySteps",
-            {.model = "id = \"super_helix\"\n",
-             .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\nmax_steps = 1000\n"},
-            "max_steps with a tolerance",
-            "min_step_s instead of max_steps"},
+                   "jacobian = \"elastic\" with backward_euler",
+                   "jacobian = \"exact\" to backward_euler"},
+        Replicated{"ToleranceInSoManySteps",
+                   {.model = "id = \"super_helix\"\n",
+                    .integrator =
+                        "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\nmax_steps = 1000\n"},
+                   "max_steps with a tolerance",
+                   "min_step_s instead of max_steps"},
         Replicated{"KeptMatrix",
                    {.model = "id = \"super_helix\"\n",
                     .integrator = "id = \"tr_bdf2\"\ndt_s = 0.004\nrefresh = "
@@ -1003,7 +1005,7 @@ INSTANTIATE_TEST_SUITE_P(
                     .integrator = "id = \"linearly_implicit_midpoint\"\ndt_s = 0.001\n",
                     .more = "[effects.gravity]\n[effects.wind]\n"},
                    "[effects.wind] with linearly_implicit_midpoint",
-                   "semi_implicit_euler"},
+                   "linearly_implicit_euler"},
         Replicated{"TwistWithoutInertia",
                    {.model = "id = \"super_helix\"\nrotary_inertia = \"off\"\n",
                     .integrator = "id = \"tr_bdf2\"\ndt_s = 0.004\n"},
@@ -1036,19 +1038,19 @@ INSTANTIATE_TEST_SUITE_P(
     Heads, HeadRefused,
     testing::Values(
         Refused{"SpringsIn32Bits",
-                {.model = "id = \"mass_spring\"\ntangent = \"filtered\"\n"},
-                "--bits 32",
-                "springs in 32 bits"},
+                {.model = "id = \"mass_spring\"\njacobian = \"filtered\"\n"},
+                "--precision 32",
+                "springs in single precision"},
         Refused{"NarrowMidpointsOfChains",
                 {.model = "id = \"articulated_chain\"\n",
                  .integrator = "id = \"linearly_implicit_midpoint\"\n"},
-                "--bits 32",
-                "give --bits 64"},
+                "--precision 32",
+                "give --precision 64"},
         Refused{"NarrowTolerance",
                 {.model = "id = \"super_helix\"\n",
-                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n"},
-                "--bits 32",
-                "give --bits 64, or a larger tolerance"},
+                 .integrator = "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"},
+                "--precision 32",
+                "give --precision 64, or a larger tolerance"},
         Refused{"Mesh",
                 {.more = "[effects.gravity]\n[effects.control_mesh]\n"},
                 "",
@@ -1063,18 +1065,18 @@ INSTANTIATE_TEST_SUITE_P(
                 "coupling = \"lagged\""},
         Refused{"TouchingWithTolerance",
                 {.model = "id = \"super_helix\"\n",
-                 .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n",
+                 .integrator = "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n",
                  .more = "[effects.strand_interaction]\ncoupling = \"lagged\"\n"},
                 "",
                 "share their intervals"},
-        Refused{"Hairs", {}, "--hairs 10", "--hairs cannot be combined with --as head"},
+        Refused{"Hairs", {}, "--hairs 10", "--hairs cannot be combined with --as batch"},
         Refused{"ErrorBars",
                 {},
                 "--error-bars",
-                "--error-bars cannot be combined with --as head"},
-        Refused{"Lanes", {}, "--lanes 16", "16 lanes"},
-        Refused{"NarrowLanes", {}, "--bits 32 --lanes 4", "4 lanes"},
-        Refused{"Bits", {}, "--bits 16", "--bits"},
+                "--error-bars cannot be combined with --as batch"},
+        Refused{"Lanes", {}, "--simd-width 16", "16 lanes"},
+        Refused{"NarrowLanes", {}, "--precision 32 --simd-width 4", "4 lanes"},
+        Refused{"Bits", {}, "--precision 16", "--precision"},
         Refused{"Frames", {}, "--frames 16", "--frames"},
         Refused{"As", {}, "--as one", "--as"},
         Refused{"Many", {.count = 1000001}, "", "count"},
@@ -1085,15 +1087,16 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(HeadOfHair, StrandsOneByOneAreRefusedIn32Bits) {
   Toy toy;
   toy.write("head.toml", text({.count = 3}));
-  const Toy::Result few = toy.run("head.toml --bits 32 --out out");
+  const Toy::Result few = toy.run("head.toml --precision 32 --out out");
   EXPECT_EQ(few.code, 2);
-  EXPECT_THAT(few.err, HasSubstr("give --as head"));
-  toy.write("head.toml", text({.count = 1000,
-                               .model = "id = \"super_helix\"\n",
-                               .integrator = "id = \"tr_bdf2\"\ntolerance = 1e-3\n"}));
-  const Toy::Result unresolved = toy.run("head.toml --bits 32 --out out");
+  EXPECT_THAT(few.err, HasSubstr("give --as batch"));
+  toy.write("head.toml",
+            text({.count = 1000,
+                  .model = "id = \"super_helix\"\n",
+                  .integrator = "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"}));
+  const Toy::Result unresolved = toy.run("head.toml --precision 32 --out out");
   EXPECT_EQ(unresolved.code, 2);
-  EXPECT_THAT(unresolved.err, HasSubstr("tolerance = 0.001 in 32 bits"));
+  EXPECT_THAT(unresolved.err, HasSubstr("position_tol_rel = 0.001 in 32 bits"));
   EXPECT_EQ(toy.files(), std::vector<std::string>{"head.toml"});
 }
 
@@ -1103,7 +1106,7 @@ TEST(HeadOfHair, MoreThanTheMemoryIsRefusedBeforeItIsBuilt) {
   const Toy::Result result = toy.run(as_head, "ulimit -v 1000000;");
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, HasSubstr("1000000 strands of 20 elements needs about"));
-  EXPECT_THAT(result.err, HasSubstr("--bits 32"));
+  EXPECT_THAT(result.err, HasSubstr("--precision 32"));
 }
 
 TEST(SceneOutline, MakesTheStrandsOfTheScene) {

@@ -38,8 +38,8 @@ std::string swinging(const std::string& elements, const std::string& times) {
 /// One frame after the first, of 8 million steps of 200 elements: a quarter of an hour.
 std::string endless() {
   return swinging("200",
-                  "duration_s = 50\nframes_1_s = 0.02\n[integrator]\n"
-                  "id = \"semi_implicit_euler\"\ndt_s = 6e-6\n");
+                  "duration_s = 50\nframes_per_s = 0.02\n[integrator]\n"
+                  "id = \"linearly_implicit_euler\"\ndt_s = 6e-6\n");
 }
 
 constexpr const char* run = "scene.toml --out out --progress none";
@@ -73,8 +73,8 @@ TEST(Interrupted, InsideAFrameThatWouldTakeAQuarterOfAnHour) {
 
 TEST(Interrupted, IsContinuedFromTheLastFrameWithoutCheckpoints) {
   const std::string scene = swinging("10",
-                                     "duration_s = 1\nframes_1_s = 50\n[integrator]\n"
-                                     "id = \"semi_implicit_euler\"\ndt_s = 1e-4\n");
+                                     "duration_s = 1\nframes_per_s = 50\n[integrator]\n"
+                                     "id = \"linearly_implicit_euler\"\ndt_s = 1e-4\n");
   Toy through;
   through.write("scene.toml", scene);
   ASSERT_EQ(through.run(run).code, 0);
@@ -220,19 +220,19 @@ TEST(Interrupted, AGuardedRunIsNotContinuedWithoutItsGuard) {
 
 /// A head of four hairs, two frames.
 constexpr const char* small_head =
-    "title = \"four\"\nduration_s = 0.02\nframes_1_s = 100\n[integrator]\n"
-    "id = \"semi_implicit_euler\"\ndt_s = 1e-3\n[model]\nid = \"super_helix\"\n"
-    "tangent = \"stiff\"\n[material]\nname = \"hair.caucasian\"\n[groom]\n"
+    "title = \"four\"\nduration_s = 0.02\nframes_per_s = 100\n[integrator]\n"
+    "id = \"linearly_implicit_euler\"\ndt_s = 1e-3\n[model]\nid = \"super_helix\"\n"
+    "jacobian = \"elastic\"\n[material]\nname = \"hair.caucasian\"\n[groom]\n"
     "count = 4\nlength_m = 0.1\nelements = 2\n[root]\nmotion = \"fixed\"\n"
     "[effects.gravity]\n";
 
 TEST(Simulate, TwoRunsOfAHeadWriteTheSameBytes) {
   Toy toy;
   toy.write("scene.toml", small_head);
-  ASSERT_EQ(toy.run("scene.toml --as head --out a --progress none").code, 0);
+  ASSERT_EQ(toy.run("scene.toml --as batch --out a --progress none").code, 0);
   // HDF5 counts the time of changes in whole seconds.
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-  ASSERT_EQ(toy.run("scene.toml --as head --out b --progress none").code, 0);
+  ASSERT_EQ(toy.run("scene.toml --as batch --out b --progress none").code, 0);
   EXPECT_TRUE(toy.read("a/scene.h5") == toy.read("b/scene.h5"));
 }
 
@@ -250,7 +250,7 @@ TEST(Simulate, AnOutputThatCannotBeWrittenIsRefusedBeforeAnyWork) {
         std::filesystem::create_directory(at);
       }
       const Toy::Result result =
-          toy.run("scene.toml --as head --out out --progress none");
+          toy.run("scene.toml --as batch --out out --progress none");
       EXPECT_EQ(result.code, 2);
       EXPECT_THAT(result.err, HasSubstr(link ? "is a link" : "is a directory"));
       EXPECT_EQ(toy.read("victim"), "precious");
@@ -263,7 +263,7 @@ TEST(Simulate, AnOutputThatCannotBeWrittenIsRefusedBeforeAnyWork) {
 
 TEST(Simulate, ARefusalLeavesNoFolder) {
   Toy toy;
-  toy.write("scene.toml", swinging("4", "duration_s = 0.02\nframes_1_s = 50\n"));
+  toy.write("scene.toml", swinging("4", "duration_s = 0.02\nframes_per_s = 50\n"));
   const Toy::Result result = toy.run("scene.toml --hairs 3 --out new/folder");
   EXPECT_EQ(result.code, 2) << result.err;
   EXPECT_THAT(toy.files(), testing::ElementsAre("scene.toml"));
@@ -273,7 +273,7 @@ TEST(Simulate, OfAFullDiskAHeadSaysItInOneShortLine) {
   Toy toy;
   toy.write("scene.toml", small_head);
   const Toy::Result result =
-      toy.run("scene.toml --as head --out out --progress none", "ulimit -f 4; ");
+      toy.run("scene.toml --as batch --out out --progress none", "ulimit -f 4; ");
   EXPECT_EQ(result.code, 2);
   const std::size_t begin = result.err.find("simulate: error: ");
   ASSERT_NE(begin, std::string::npos) << result.err;
@@ -285,7 +285,7 @@ TEST(Simulate, OfAFullDiskAHeadSaysItInOneShortLine) {
 
 TEST(Simulate, WhatAKilledRunLeftIsRemoved) {
   Toy toy;
-  toy.write("scene.toml", swinging("4", "duration_s = 0.02\nframes_1_s = 50\n"));
+  toy.write("scene.toml", swinging("4", "duration_s = 0.02\nframes_per_s = 50\n"));
   std::filesystem::create_directories(toy.path("work") + "/out/scene_vtk");
   for (const std::string name : {"scene.state", "scene.xdmf", "scene_vtk/scene_0.vtp"}) {
     toy.write("out/" + name + ".tmp999999999", "");
@@ -299,7 +299,7 @@ TEST(Simulate, WhatAKilledRunLeftIsRemoved) {
 /// With messages into a pipe that nobody reads any more.
 TEST(Interrupted, NobodyNeedListenToItsProgress) {
   Toy toy;
-  toy.write("scene.toml", swinging("4", "duration_s = 0.4\nframes_1_s = 50\n"));
+  toy.write("scene.toml", swinging("4", "duration_s = 0.4\nframes_per_s = 50\n"));
   const std::string shell = fmt::format(
       "cd '{}' && {{ '{}' scene.toml --out out --progress json; echo $? >code; }} 2>&1 | "
       "true",
@@ -325,7 +325,7 @@ TEST(Simulate, ASecondRunOfASceneIntoOneFolderIsRefusedWhileTheFirstRuns) {
 
 TEST(Simulate, TheManifestHoldsTheSceneAndItsChecksum) {
   Toy toy;
-  const std::string scene = swinging("5", "duration_s = 0.02\nframes_1_s = 50\n");
+  const std::string scene = swinging("5", "duration_s = 0.02\nframes_per_s = 50\n");
   toy.write("scene.toml", scene);
   ASSERT_EQ(toy.run(run).code, 0);
   const auto meta = nlohmann::json::parse(toy.read("out/scene.meta.json"));

@@ -19,13 +19,13 @@ constexpr double length = 0.2;  // m
 Scene curl(const std::string& keys, const std::string& more = "",
            const std::string& model = "super_helix") {
   return parse_scene(
-      "title = \"t\"\nduration_s = 0.3\nframes_1_s = 40\n[model]\nid = \"" + model +
+      "title = \"t\"\nduration_s = 0.3\nframes_per_s = 40\n[model]\nid = \"" + model +
           "\"\n[integrator]\nid = \"backward_euler\"\ndt_s = 0.002\n[material]\nradius_m "
           "= 40e-6\nyoungs_modulus_pa = 1e8\nellipticity = 1\ndensity_kg_m3 = 1300\n"
           "[effects.gravity]\n[effects.linear_drag]\ndrag_kg_m_s = 2e-5\n" +
           more +
           "[strand]\nlength_m = 0.2\nshape = \"helix\"\ncurl_radius_m = 0.015\n"
-          "curl_pitch_m = 0.05\nroot_tangent = [0.1, 0, -1]\ncuts = \"rest\"\n" +
+          "curl_pitch_m = 0.05\nroot_tangent = [0.1, 0, -1]\nmesh = \"rest\"\n" +
           keys,
       "curl.toml");
 }
@@ -84,7 +84,7 @@ TEST(Pilot, EndsAtTheElementsOfTheTableAndSaysWhatIsLeft) {
 TEST(Pilot, EachStrandHasItsOwnTolerance) {
   const Scene scene = strands(
       "length_m = 0.2\nshape = \"helix\"\ncurl_radius_m = 0.015\ncurl_pitch_m = 0.05\n"
-      "root_tangent = [0.1, 0, -1]\ncuts = \"rest\"\nelements = 96\ntolerance_m = 1e-3\n"
+      "root_tangent = [0.1, 0, -1]\nmesh = \"rest\"\nelements = 96\ntolerance_m = 1e-3\n"
       "[[strand]]\n" +
       straight + "elements = 5\n[[strand]]\n" + kept);
   const Pilot found = pilot(scene, 1);
@@ -129,7 +129,7 @@ TEST(Pilot, GroomsAreCutByTheirRestAlone) {
   EXPECT_FALSE(wants_pilot(curl("elements = 9\n")));
   EXPECT_FALSE(wants_pilot(parse_scene(
       "title = \"t\"\n[model]\nid = \"super_helix\"\n[integrator]\nid = "
-      "\"semi_implicit_euler\"\ndt_s = 0.001\n[groom]\ncount = 3\nelements = 48\n"
+      "\"linearly_implicit_euler\"\ndt_s = 0.001\n[groom]\ncount = 3\nelements = 48\n"
       "tolerance_m = 0.001\n",
       "groom.toml")));
 }

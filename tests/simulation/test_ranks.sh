@@ -19,13 +19,13 @@ fail() { echo "FAILED: $*"; exit 1; }
 cat >head.toml <<'TOML'
 title = "hairs that touch, on a turning head"
 duration_s = 1
-frames_1_s = 10
+frames_per_s = 10
 checkpoint_s = 0.1
 [model]
 id = "super_helix"
-tangent = "stiff"
+jacobian = "elastic"
 [integrator]
-id = "semi_implicit_euler"
+id = "linearly_implicit_euler"
 dt_s = 0.005
 [material]
 name = "hair.caucasian"
@@ -52,9 +52,9 @@ TOML
 head() {
   local out=$1 ranks=$2 by=()
   ((ranks == 0)) || by=(mpirun -n "$ranks")
-  "${by[@]}" "$simulate" head.toml --as head --frames 64 --progress none --out "$out" "${@:3}"
+  "${by[@]}" "$simulate" head.toml --as batch --frames 64 --progress none --out "$out" "${@:3}"
 }
-state() { sed -n 's/.*"state": *"\([0-9a-f]*\)".*/\1/p' "$1/head.meta.json"; }
+state() { sed -n 's/.*"state_hash": *"\([0-9a-f]*\)".*/\1/p' "$1/head.meta.json"; }
 # same OUT: its results are those of one process.
 same() {
   [[ -n $(state one) && $(state "$1") == "$(state one)" ]] || fail "$1: other states"
@@ -82,7 +82,7 @@ mkdir shares
 sed 's/^duration_s.*/duration_s = 0.1/; /^checkpoint_s/d' head.toml >shares/head.toml
 for case in '2 35' '4 18'; do
   read -r ranks strands <<<"$case"
-  mpirun -n "$ranks" "$simulate" shares/head.toml --as head --progress none --out shares 2>log
+  mpirun -n "$ranks" "$simulate" shares/head.toml --as batch --progress none --out shares 2>log
   [[ $(number shares rank_strands) == "$strands" ]] ||
     fail "a rank of $ranks has $(number shares rank_strands) strands"
 done
@@ -91,7 +91,7 @@ done
 # Longer, so that a rank can be killed under way; the same again by one process.
 sed -i 's/^duration_s = 1/duration_s = 3/' head.toml
 head one 0 2>log
-mpirun -n 2 "$simulate" head.toml --as head --frames 64 --progress none --out killed 2>log &
+mpirun -n 2 "$simulate" head.toml --as batch --frames 64 --progress none --out killed 2>log &
 job=$!
 for _ in {1..600}; do [[ -s killed/head.state ]] && break; sleep 0.02; done
 mapfile -t ranks < <(pgrep -P "$job" -x simulate)
@@ -105,7 +105,7 @@ head killed 4 --resume 2>log || { cat log; fail "resumed by four"; }
 same killed
 
 # Time runs out: Slurm and others send SIGTERM some seconds before they kill.
-mpirun -n 2 "$simulate" head.toml --as head --frames 64 --progress none --out timed 2>log &
+mpirun -n 2 "$simulate" head.toml --as batch --frames 64 --progress none --out timed 2>log &
 job=$!
 for _ in {1..600}; do [[ -s timed/head.state ]] && break; sleep 0.02; done
 kill -TERM "$job"
@@ -117,7 +117,7 @@ same timed
 # alone CODE REGEX RANK OUT BEFORE: BEFORE goes before the command of that rank of two; it
 # alone fails, with one line, and ends both with this code.
 alone() {
-  local args="head.toml --as head --frames 64 --progress none --out $4" rc=0 lines
+  local args="head.toml --as batch --frames 64 --progress none --out $4" rc=0 lines
   local with=(-n 1 bash -c "$5; exec '$simulate' $args") without=(-n 1 "$simulate")
   read -ra args <<<"$args"
   without+=("${args[@]}")
@@ -155,4 +155,4 @@ same full
 expect 2 'strands that run one by one are not shared by ranks' \
   mpirun -n 2 "$simulate" head.toml --as strands --out no
 sed -i 's/^count = .*/count = 3/' head.toml
-expect 2 '3 strands for 4 ranks' mpirun -n 4 "$simulate" head.toml --as head --out no
+expect 2 '3 strands for 4 ranks' mpirun -n 4 "$simulate" head.toml --as batch --out no

@@ -26,7 +26,7 @@ struct Setting {
 Scene scene_of(const Setting& s) {
   return parse_scene(
       fmt::format(
-          "title = \"at rest\"\nduration_s = 10\nframes_1_s = 1\nrest = "
+          "title = \"at rest\"\nduration_s = 10\nframes_per_s = 1\nrest = "
           "\"inverse\"\nunstable = \"{}\"\n{}[model]\n{}\n[integrator]\n{}\n"
           "[material]\nname = \"hair.asian\"\nradius_m = 40e-6\npoisson_ratio = 0.48\n"
           "[strand]\n{}{}\n"
@@ -36,9 +36,9 @@ Scene scene_of(const Setting& s) {
 }
 
 const char* const shapes[] = {
-    "shape = \"straight\"", "shape = \"wavy\"\nwave_1_m = 60\nwavelength_m = 0.04",
+    "shape = \"straight\"", "shape = \"wavy\"\nwave_per_m = 60\nwavelength_m = 0.04",
     "shape = \"helix\"\ncurl_radius_m = 0.008\ncurl_pitch_m = 0.02",
-    "shape = \"fuzzy\"\nfuzz_1_m = 40\ncorrelation_m = 0.02"};
+    "shape = \"fuzzy\"\nfuzz_per_m = 40\ncorrelation_m = 0.02"};
 const char* const effects[] = {
     "",
     "[effects.wind]\nvelocity_m_s = [0.3, 1, 0]\nprofile = \"gusts\"\nlaw = "
@@ -46,7 +46,7 @@ const char* const effects[] = {
     "[effects.tether]\ntarget_m = [0.1, 0.03, 0.05]\npull_n = 2e-6\nt_on_s = -1\n"};
 const char* const reduced[] = {"id = \"super_helix\"",
                                "id = \"super_helix\"\nmodes = \"bend\"",
-                               "id = \"super_helix\"\ntangent = \"stiff\"",
+                               "id = \"super_helix\"\njacobian = \"elastic\"",
                                "id = \"articulated_chain\"",
                                "id = \"super_clothoid\"",
                                "id = \"super_clothoid\"\nmodes = \"bend\""};
@@ -298,8 +298,8 @@ TEST(AtRest, IsRefusedWhereItCannotBe) {
 TEST(AtRest, HoldsStrandsOfABatch) {
   std::string text =
       "title = \"batch\"\nduration_s = 1\nrest = \"inverse\"\n[model]\nid = "
-      "\"super_helix\"\ntangent = \"stiff\"\n[integrator]\nid = "
-      "\"semi_implicit_euler\"\ndt_s = 0.01\n[material]\nname = \"hair.asian\"\n";
+      "\"super_helix\"\njacobian = \"elastic\"\n[integrator]\nid = "
+      "\"linearly_implicit_euler\"\ndt_s = 0.01\n[material]\nname = \"hair.asian\"\n";
   for (int k = 0; k < 5; ++k) {
     text += fmt::format(
         "[[strand]]\nlength_m = 0.06\nelements = 8\nposition_m = [0, {}, 0]\nshape = "

@@ -22,10 +22,10 @@ using namespace simulation;
 
 /// One hair that falls, with frames until 1 s.
 std::string falling(const std::string& model, const std::string& more = "") {
-  return "title = \"falls\"\nduration_s = 1\nframes_1_s = 50\ncheckpoint_s = 0.1\n"
+  return "title = \"falls\"\nduration_s = 1\nframes_per_s = 50\ncheckpoint_s = 0.1\n"
          "[model]\nid = \"" +
          model +
-         "\"\n[integrator]\nid = \"semi_implicit_euler\"\ndt_s = 0.001\n"
+         "\"\n[integrator]\nid = \"linearly_implicit_euler\"\ndt_s = 0.001\n"
          "[material]\nname = \"hair.caucasian\"\n"
          "[strand]\nlength_m = 0.1\nelements = 10\n[root]\nmotion = \"shake\"\n"
          "amplitude_m = 0.02\nfrequency_hz = 2\n[effects.gravity]\n" +
@@ -35,8 +35,8 @@ std::string falling(const std::string& model, const std::string& more = "") {
 /// Strands that touch while they are shaken; long enough to be caught at work.
 std::string groom(int frames = 100) {
   return "title = \"groom\"\nduration_s = " + std::to_string(frames / 100.0) +
-         "\nframes_1_s = 100\ncheckpoint_s = 0.05\nseed = 7\n"
-         "[model]\nid = \"der\"\n[integrator]\nid = \"semi_implicit_euler\"\n"
+         "\nframes_per_s = 100\ncheckpoint_s = 0.05\nseed = 7\n"
+         "[model]\nid = \"der\"\n[integrator]\nid = \"linearly_implicit_euler\"\n"
          "dt_s = 0.001\n[material]\nname = \"hair.asian\"\n"
          "[groom]\ncount = 20\nlength_m = 0.08\nelements = 12\n"
          "[root]\nmotion = \"rotate\"\nangle_rad = 0.5\nfrequency_hz = 2\n"
@@ -56,7 +56,7 @@ TEST(Simulate, RunsTheWholeDurationWhereItIsNoWholeNumberOfFrames) {
     Toy toy;
     toy.write("fall.toml",
               std::string("title = \"t\"\nduration_s = ") + duration +
-                  "\nframes_1_s = 30\n[integrator]\ndt_s = 0.0016666666666666667\n"
+                  "\nframes_per_s = 30\n[integrator]\ndt_s = 0.0016666666666666667\n"
                   "[strand]\nelements = 1\n[effects.gravity]\n");
     const Toy::Result run = toy.run("fall.toml --out out --progress none");
     ASSERT_EQ(run.code, 0) << run.err;
@@ -71,7 +71,7 @@ TEST(Simulate, RunsTheWholeDurationWhereItIsNoWholeNumberOfFrames) {
 TEST(Simulate, WritesASeriesThatConservesEnergy) {
   Toy toy;
   toy.write("fall.toml",
-            "title = \"falls\"\nduration_s = 0.2\nframes_1_s = 50\n[model]\n"
+            "title = \"falls\"\nduration_s = 0.2\nframes_per_s = 50\n[model]\n"
             "id = \"super_helix\"\n[integrator]\nid = \"implicit_midpoint\"\n"
             "dt_s = 0.0005\n[material]\nname = \"hair.asian\"\n"
             "internal_friction_kg_m3_s = 0\n[strand]\nlength_m = 0.1\nelements = 8\n"
@@ -178,9 +178,9 @@ TEST(Simulate, ThePageHasForcesBetweenStrandsInPairs) {
 /// As groom(), each strand by steps of its own and exchanges under control.
 std::string controlled_groom() {
   std::string scene = groom();
-  const std::string given = "id = \"semi_implicit_euler\"\ndt_s = 0.001";
+  const std::string given = "id = \"linearly_implicit_euler\"\ndt_s = 0.001";
   return scene.replace(scene.find(given), given.size(),
-                       "id = \"tr_bdf2\"\ntolerance = 1e-2");
+                       "id = \"tr_bdf2\"\nposition_tol_rel = 1e-2");
 }
 
 std::string continued(const std::string& which) {
@@ -258,8 +258,9 @@ TEST(Pictures, ShowStrandsOfAHeadEvenly) {
 
 TEST(Simulate, RunsByToleranceAndVerifiesIt) {
   std::string scene = falling("super_helix");
-  const std::string given = "id = \"semi_implicit_euler\"\ndt_s = 0.001";
-  scene.replace(scene.find(given), given.size(), "id = \"tr_bdf2\"\ntolerance = 1e-3");
+  const std::string given = "id = \"linearly_implicit_euler\"\ndt_s = 0.001";
+  scene.replace(scene.find(given), given.size(),
+                "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3");
   Toy toy;
   toy.write("fall.toml", scene);
   const Toy::Result run = toy.run("fall.toml --out out --progress none --verify");
@@ -358,7 +359,7 @@ TEST(Simulate, ASceneThatBlowsUpIsSaidSo) {
   Toy toy;
   std::string scene = falling("super_helix");
   // Explicit, far beyond the limit of its fastest wave.
-  scene.replace(scene.find("semi_implicit_euler"), 19, "symplectic_euler");
+  scene.replace(scene.find("linearly_implicit_euler"), 23, "symplectic_euler");
   toy.write("scene.toml", scene);
   const Toy::Result run = toy.run("scene.toml --out out --progress none");
   EXPECT_EQ(run.code, 3);
@@ -398,7 +399,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"key", "key.toml --out out", "did you mean 'gravity_m_s2'"},
         Wrong{"old_key", "old_key.toml --out out", "it is called 'gravity_m_s2' now"},
         Wrong{"nan", "nan.toml --out out", "nan.toml:"},
-        Wrong{"option", "good.toml --treads 2", "--help"},
+        Wrong{"option", "good.toml --treads 2", "did you mean '--threads'"},
         Wrong{"threads", "good.toml --threads 0", "threads"},
         Wrong{"no_scenes", "--out out", "scene"},
         Wrong{"second_is_bad", "good.toml typo.toml --out out", "linear_drag"},

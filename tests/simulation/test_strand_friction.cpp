@@ -64,7 +64,7 @@ std::string four() {
          "root_tangent = [1, 0, 0]\n";
 }
 
-constexpr const char* one_system = "tangent = \"stiff\"\nsolver = \"recursive\"\n";
+constexpr const char* one_system = "jacobian = \"elastic\"\nsolver = \"recursive\"\n";
 
 constexpr double earth = 9.81;  // m/s^2
 
@@ -99,7 +99,7 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const ModelEntry& model : model_catalogue()) {
     if (model.on_strand == nullptr) continue;
-    for (const char* const method : {"backward_euler", "semi_implicit_euler"}) {
+    for (const char* const method : {"backward_euler", "linearly_implicit_euler"}) {
       all.push_back({std::string(model.id), method});
     }
   }
@@ -113,7 +113,7 @@ TEST_P(StrandFriction, NothingFallsThroughAnother) {
           .integrator = GetParam().integrator,
           .strands = crossing()};
   // Where a soft strand is not stable at 2 ms without contact, with shorter steps.
-  if (set.integrator == "semi_implicit_euler") set.step = 5e-4;
+  if (set.integrator == "linearly_implicit_euler") set.step = 5e-4;
   World world(scene(set));
   double least = std::numeric_limits<double>::infinity();
   for (int i = 1; i <= 60; ++i) {
@@ -152,12 +152,12 @@ TEST_P(StrandFriction, NoPointEntersABody) {
               "[strand]\nlength_m = 0.06\nelements = 12\n"
               "root_tangent = [1, 0, 0]\n",
           .effects =
-              "[effects.gravity]\n[effects.linear_drag]\nmass_damping_1_s = 10\n"
+              "[effects.gravity]\n[effects.linear_drag]\nmass_damping_per_s = 10\n"
               "[effects.body]\nshape = \"sphere\"\nradius_m = 0.01\n"
               "centre_m = [0.03, 0.001, -0.015]\nstrand_radius_m = 1e-3\n"
               "friction_law = \"exact\"\nnormal = \"rigid\"\n",
           .friction = "own = \"no\"\n"};
-  if (set.integrator == "semi_implicit_euler") set.step = 5e-4;
+  if (set.integrator == "linearly_implicit_euler") set.step = 5e-4;
   World world(scene(set));
   double deepest = 0;
   for (int i = 1; i <= 60; ++i) {
@@ -210,7 +210,7 @@ TEST(StrandFriction, OnASlopeSticksOrSlidesByHand) {
       const double angle = std::atan(tangent), mu = 0.3;
       const double down = earth * std::sin(angle), onto = earth * std::cos(angle);
       Set set{.model = model,
-              .integrator = "semi_implicit_euler",
+              .integrator = "linearly_implicit_euler",
               .strands =
                   "[strand]\nlength_m = 0.1\nelements = 6\n"
                   "root_tangent = [0, 1, 0]\nnormal = [1, 0, 0]\n"
@@ -271,7 +271,7 @@ TEST(StrandFriction, SticksToABodyThatTurns) {
 /// velocity at the end of a step is not that of the way within it, and a law of it creeps
 /// by h omega^2 r/2 per time, 2 mm in a second here.
 TEST(StrandFriction, ARootedStrandStaysOnABodyThatTurns) {
-  for (const char* const method : {"backward_euler", "semi_implicit_euler"}) {
+  for (const char* const method : {"backward_euler", "linearly_implicit_euler"}) {
     for (const char* const model : {"super_helix", "articulated_chain", "der"}) {
       Set set{.model = model,
               .integrator = method,
@@ -299,8 +299,9 @@ TEST(StrandFriction, ARootedStrandStaysOnABodyThatTurns) {
         farthest = std::max(farthest, norm(now - start));
       }
       // Forces are those of the linear step; what its places are off is second order in
-      // it: 4 um for der by semi_implicit_euler, whose step is linear about its start.
-      const bool linear = std::string(method) == "semi_implicit_euler";
+      // it: 4 um for der by linearly_implicit_euler, whose step is linear about its
+      // start.
+      const bool linear = std::string(method) == "linearly_implicit_euler";
       EXPECT_LT(farthest, linear ? 1e-5 : 1e-6) << model << ' ' << method;
     }
   }
@@ -447,7 +448,7 @@ TEST(StrandFriction, DoesNoWorkOnASlide) {
 /// A few that are stepped as one system rub as they do where each is a system.
 TEST(StrandFriction, OfStrandsOfOneSystemIsThatOfEachAlone) {
   constexpr double tolerance = 1e-9, span = 0.15;  // m/s, s
-  for (const char* const method : {"semi_implicit_euler", "backward_euler"}) {
+  for (const char* const method : {"linearly_implicit_euler", "backward_euler"}) {
     const auto made = [&](const std::string& options) {
       return scene(
           {.model = "super_helix",
@@ -458,7 +459,7 @@ TEST(StrandFriction, OfStrandsOfOneSystemIsThatOfEachAlone) {
            .step = 5e-4});
     };
     World together(made(one_system)),
-        apart(made("tangent = \"stiff\"\nsolver = \"composite\"\n"));
+        apart(made("jacobian = \"elastic\"\nsolver = \"composite\"\n"));
     ASSERT_EQ(together.systems(), 1u);
     ASSERT_EQ(apart.systems(), 4u);
     for (World* const world : {&together, &apart}) {

@@ -21,7 +21,7 @@ Scene pair(const std::string& model, const std::string& coupling) {
   const std::string strand = "length_m = 0.1\nelements = 10\nshape = \"helix\"\n";
   return parse_scene(
       "title = \"pair\"\nduration_s = 0.1\n[model]\nid = \"" + model +
-          "\"\n[integrator]\nid = \"semi_implicit_euler\"\n[material]\n"
+          "\"\n[integrator]\nid = \"linearly_implicit_euler\"\n[material]\n"
           "name = \"hair.asian\"\n[[strand]]\n" +
           strand + "[[strand]]\nposition_m = [0, 0.004, 0]\n" + strand +
           "[root]\nmotion = \"fixed\"\n[effects.gravity]\n[effects.body]\n"
@@ -76,7 +76,7 @@ TEST(World, KnowsEnergiesByKindAsSystemsOfOneEffectDo) {
 Scene switched(const std::string& model) {
   return parse_scene(
       "title = \"switched\"\nduration_s = 0.5\n[model]\nid = \"" + model +
-          "\"\n[integrator]\nid = \"tr_bdf2\"\ntolerance = 1e-3\n[material]\n"
+          "\"\n[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n[material]\n"
           "name = \"hair.asian\"\n[strand]\nelements = 6\n[root]\nmotion = \"stop\"\n"
           "speed_m_s = 0.5\ntime_s = 0.125\n[effects.gravity]\n[effects.tether]\n"
           "stiffness_n_m = 1e-3\nt_on_s = 0.25\nramp_s = 0.125\n",
@@ -165,13 +165,13 @@ TEST(World, StepsWithoutASolutionAreTakenInShorterOnes) {
   EXPECT_EQ(world.positions(), other.positions());
 }
 
-/// Turned from one moment to the next, these springs by their filtered tangent have no
+/// Turned from one moment to the next, these springs by their filtered Jacobian have no
 /// step that Newton's iteration solves, however short.
 constexpr const char* hinges = R"(title = "hinges"
 [model]
 id = "mass_spring"
 bending = "angular"
-tangent = "filtered"
+jacobian = "filtered"
 [integrator]
 id = "generalized_alpha"
 dt_s = 3e-4
@@ -216,7 +216,7 @@ TEST(World, MaxWorkBoundsStepsThatAreTriedAgain) {
 TEST(World, TooManyStrandsForTheMemoryAreRefusedWithTheFigure) {
   const Scene scene = parse_scene(
       "title = \"crowd\"\n[model]\nid = \"super_helix\"\n[integrator]\n"
-      "id = \"semi_implicit_euler\"\n[groom]\ncount = 5000\nelements = 20\n"
+      "id = \"linearly_implicit_euler\"\n[groom]\ncount = 5000\nelements = 20\n"
       "length_m = 0.2\n[root]\nmotion = \"fixed\"\n[effects.linear_drag]\n",
       "crowd.toml");
   rlimit before{};

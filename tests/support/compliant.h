@@ -132,7 +132,7 @@ inline std::vector<double> at_end(std::string_view id, System& system,
 inline std::unique_ptr<System> soft_strand(std::string_view model) {
   ModelSettings settings = {{"elements", "3"},
                             {"radius_m", "1e-3"},
-                            {"natural_curvature_1_m", "8"},
+                            {"natural_curvature_per_m", "8"},
                             {"youngs_modulus_pa", "1e6"},
                             {"internal_friction_kg_m3_s", "1e-8"},
                             {"motion", "shake_rotate"}};

@@ -115,7 +115,7 @@ TEST(ValidationTable, ReferencesAreWhatTestsHangOn) {
   EXPECT_LT(measured.number("error_rel"), 0.01);
   EXPECT_GT(
       std::abs(measured.number("measured") / (1.05 * measured.number("reference")) - 1),
-      measured.number("tolerance"));
+      measured.number("accepted_error_rel"));
 }
 
 }  // namespace tress::test_table

@@ -6,6 +6,15 @@ import { series_style } from './palette.mjs';
 // Of a figure as a file, in pixels.
 export const paper_width = 1000;
 
+// Of a figure as a file where the reader prefers dark; the page's style sheet has the same.
+export const dark_theme = {
+  text: '#e7eaee',
+  muted: '#a3abb6',
+  grid: '#2a3038',
+  axis: '#6f7883',
+  background: '#191d23',
+  bad: '#4a515b',
+};
 // The browser passes CSS variables, so light, dark and print need no redraw.
 export const paper_theme = {
   text: '#1d2127',
@@ -52,6 +61,7 @@ export const vega_config = (theme) => ({
     labelLimit: 0,
     rowPadding: 3,
     symbolSize: 70,
+    symbolOpacity: 1,
     symbolStrokeWidth: 1.8,
     titleLimit: 0,
     layout: {
@@ -120,16 +130,16 @@ const panel_gap = 28;
 const legend_from = 720;
 
 // How many panels of what width fit, and where the legend goes: `above` when its labels
-// are long or the panels many, else beside, else below.
+// are long or the panels many, else on the right, else below.
 export function layout(
   width,
   panel_count,
-  { labels = [], columns_max = 3, above = false } = {},
+  { labels = [], columns_max = 3, above = false, least = 250 } = {},
 ) {
-  const beside = width >= legend_from && !above;
+  const on_right = width >= legend_from && !above;
   const longest = Math.max(12, ...labels.map((label) => label.length));
-  const room = width - (beside ? 56 + 7.2 * longest : 0) - 12;
-  const fit = Math.max(1, Math.floor((room + panel_gap) / (250 + axis_room + panel_gap)));
+  const room = width - (on_right ? 56 + 7.2 * longest : 0) - 12;
+  const fit = Math.max(1, Math.floor((room + panel_gap) / (least + axis_room + panel_gap)));
   const columns = Math.min(panel_count, columns_max, fit);
   const panel_width = Math.floor(
     (room - (columns - 1) * panel_gap) / columns - axis_room,
@@ -141,7 +151,7 @@ export function layout(
   return {
     columns,
     panel_width: Math.max(200, Math.min(panel_width, 760)),
-    legend: beside
+    legend: on_right
       ? { orient: 'right', offset: 16 }
       : {
           orient: above ? 'top' : 'bottom',
@@ -162,6 +172,23 @@ export function lines_of(text, width, letter = 6.4) {
   }
   return lines;
 }
+
+// A number and its unit stay on one line.
+const unbroken = (text) => text.replace(/(\d) (?=(?:%|ms|µs|ns|s|m)(?![\w/]))/g, '$1\u00a0');
+
+// The finding, and below it how to read the figure.
+export const figure_title = (headline, reading, { width, theme }) => ({
+  text: lines_of(unbroken(headline), width - 24, 9.4),
+  subtitle: lines_of(unbroken(reading.replace(/\s+/g, ' ').trim()), width - 24, 6.9),
+  fontSize: 15,
+  lineHeight: 19,
+  subtitleFontSize: 12,
+  subtitleLineHeight: 16,
+  subtitlePadding: 5,
+  subtitleColor: theme.muted,
+  anchor: 'start',
+  offset: 16,
+});
 
 // Places in [0, end] at least `gap` apart and near the wanted ones, in the same order.
 export function spread(wanted, gap, end) {

@@ -1,4 +1,4 @@
-// what every strand model costs at the same error, and what it loses.
+// The cost of every strand model at the same error, and its change of angular momentum.
 import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
 import { spaced, variant_name } from '../src/strand.mjs';
@@ -41,8 +41,8 @@ const ranked = (rows) =>
 export function cost_by_model_findings(tables) {
   return [...group_by(rows_of(tables), (row) => row.scene)].map(
     ([scene, members]) =>
-      `${spaced(scene)}, time a simulated second takes within 1 %, each model at its ` +
-      'cheapest: ' +
+      `${spaced(scene)}, wall time per simulated second for 1 %, each model with its cheapest ` +
+      'method: ' +
       ranked(members)
         .map(
           (row) =>
@@ -101,12 +101,26 @@ function panel(rows, title, names, field, axis, { panel_width, legend, style }) 
 
 export const cost_by_model = {
   id: 'cost_by_model',
-  title: 'What one per cent costs, model by model',
+  title: 'The cost of 1 %, model by model',
   table: 'cost_of_accuracy',
+  headline(tables) {
+    const rows = rows_of(tables);
+    const best = [...group_by(rows, (row) => `${row.scene}|${row.name}`).values()].map(cheapest);
+    const [[first, { length }]] = [...group_by(best, (row) => row.integrator)].sort(
+      (a, b) => b[1].length - a[1].length,
+    );
+    const said = [...group_by(rows, (row) => row.scene)].map(([scene, members]) => {
+      const [row] = ranked(members);
+      return `${row.name} is the cheapest model of “${spaced(scene)}” (${format_time(row.wall_s_per_sim_s)})`;
+    });
+    return `${said.join(', ')}; ${first} is the cheapest integrator for ${length} of ${best.length} models`;
+  },
+  reading: `The cheapest run of each model and integrator with a tip error of 1 % of the length or less; left is better. The
+    cheapest model is on top.`,
   caption: `For every strand model and integrator the cheapest number of elements and step
-    whose tip stays within 1 % of the length of the continuous rod's; left is better. First
-    a clamped hair let go horizontally, then a curved one thrown in space, spinning; last
-    what the thrown one's angular momentum changes by in those runs. Models or integrators
+    with a tip error of 1 % of the length or less, against the continuous rod. First
+    a clamped hair that is released horizontally, then a curved one in free flight, spinning; last
+    the change of the angular momentum of the flying hair in those runs. Models or integrators
     without a mark found no such run. Made from cost_of_accuracy.csv.`,
 
   rows: rows_of,
@@ -140,7 +154,7 @@ export const cost_by_model = {
           `${spaced(thrown[0].scene)}: angular momentum`,
           names(thrown),
           'angular_error_rel',
-          'largest change over itself',
+          'largest change / value',
           shared,
         ),
       );

@@ -1,5 +1,6 @@
-// Energy that methods take from a hair that swings without friction.
-import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
+// Energy that methods remove from a hair that swings without friction.
+import { distinct, group_by, is_positive, minimum_by, succeeded } from '../src/tables.mjs';
+import { format_number, format_time } from '../src/format.mjs';
 import { spaced } from '../src/strand.mjs';
 import { line_panels } from './common.mjs';
 
@@ -17,11 +18,21 @@ const rows_of = ({ damping = [] }) =>
 
 export const damping = {
   id: 'damping',
-  title: 'Energy that a method takes',
+  title: 'Energy that a method loses or gains',
   table: 'damping',
-  caption: `Energy that a hair without friction has lost or gained after a second, against the step, over
-    what a fall to rest would free. A panel for each model and sign: what the method takes, and what it
-    puts in. Made from damping.csv.`,
+  headline(tables) {
+    const rows = rows_of(tables);
+    const step = Math.max(...rows.map((row) => row.dt_s));
+    const at = [...group_by(rows.filter((row) => row.dt_s === step), (row) => row.model)][0]?.[1] ?? [];
+    const most = minimum_by(at, (row) => -row.lost_pct);
+    const least = minimum_by(at, (row) => row.change_pct);
+    const text = (row) =>
+      `${row.integrator} ${row.sign === 'lost' ? 'loses' : 'gains'} ${format_number(row.change_pct, 2)} %`;
+    return `With steps of ${format_time(step)}, ${distinct([most, least]).map(text).join(', ')} of the energy in a second`;
+  },
+  reading: `A hair without friction swings for a second: energy that it loses or gains, over the energy that a fall to rest
+    would release. Lower is better.`,
+  caption: `A panel for each model and sign. Made from damping.csv.`,
 
   rows: rows_of,
 

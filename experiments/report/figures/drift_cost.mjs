@@ -1,5 +1,7 @@
 // Figure 1: largest constraint violation against wall time, formulation x integrator.
-import { distinct, group_by, is_number, is_positive, succeeded } from '../src/tables.mjs';
+import { distinct, group_by, is_number, is_positive, minimum_by, succeeded } from '../src/tables.mjs';
+import { format_number } from '../src/format.mjs';
+import { spaced } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
@@ -17,11 +19,26 @@ const floor = 1e-19;
 
 export const drift_cost = {
   id: 'drift_cost',
-  title: 'How far constraints drift, and what stopping it costs',
+  title: 'Constraint drift, and the cost of stopping it',
   table: 'constraint_drift',
+  headline(tables) {
+    const groups = [...group_by(this.rows(tables), (row) => row.formulation)].map(([name, runs]) => ({
+      name,
+      most: Math.max(...runs.map((row) => row.g_max)),
+    }));
+    const moving = groups.filter(({ most }) => most > 0);
+    const worst = minimum_by(moving, ({ most }) => -most);
+    const best = minimum_by(moving, ({ most }) => most);
+    const text = ({ name, most }) => `${spaced(name)} by up to ${format_number(most, 2)} m`;
+    return moving.length > 0
+      ? `Constraints drift: ${distinct([worst, best]).map(text).join(', ')}`
+      : 'No constraint drifts';
+  },
+  reading: `Each mark is one run: its largest constraint violation |g| against its wall time. Lower left is better. Colour:
+    formulation; shape: family of the integrator.`,
   caption: `Each mark is one run: largest constraint violation max |g| over the whole run
     against the wall time it took. Lower is less drift, further left is cheaper. Colour is
-    the formulation, shape the family of the integrator, which a mark's tooltip names. Exact zeros sit on the line at the bottom.
+    the formulation, shape the family of the integrator, which a mark's tooltip names. Systems whose coordinates satisfy the constraint exactly are left out; other exact zeros are on the line at the bottom.
     Click a legend entry to keep it and dim the others; shift-click adds entries. Made
     from the rows of constraint_drift.csv whose study is "formulation"; runs that failed
     are in the table only.`,
@@ -29,8 +46,9 @@ export const drift_cost = {
   rows: (tables) =>
     (tables.constraint_drift ?? [])
       .filter(
-        (row) =>
+        (row, _, all) =>
           row.study === 'formulation' &&
+          all.some((other) => other.system === row.system && other.g_max > 0) &&
           succeeded(row) &&
           is_number(row.g_max) &&
           is_positive(row.wall_s),
@@ -45,7 +63,7 @@ export const drift_cost = {
     const rows = this.rows(tables);
     const groups = [...group_by(rows, (row) => row.system)];
     const formulations = formulation_style(rows.map((row) => row.formulation));
-    const families = family_style(rows.map((row) => row.integrator));
+    const families = family_style(rows.map((row) => row.family));
     const { columns, panel_width, legend } = layout(width, groups.length, {
       columns_max: 2,
       labels: [...formulations.domain, ...families.domain],

@@ -8,6 +8,7 @@ import {
   study_rows,
   succeeded,
 } from '../src/tables.mjs';
+import { format_number } from '../src/format.mjs';
 import { layout, log_extent, panels } from './common.mjs';
 import { cell_axis } from './grid.mjs';
 
@@ -212,6 +213,21 @@ export const drift_heatmap = {
   id: 'drift_heatmap',
   title: 'Where feedback is stable: drift over alpha and beta',
   table: 'constraint_drift',
+  headline(tables) {
+    const rows = this.rows(tables);
+    const failed = rows.filter((row) => !succeeded(row)).length;
+    const gaps = study_rows(tables, 'constraint_drift', 'limit')
+      .map((row) => row.rel_gap)
+      .filter(is_number)
+      .map(Math.abs);
+    const off =
+      gaps.length > 0
+        ? `; the predicted boundary is off by at most ${format_number(100 * Math.max(...gaps), 2)} %`
+        : '';
+    return `${failed} of ${rows.length} pairs of feedback gains are unstable${off}`;
+  },
+  reading: `Colour: largest violation |g| of a run with feedback g'' = -alpha g - beta g'. Grey with a cross: diverged. White
+    line: predicted boundary; dots: measured; dotted: critical damping, beta² = 4 alpha.`,
   caption: `Colour is the largest violation max |g| of one run with feedback g'' = -alpha
     g - beta g' (dark is small). Grey cells with a cross diverged. The solid white line is
     the boundary predicted for the integrator from the test equation; white dots are
@@ -262,8 +278,8 @@ export const drift_heatmap = {
 
   describe(tables) {
     const rows = this.rows(tables);
-    const lost = rows.filter((row) => !succeeded(row)).length;
+    const failed = rows.filter((row) => !succeeded(row)).length;
     return `Heat maps of the largest violation over alpha and beta, one per integrator and
-      step: ${rows.length} runs, ${lost} of them diverged.`;
+      step: ${rows.length} runs, ${failed} of them diverged.`;
   },
 };

@@ -1,7 +1,7 @@
 // Figure 3: how long a violated start takes to recover, against the damping of the
 // feedback.
-import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
-import { format_number } from '../src/format.mjs';
+import { distinct, group_by, is_positive, minimum_by, succeeded } from '../src/tables.mjs';
+import { format_number, format_time } from '../src/format.mjs';
 import {
   dimmed_unless,
   layout,
@@ -21,9 +21,20 @@ export const drift_recovery = {
   id: 'drift_recovery',
   title: 'Recovery from a violated start',
   table: 'constraint_drift',
+  headline(tables) {
+    const rows = this.rows(tables);
+    const recovered = rows.filter((row) => row.recovered);
+    const best = minimum_by(recovered, (row) => row.recovery_time_s);
+    return best === undefined
+      ? `None of ${rows.length} runs recovers`
+      : `Recovery is fastest at ${format_number(best.ratio, 2)} times critical damping: ` +
+          `${format_time(best.recovery_time_s)}; ${recovered.length} of ${rows.length} runs recover`;
+  },
+  reading: `Runs that start off the constraint. Left of critical damping the violation oscillates, right of it it decays
+    slowly. Crosses at the top edge did not recover within the run.`,
   caption: `Runs that start off the constraint on purpose: time until the violation has
     decayed, against beta²/(4 alpha). The vertical line at 1 is critical damping; left of
-    it the violation oscillates, right of it it creeps back. Crosses at the top edge did
+    it the violation oscillates, right of it it decays slowly. Crosses at the top edge did
     not recover within the run. Made from the rows of constraint_drift.csv whose study is
     "recovery".`,
 
@@ -52,6 +63,7 @@ export const drift_recovery = {
       columns_max: 2,
       labels: style.domain,
     });
+    const shown_legend = style.domain.length > 1 ? legend : null;
     const y_extent = log_extent(
       rows.filter((r) => r.recovered).map((r) => r.recovery_time_s),
       5,
@@ -93,7 +105,7 @@ export const drift_recovery = {
             encoding: {
               x,
               y,
-              ...series_channels('integrator', 'integrator', style, legend),
+              ...series_channels('integrator', 'integrator', style, shown_legend),
               shape: undefined,
               opacity: dimmed_unless(['pick_integrator']),
             },
@@ -104,7 +116,7 @@ export const drift_recovery = {
             encoding: {
               x,
               y,
-              ...series_channels('integrator', 'integrator', style, legend),
+              ...series_channels('integrator', 'integrator', style, shown_legend),
               strokeDash: undefined,
               tooltip,
               opacity: dimmed_unless(['pick_integrator']),
@@ -121,7 +133,7 @@ export const drift_recovery = {
             },
             encoding: {
               x,
-              color: series_channels('integrator', 'integrator', style, legend).color,
+              color: series_channels('integrator', 'integrator', style, shown_legend).color,
               tooltip,
               opacity: dimmed_unless(['pick_integrator']),
             },

@@ -1,25 +1,33 @@
-// What holds for one hair, hair by hair.
-import { distinct, is_positive, is_set, succeeded } from '../src/tables.mjs';
+// Which statements are true for which hairs.
+import { distinct, group_by, is_positive, is_set, succeeded } from '../src/tables.mjs';
 import { format_number } from '../src/format.mjs';
-import { layout, lines_of, log_channel, log_extent, panels, tooltips } from './common.mjs';
+import {
+  dimmed_unless,
+  legend_selection,
+  lines_of,
+  log_channel,
+  log_extent,
+  tooltips,
+} from './common.mjs';
+import { blue, orange } from './palette.mjs';
+import { row_channel, row_text, row_width } from './rows.mjs';
 
-// What the panels call the values, and beyond which value the statement holds.
+// The statements in words.
 const statements = {
-  exact_step_100ms: ['Largest stable step, backward Euler, exact', 'step (s)', 0.1],
-  exact_step_100ms_bend: ['The same without twist', 'step (s)', 0.1],
-  super_helix_step_longer: ['Largest step: super helix over der', 'ratio', 1],
-  twist_straight_negligible: ['Leaving twist out, straight hair', 'change of the tip / L', 0.01],
-  twist_curly_matters: ['Leaving twist out, the hair with its curl', 'change of the tip / L', 0.01],
-  'bdf_order2_at_1e-2': ['BDF at 1e-2: order 5 over order 2', 'ratio of work', 1],
-  'bdf_order2_at_1e-3': ['BDF at 1e-3: order 5 over order 2', 'ratio of work', 1],
-  'bdf_order2_at_1e-4': ['BDF at 1e-4: order 5 over order 2', 'ratio of work', 1],
-  'esdirk_steps_at_1e-3': ['Steps at 1e-3: BDF over ESDIRK', 'ratio of steps', 1],
-  'esdirk_work_at_1e-3': ['Work at 1e-3: BDF over ESDIRK', 'ratio of work', 1],
-  reduced_cheaper: ['Time at 1 %: der over super helix', 'ratio of times', 1],
+  exact_step_100ms: 'backward Euler, exact Jacobian: stable at 100 ms',
+  exact_step_100ms_bend: 'backward Euler, exact Jacobian, no twist: stable at 100 ms',
+  super_helix_step_longer: 'super helix: largest step at least that of der',
+  twist_straight_negligible: 'straight hair: twist moves the tip by less than 1 %',
+  twist_curly_matters: 'hair with its curl: twist moves the tip by 1 % or more',
+  'bdf_order2_at_1e-2': 'BDF at 1e-2: order 2 is no more expensive than order 5',
+  'bdf_order2_at_1e-3': 'BDF at 1e-3: order 2 is no more expensive than order 5',
+  'bdf_order2_at_1e-4': 'BDF at 1e-4: order 2 is no more expensive than order 5',
+  'esdirk_steps_at_1e-3': 'at 1e-3, ESDIRK takes no more steps than BDF',
+  'esdirk_work_at_1e-3': 'at 1e-3, ESDIRK is no more expensive than BDF',
+  reduced_cheaper: 'at 1 %, super helix is no slower than der',
 };
 
 const verdicts = ['true', 'not true'];
-const least_drawn = 1e-5; // below it nothing is left of a change
 
 const rows_of = (tables) =>
   (tables.family ?? [])
@@ -27,11 +35,11 @@ const rows_of = (tables) =>
     .filter((row) => succeeded(row) && row.claim in statements && is_positive(row.value))
     .map((row) => ({
       ...row,
-      shown: Math.max(row.value, least_drawn),
+      statement: statements[row.claim],
       verdict: verdicts[is_set(row.holds) ? 0 : 1],
     }));
 
-// Runs by tolerance of the whole family, where there are those, stand for those of --quick.
+// Adaptive runs of the whole family replace those of --quick where they exist.
 export function family_findings({ family_summary = [], family_tolerance_summary = [] }) {
   const whole = family_tolerance_summary.length > 0;
   return [
@@ -51,87 +59,106 @@ export function family_findings({ family_summary = [], family_tolerance_summary 
     );
 }
 
-function panel(rows, claim, { panel_width, legend, theme, x }) {
-  const [title, axis, bar] = statements[claim];
-  const y = log_channel('shown', axis, log_extent([...rows.map((row) => row.shown), bar], 6));
-  const scale = (range) => ({ domain: verdicts, range });
-  const verdict = { field: 'verdict', type: 'nominal', title: 'the statement' };
-  return {
-    width: panel_width,
-    height: 170,
-    title: lines_of(title, panel_width),
-    layer: [
-      {
-        data: { values: [{ shown: bar }] },
-        mark: { type: 'rule', color: theme.muted, strokeDash: [4, 3] },
-        encoding: { y },
-      },
-      {
-        data: { values: rows },
-        mark: { type: 'point', filled: true, size: 60, opacity: 0.85 },
-        encoding: {
-          x,
-          y,
-          color: { ...verdict, scale: scale(['#00805c', '#D55E00']), legend },
-          shape: { ...verdict, scale: scale(['circle', 'triangle-up']), legend },
-          tooltip: tooltips([
-            ['hair', 'hair'],
-            ['value', axis, '.3g'],
-            ['gravito_bending', 'gravito-bending number', '.3g'],
-            ['kind', 'group'],
-            ['state', 'dry or wet'],
-            ['drive', 'drive'],
-            ['length_m', 'length (m)', '.3g'],
-            ['natural_curvature_1_m', 'natural curvature (1/m)', '.3g'],
-            ['internal_friction_kg_m3_s', 'friction (kg m³/s)', '.2g'],
-          ]),
-        },
-      },
-    ],
-  };
+// By statement: how many hairs gave an answer, and for how many it is true.
+const shares_of = (rows) =>
+  [...group_by(rows, (row) => row.statement)]
+    .map(([statement, members]) => {
+      const holds = members.filter((row) => row.verdict === verdicts[0]).length;
+      return {
+        statement,
+        share: holds / members.length,
+        text: `${Math.round((100 * holds) / members.length)} % of ${members.length}`,
+      };
+    })
+    .sort((a, b) => b.share - a.share);
+
+function headline(tables) {
+  const rows = rows_of(tables);
+  const shares = shares_of(rows);
+  const always = shares.filter(({ share }) => share === 1).length;
+  const most = shares.filter(({ share }) => share >= 0.5 && share < 1).length;
+  const hairs = distinct(rows.map((row) => row.hair)).length;
+  return (
+    `Of ${shares.length} statements about ${hairs} hairs, ${always} are true for all of them, ${most} for half or ` +
+    `more and ${shares.length - always - most} for less than half`
+  );
 }
 
 export const family = {
   id: 'family',
   title: 'Statements on a family of hairs',
   table: 'family',
-  caption: `What each statement is about, for every hair that gave an answer, against the hair's
-    gravito-bending number. The dashed line is the value from which on, or up to which, the
-    statement is true. Hairs are drawn from measured distributions of human hair. Made from
-    family.csv.`,
+  headline,
+  reading: `A mark is a hair, drawn from measured distributions of human hair; left is stiff or short, right is limp or long.
+    On the right: the share of hairs for which the statement is true.`,
+  caption: `For every hair that gave an answer, whether a statement is true, against its gravito-bending number. The values
+    behind the answers are in the table. Made from family.csv.`,
 
   rows: rows_of,
 
-  spec(tables, { width, theme }) {
+  spec(tables, { width }) {
     const rows = rows_of(tables);
-    const claims = Object.keys(statements).filter((claim) =>
-      rows.some((row) => row.claim === claim),
-    );
-    const { columns, panel_width, legend } = layout(width, claims.length, {
-      labels: verdicts,
-      above: true,
-    });
+    const shares = shares_of(rows);
+    const names = shares.map(({ statement }) => statement);
+    const label_width = Math.min(330, 0.42 * width);
+    const labels = names.map((name) => lines_of(name, label_width, 6.4));
     const x = log_channel(
       'gravito_bending',
       'gravito-bending number',
       log_extent(rows.map((row) => row.gravito_bending), 6),
     );
-    return panels(
-      claims.map((claim) =>
-        panel(
-          rows.filter((row) => row.claim === claim),
-          claim,
-          { panel_width, legend, theme, x },
-        ),
-      ),
-      columns,
-    );
+    const y = row_channel('statement', names, {
+      labelExpr: `split((${JSON.stringify(
+        Object.fromEntries(names.map((name, i) => [name, labels[i].join('|')])),
+      )})[datum.value], '|')`,
+      labelLineHeight: 12,
+    });
+    const scale = (range) => ({ domain: verdicts, range });
+    const verdict = {
+      field: 'verdict',
+      type: 'nominal',
+      title: 'the statement is',
+      legend: { orient: 'top', direction: 'horizontal' },
+    };
+    return {
+      width: row_width(width, [''], label_width + 90),
+      height: { step: Math.max(36, 12 * Math.max(...labels.map((l) => l.length)) + 6), for: 'position' },
+      layer: [
+        {
+          data: { values: rows },
+          params: [legend_selection('pick_verdict', 'verdict')],
+          mark: { type: 'point', filled: true, size: 45 },
+          encoding: {
+            x,
+            y,
+            yOffset: { field: 'verdict', scale: { domain: verdicts } },
+            color: { ...verdict, scale: scale([blue, orange]) },
+            shape: { ...verdict, scale: scale(['circle', 'triangle-up']) },
+            opacity: dimmed_unless(['pick_verdict'], 0.75),
+            tooltip: tooltips([
+              ['hair', 'hair'],
+              ['value', 'value', '.3g'],
+              ['gravito_bending', 'gravito-bending number', '.3g'],
+              ['kind', 'group'],
+              ['state', 'dry or wet'],
+              ['drive', 'drive'],
+              ['length_m', 'length (m)', '.3g'],
+              ['natural_curvature_per_m', 'natural curvature (1/m)', '.3g'],
+              ['internal_friction_kg_m3_s', 'friction (kg m³/s)', '.2g'],
+            ]),
+          },
+        },
+        row_text(shares, y, 'text', { baseline: 'middle' }),
+      ],
+    };
   },
 
   describe(tables) {
     const rows = rows_of(tables);
-    return `One panel for each of ${distinct(rows.map((row) => row.claim)).length} statements: its
-      value for up to ${distinct(rows.map((row) => row.hair)).length} hairs, log scale, against
-      the gravito-bending number; the mark says whether the statement is true.`;
+    return `One row for each of ${distinct(rows.map((row) => row.claim)).length} statements: up to
+      ${distinct(rows.map((row) => row.hair)).length} hairs against the gravito-bending number; the mark shows whether the
+      statement is true. ${shares_of(rows)
+        .map(({ statement, text }) => `${statement}: ${text}`)
+        .join('; ')}.`;
   },
 };

@@ -1,5 +1,5 @@
 // Figure 12: what moving the rest of a strand rigidly does to its tip.
-import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
+import { distinct, group_by, is_positive, minimum_by, succeeded } from '../src/tables.mjs';
 import { format_number } from '../src/format.mjs';
 import { spaced } from '../src/strand.mjs';
 import {
@@ -15,9 +15,9 @@ import {
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { model_style } from './palette.mjs';
+import { name_style } from './palette.mjs';
 
-const shown_time = 0.1; // s, before the undamped model comes apart
+const shown_time = 0.1; // s, before the undamped model becomes unstable
 const shown_elements = 10; // the source's strands
 
 const rows_of = (tables) =>
@@ -86,12 +86,12 @@ export function transport_findings({ force_transport: rows = [] }) {
         'Without gravity small random motions gain energy within 0.1 s, by these factors: ' +
         `${listed(members, 'energy_growth')} elements.`,
     ),
-    ...[...group_by(of('modes', 'hanging', 'growth_1_s'), (row) => row.youngs_modulus_pa)]
+    ...[...group_by(of('modes', 'hanging', 'growth_per_s'), (row) => row.youngs_modulus_pa)]
       .sort(([a], [b]) => a - b)
       .map(
         ([modulus, members]) =>
           `Hanging at rest, ${format_number(modulus / 1e6)} MPa: small oscillations grow, ` +
-          `at this rate (1/s): ${listed(members, 'growth_1_s')} elements.`,
+          `at this rate (1/s): ${listed(members, 'growth_per_s')} elements.`,
       ),
   ];
 }
@@ -100,10 +100,32 @@ export const force_transport = {
   id: 'force_transport',
   title: 'Letting the rest of the strand move rigidly',
   table: 'force_transport',
+  headline(tables) {
+    const rows = rows_of(tables).filter((row) => row.t_s === shown_time);
+    const scene = rows[0]?.scene;
+    const at = (model, pick) =>
+      minimum_by(
+        rows.filter((row) => row.scene === scene && row.model === model),
+        (row) => pick * row.elements,
+      );
+    const said = ['force_transport', ...distinct(rows.map((row) => row.model))]
+      .filter((model, i, all) => all.indexOf(model) === i && at(model, 1) !== undefined)
+      .slice(0, 2)
+      .map((model) => {
+        const [few, many] = [at(model, 1), at(model, -1)];
+        return (
+          `${spaced(model)} is ${format_number(100 * few.rod_difference_rel, 2)} % off with ${few.elements} elements and ` +
+          `${format_number(100 * many.rod_difference_rel, 2)} % with ${many.elements}`
+        );
+      });
+    return said.length > 0 ? said.join('; ') : 'Distance from the rod';
+  },
+  reading: `Distance of the tip from the tip of the rod, over the length, after the release of a clamped strand without
+    damping; lower is better. A model that converges falls with the number of elements.`,
   caption: `Distance of the tip from the tip of the rod (80 elements of super_helix), over
     the length, after the release of a clamped strand without damping; down is better.
     Left: ${shown_time} s after the release, against the number of elements. Right: against
-    time, ${shown_elements} elements, up to where a run comes apart. force_transport is our
+    time, ${shown_elements} elements, up to where a run becomes unstable. force_transport is our
     reconstruction of a model of the source (each joint leaves out the accelerations of the
     joints beyond it); corde and articulated_chain tend to the rod, it does not. Made from
     force_transport.csv.`,
@@ -112,11 +134,12 @@ export const force_transport = {
 
   spec(tables, { width }) {
     const rows = rows_of(tables);
-    const style = model_style(rows.map((row) => row.method));
+    const style = name_style(rows.map((row) => row.method));
     const scenes = [...group_by(rows, (row) => row.scene)];
     const { columns, panel_width, legend } = layout(width, 2 * scenes.length, {
       columns_max: 2,
       labels: style.domain,
+      above: true,
     });
     const y = log_channel(
       'rod_difference_rel',

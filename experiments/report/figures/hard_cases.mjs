@@ -4,7 +4,17 @@ import { format_time } from '../src/format.mjs';
 import { by_pace, by_tolerance, pace } from '../src/pace.mjs';
 import { spaced } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
-import { best_variants, hard_rows, not_compared, outcomes, rank, survives } from '../src/hard.mjs';
+import { best_at_longest } from './hard_cases_summary.mjs';
+import { row_channel } from './rows.mjs';
+import {
+  best_variants,
+  hard_rows,
+  not_compared,
+  outcome_words,
+  outcomes,
+  rank,
+  survives,
+} from '../src/hard.mjs';
 
 const rows_of = (tables) =>
   best_variants(hard_rows(tables).filter((row) => is_number(row.dt_s))).map((row) => ({
@@ -61,59 +71,81 @@ export function hard_findings(tables) {
   return [...said, ...tolerance_findings(rows.filter(by_tolerance), admitted)];
 }
 
+// Of the one integrator that is drawn; of all where none has a fixed step.
+const shown = (rows, integrator) =>
+  rows.filter((row) => integrator === undefined || row.integrator === integrator);
+
+const steps_of = (rows) => distinct([...rows].sort(by_pace).map((row) => row.step));
+
+// Values of a field, those with the most survivors first.
+const by_survival = (rows, field) =>
+  [...group_by(rows, (row) => row[field])]
+    .map(([name, members]) => [name, members.filter(survives).length])
+    .sort(([, a], [, b]) => b - a)
+    .map(([name]) => name);
+
+function headline(tables) {
+  const { integrator, members, stable, dt_s } = best_at_longest(tables) ?? {};
+  if (integrator === undefined) return 'No fixed step was run';
+  const survivors = [...group_by(members, (row) => row.model)]
+    .map(([model, of]) => ({ model, all: of.length, kept: of.filter(survives).length }))
+    .sort((a, b) => b.kept / b.all - a.kept / a.all || b.all - a.all);
+  const most = Math.max(...survivors.map(({ all }) => all));
+  const tried = survivors.filter(({ all }) => all >= most / 2);
+  const [first] = tried;
+  const last = tried.at(-1);
+  return (
+    `${integrator} at ${format_time(dt_s)}: ${spaced(first.model)} survives ${first.kept} of ` +
+    `${first.all} cases, ${spaced(last.model)} ${last.kept} of ${last.all}; ` +
+    `all models together ${Math.round(100 * stable)} %`
+  );
+}
+
 export const hard_cases = {
   id: 'hard_cases',
-  title: 'Case by case, at each step',
+  title: 'Case by case',
   table: 'hard_cases',
-  caption: `One chart per integrator: hard cases downwards, models across. Each cell is split by time
-    step or tolerance, in the order that stands above the chart. A, dark green: stable and within the accepted error. S, light
-    green: every bound of physics was kept, but the error is larger. N, white: every bound was kept, but there is no
-    reference to compare with. U, orange: a bound broke, or the step's equations found no solution. T, yellow: did not finish
-    within its work. A dash, grey: the model or the integrator does not support the case, and the table gives the reason. The best
-    variant of a model counts (its tangents, its ways to keep lengths). Made from hard_cases.csv and, for the million steps,
-    hard_cases_million_steps.csv.`,
+  headline,
+  reading(tables) {
+    const rows = shown(rows_of(tables), best_at_longest(tables)?.integrator);
+    return (
+      `In each cell, from left to right: ${steps_of(rows).join(', ')}. Rows are hard cases, columns are models, both ` +
+      'with the most survivors first. A, S and N survive: every bound of physics was kept.'
+    );
+  },
+  caption: `The integrator that survives most cases at the longest step; the table has all integrators. Each cell is
+    split by step. A: stable and within the accepted error. S: stable, with a larger error. N: stable, without a reference.
+    U: a bound broke, or the equations of a step found no solution. T: not finished within the work limit. A dash: the model
+    or the integrator does not support the case, and the table gives the reason. The best variant of a model counts. Made from
+    hard_cases.csv and, for the million steps, hard_cases_million_steps.csv.`,
 
   rows: rows_of,
 
   spec(tables, { width, theme }) {
-    const rows = this.rows(tables);
-    const models = distinct(rows.map((row) => row.name));
+    const best = best_at_longest(tables)?.integrator;
+    const rows = shown(rows_of(tables), best);
+    const [models, cases] = ['name', 'situation'].map((field) => by_survival(rows, field));
+    const steps = steps_of(rows);
     const known = outcomes.filter(([name]) => rows.some((row) => row.outcome === name));
-    const room = Math.max(28, Math.min(58, Math.floor((width - 250) / models.length)));
-    const chart = ([integrator, members]) => {
-      const steps = distinct(members.toSorted(by_pace).map((row) => row.step));
-      return {
-      title: {
-        text: spaced(integrator),
-        subtitle: `from left to right in each cell: ${steps.join(', ')}`,
-        subtitleColor: theme.muted,
+    const room = Math.max(12 * steps.length, Math.min(52, Math.floor((width - 210) / models.length)));
+    const cell = {
+      x: {
+        field: 'name',
+        type: 'nominal',
+        title: null,
+        scale: { domain: models, paddingInner: 0.1 },
+        axis: { orient: 'top', labelAngle: -40, labelLimit: 0, domain: false, ticks: false },
       },
+      xOffset: { field: 'step', scale: { domain: steps, paddingInner: 0 } },
+      y: row_channel('situation', cases, { grid: false }),
+    };
+    return {
       width: { step: room, for: 'position' },
-      height: { step: 19 },
-      data: { values: members },
-      encoding: {
-        x: {
-          field: 'name',
-          type: 'nominal',
-          title: null,
-          scale: { domain: models, paddingInner: 0.12 },
-          axis: {
-            orient: 'top',
-            labelAngle: -45,
-            labelLimit: 0,
-            domain: false,
-            ticks: false,
-          },
-        },
-        xOffset: { field: 'step', scale: { domain: steps, paddingInner: 0 } },
-        y: {
-          field: 'situation',
-          type: 'nominal',
-          title: null,
-          sort: distinct(rows.map((row) => row.situation)),
-          axis: { labelLimit: 0, domain: false, ticks: false },
-        },
-      },
+      height: { step: 18 },
+      // The slanted name of the last model reaches beyond its column.
+      padding: { left: 4, top: 4, right: 44, bottom: 4 },
+      data: { values: rows },
+      encoding: cell,
       layer: [
         {
           mark: { type: 'rect', stroke: theme.axis, strokeWidth: 0.3 },
@@ -127,15 +159,15 @@ export const hard_cases = {
                 range: known.map(([, , look]) => (look ? look.fill ?? theme.background : theme.grid)),
               },
               legend: {
-                orient: 'top',
+                orient: 'bottom',
                 direction: 'horizontal',
-                columns: width > 640 ? 6 : 2,
+                columns: width > 640 ? 3 : 1,
                 symbolType: 'square',
                 symbolSize: 220,
                 symbolStrokeWidth: 0.5,
                 symbolStrokeColor: theme.axis,
                 labelExpr: `{${known
-                  .map(([name, mark]) => `'${name}': '${mark}: ${name}'`)
+                  .map(([name, mark]) => `'${name}': '${mark}: ${outcome_words[name]}'`)
                   .join(', ')}}[datum.value]`,
               },
             },
@@ -146,11 +178,11 @@ export const hard_cases = {
               ['integrator', 'integrator'],
               ['step', 'step'],
               ['outcome', 'outcome'],
-              ['measure_name', 'what is looked at'],
-              ['measure', 'its value', '.3g'],
-              ['limit', 'must not exceed', '.3g'],
+              ['measure_name', 'measure'],
+              ['measure', 'value', '.3g'],
+              ['limit', 'limit', '.3g'],
               ['error_pct', 'tip error (%)', '.3g'],
-              ['why', 'why no better'],
+              ['why', 'reason'],
             ]),
           },
         },
@@ -166,13 +198,6 @@ export const hard_cases = {
           encoding: { text: { field: 'letter' } },
         })),
       ],
-      };
-    };
-    return {
-      concat: [...group_by(rows, (row) => row.integrator)].map(chart),
-      columns: 1,
-      spacing: 26,
-      resolve: { scale: { color: 'shared' }, legend: { color: 'shared' } },
     };
   },
 
@@ -185,7 +210,7 @@ export const hard_cases = {
     return `${distinct(rows.map((row) => row.case)).length} hard cases,
       ${distinct(rows.map((row) => row.model)).length} models,
       ${distinct(rows.map((row) => row.integrator)).length} integrators, steps or tolerances:
-      ${distinct(rows.toSorted(by_pace).map((row) => row.step)).join(', ')}:
+      ${distinct([...rows].sort(by_pace).map((row) => row.step)).join(', ')}:
       ${told.join(', ')}.`;
   },
 };

@@ -1,21 +1,20 @@
-// Figure 15: error against time on the swinging strand, every family of methods that the
-// tables hold in one picture.
-import { distinct, group_by, is_positive, succeeded, swing_rows } from '../src/tables.mjs';
+// Error against time on the swinging strand: tress, other simulators, position-based methods.
+import { distinct, group_by, is_positive, minimum_by, succeeded, swing_rows } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
-import { swing_levels, swing_runs } from '../src/strand.mjs';
+import { spaced, swing_levels, swing_runs } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
   legend_selection,
   log_channel,
   log_extent,
-  marked_line,
   panels,
   series_channels,
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { family_name, model_style } from './palette.mjs';
+import { blue, family_name, name_style, orange, purple, sky } from './palette.mjs';
+import { percent_axis, time_channel } from './rows.mjs';
 import { front_of } from './swing.mjs';
 
 // Position-based dynamics and block descent, each on its own; other methods by their family.
@@ -24,11 +23,12 @@ export const newest = ['xpbd', 'xpbd_bdf2', 'vbd', 'vbd_augmented', 'stable_coss
 const method_family = (integrator) =>
   newest.includes(integrator) ? integrator : family_name(integrator);
 
-const peers_run_s = 2; // simulated time of a run of other simulators
+const other_simulators_run_s = 2; // simulated time of a run of other simulators
 
 const ours = (tables, kind) =>
   swing_runs(swing_rows(tables), kind).map((row) => ({
     family: method_family(row.integrator),
+    elements: row.elements,
     how: `${row.model}, ${row.integrator}, ${row.elements} elements`,
     error: row.error_rel,
     wall_s: row.wall_s_per_sim_s,
@@ -48,26 +48,28 @@ function sweeps(tables) {
     }));
 }
 
-// Of ./tress peers, where it has been run. What is in single precision has no fine run of its
+// Of ./tress other simulators, where it has been run. What is in single precision has no fine run of its
 // own to be compared with.
 const measured = (tables, column) =>
-  (tables.peers ?? [])
+  (tables.other_simulators ?? [])
     .filter(succeeded)
     .filter((row) => column === 'total_error_rel' || row.precision !== 'single')
     .map((row) => ({
-      family: row.peer,
+      family: row.simulator,
+      elements: row.elements,
+      engine: true,
       how: `${row.method}, steps of ${format_time(row.dt_s)}`,
       error: row[column],
-      wall_s: row.wall_s / peers_run_s,
+      wall_s: row.wall_s / other_simulators_run_s,
     }));
 
 const published = (tables) =>
-  (tables.peers_swing ?? []).flatMap((row) =>
-    swing_levels.map(({ error, peer }) => ({
+  (tables.other_simulators_swing ?? []).flatMap((row) =>
+    swing_levels.map(({ error, simulator }) => ({
       family: 'others, published',
-      how: row.peer,
+      how: row.simulator,
       error,
-      wall_s: row[peer] / peers_run_s,
+      wall_s: row[simulator] / other_simulators_run_s,
       loose: true,
     })),
   );
@@ -98,75 +100,159 @@ export function newest_findings(tables) {
   });
 }
 
-// What is worth drawing: a useless answer and rounding are not.
-const drawn = ({ error }) => error >= 1e-6 && error <= 2;
+// Larger errors are useless answers, smaller ones are rounding: neither is drawn.
+const drawn = ({ error }) => error >= 3e-4 && error <= 0.6;
 
-// Runs that no other of their family beats in both error and time.
-const fronts = (tables, kind) =>
-  [...group_by(family_runs(tables, kind).filter(drawn), (run) => run.family).values()]
-    .flatMap((runs) =>
-      runs[0].loose
-        ? runs
-        : front_of(runs.map((run) => ({ ...run, error_rel: run.error }))),
-    )
-    .map((run) => ({ ...run, error_pct: 100 * run.error, wall_ms: 1e3 * run.wall_s }));
+const position_based_engines = ['jolt'];
+const is_position_based = ({ family }) =>
+  position_based_engines.includes(family) ||
+  newest.some((name) => family === name || family.startsWith(`${name},`));
 
-function panel(rows, title, { style, legend, panel_width, y }) {
-  const layers = marked_line(rows, {
-    x: log_channel('error_pct', `${title} error (%)`, log_extent(rows.map((r) => r.error_pct), 6)),
-    y,
-    series: series_channels('family', 'method', style, legend),
-    opacity: dimmed_unless(['pick_family']),
-    tooltip: tooltips([
-      ['family', 'method'],
-      ['how', 'run'],
-      ['error_pct', `${title} error (%)`, '.3g'],
-      ['wall_ms', 'wall time per simulated second (ms)', '.3g'],
-    ]),
-  });
-  layers[0].data = { values: rows.filter((row) => !row.loose) };
-  layers[0].encoding.order = { field: 'error_pct', type: 'quantitative' };
-  return { title: `${title} error`, width: panel_width, height: 340, layer: layers };
+const ours_name = 'tress';
+const rigid_name = 'rigid-body engines';
+const position_name = 'position-based methods, block descent';
+const group_of = (run) =>
+  is_position_based(run) ? position_name : run.engine ? rigid_name : ours_name;
+
+// The elements that every engine was run with, where that is one number.
+const links_of = (runs) => {
+  const [links, ...more] = distinct(
+    runs.filter((run) => group_of(run) === rigid_name).map((run) => run.elements),
+  );
+  return more.length === 0 ? links : undefined;
+};
+
+const target = 0.02;
+
+function groups_of(tables) {
+  const runs = family_runs(tables, 'total').map((run) => ({
+    ...run,
+    group: group_of(run),
+    error_rel: run.error,
+    error_pct: 100 * run.error,
+    wall_ms: 1e3 * run.wall_s,
+  }));
+  const links = links_of(runs);
+  const of = (name) => runs.filter(({ group }) => group === name);
+  const same = of(ours_name).filter((run) => run.elements === links);
+  return [
+    [ours_name, of(ours_name)],
+    [`${ours_name}, ${links} elements as in the engines`, same],
+    [rigid_name, of(rigid_name)],
+    [position_name, of(position_name)],
+  ].filter(([, members]) => members.length > 0);
+}
+
+const rows_of = (tables) =>
+  (tables.block_descent ?? []).length === 0
+    ? []
+    : groups_of(tables).flatMap(([series, members]) =>
+        members.filter(drawn).map((run) => ({ ...run, series })),
+      );
+
+const cheapest = (members) =>
+  minimum_by(
+    members.filter((run) => run.error <= target),
+    (run) => run.wall_s,
+  );
+
+// "A tip error of 2 % takes 0.9 ms with tress (20 elements: 2.1 ms), 24 ms with ..."
+function headline(tables) {
+  const groups = new Map(groups_of(tables));
+  const best_of = (name) => cheapest(groups.get(name) ?? []);
+  const [ours_best, same, rigid, position] = [
+    ours_name,
+    [...groups.keys()].find((name) => name.startsWith(`${ours_name}, `)),
+    rigid_name,
+    position_name,
+  ].map(best_of);
+  const time = (run) => format_time(run.wall_s);
+  const said = [
+    ours_best &&
+      `${time(ours_best)} with tress` + (same ? ` (${same.elements} elements: ${time(same)})` : ''),
+    rigid && `${time(rigid)} with the fastest rigid-body engine (${spaced(rigid.family)})`,
+    position && `${time(position)} with the fastest position-based method (${spaced(position.family)})`,
+  ].filter(Boolean);
+  const never = !position && groups.has(position_name) ? '; no position-based method reaches it' : '';
+  return `A tip error of ${format_number(100 * target)} % takes ${said.join(', ')}${never}`;
 }
 
 export const newest_methods = {
   id: 'newest_methods',
-  title: 'The newest methods and the others',
+  title: 'Error against time, with other simulators',
   table: 'block_descent',
-  caption: `Error of the tip of the swinging strand against the time for a simulated second,
-    one core; down and left is better. Left: against the continuous rod. Right: against fine
-    steps of the same elements. Lines join the runs of a family that none of its others
-    beats. Tables are of different machines: between them trust orders of magnitude. Made
-    from work_precision.csv, block_descent.csv, peers_swing.csv and, where it is there,
-    peers.csv.`,
+  headline,
+  reading: `A strand swung by its clamp. Wall time of one core for a simulated second; lower left is better.
+    A line joins the best runs of a group, dots are its other runs.`,
+  caption: `Error of the tip of the swinging strand, over its length and against the continuous rod, against the time for
+    a simulated second. The rigid-body engines and Jolt's rods have a fixed number of links, whose error no shorter step
+    reduces. Tables are of different machines: between them trust orders of magnitude. Made from work_precision.csv,
+    block_descent.csv and, where it exists, other_simulators.csv.`,
 
-  rows: (tables) =>
-    (tables.block_descent ?? []).length === 0
-      ? []
-      : ['total', 'time'].flatMap((kind) => fronts(tables, kind)),
+  rows: rows_of,
 
-  spec(tables, { width }) {
-    const all = this.rows(tables);
-    const style = model_style(all.map((row) => row.family));
-    const kinds = ['total', 'time'].filter((kind) => fronts(tables, kind).length > 0);
-    const { columns, panel_width, legend } = layout(width, kinds.length, {
-      columns_max: 2,
-      labels: style.domain,
-      above: true,
-    });
-    const y = log_channel(
+  spec(tables, { width, theme }) {
+    const rows = rows_of(tables);
+    const fronts = [...group_by(rows, (row) => row.series).values()].flatMap(front_of);
+    const style = name_style(rows.map((row) => row.series));
+    const hues = [blue, sky, orange, purple];
+    style.colours = style.domain.map((_, i) => hues[i]);
+    const engines = distinct(
+      rows.filter((row) => row.series === rigid_name).map((row) => spaced(row.family)),
+    );
+    const { columns, panel_width, legend } = layout(width, 1, { labels: style.domain, above: true });
+    const x = time_channel(
       'wall_ms',
-      'wall time per simulated second (ms)',
-      log_extent(all.map((row) => row.wall_ms)),
+      'wall time per simulated second',
+      log_extent(rows.map((row) => row.wall_ms)),
     );
-    const list = kinds.map((kind) =>
-      panel(fronts(tables, kind), kind, { style, legend, panel_width, y }),
+    const y = log_channel(
+      'error_pct',
+      'tip error / length',
+      log_extent([...rows.map((row) => row.error_pct), 100 * target]),
+      percent_axis,
     );
-    return panels(with_parameters(list, [legend_selection('pick_family', 'family')]), columns);
+    const labels = { labelExpr: `datum.value === '${rigid_name}' ? datum.value + ': ${engines.join(', ')}' : datum.value` };
+    const series = series_channels('series', null, style, { ...legend, ...labels, columns: width > 700 ? 2 : 1 });
+    const opacity = (value) => dimmed_unless(['pick_series'], value);
+    const tooltip = tooltips([
+      ['family', 'method'],
+      ['how', 'run'],
+      ['error_pct', 'tip error (%)', '.3g'],
+      ['wall_ms', 'wall time per simulated second (ms)', '.3g'],
+    ]);
+    const plot = {
+      width: panel_width,
+      height: 360,
+      layer: [
+        {
+          data: { values: rows },
+          mark: { type: 'point', filled: true, size: 18, aria: false },
+          encoding: { x, y, ...series, strokeDash: undefined, opacity: opacity(0.35), tooltip },
+        },
+        {
+          data: { values: [{ error_pct: 100 * target }] },
+          mark: { type: 'rule', color: theme.muted, strokeDash: [4, 3] },
+          encoding: { y },
+        },
+        {
+          data: { values: fronts },
+          mark: { type: 'line', strokeWidth: 2.4 },
+          encoding: { x, y, ...series, shape: undefined, opacity: opacity(1) },
+        },
+        {
+          data: { values: fronts },
+          mark: { type: 'point', filled: true, size: 75 },
+          encoding: { x, y, ...series, strokeDash: undefined, opacity: opacity(1), tooltip },
+        },
+      ],
+    };
+    return panels(with_parameters([plot], [legend_selection('pick_series', 'series')]), columns);
   },
 
   describe(tables) {
-    return `Wall time against error of the tip, log-log, for
-      ${distinct(this.rows(tables).map((row) => row.family)).length} families of methods.`;
+    const rows = rows_of(tables);
+    return `Tip error against wall time, log-log, ${rows.length} runs in
+      ${distinct(rows.map((row) => row.series)).length} groups.`;
   },
 };

@@ -1,6 +1,29 @@
-// Colours and marks of the series. Hue says the family (Okabe-Ito based, safe for
-// colour-blind readers, legible on white and on near-black); shape and dash tell its
-// members apart.
+// Colours and marks of the series.
+
+// Eight colours that people with deuteranopia and protanopia tell apart as well, on the light
+// and on the dark background (tests/report/test_figures.mjs measures both). The last one, grey,
+// is the colour of what a figure does not single out.
+export const palette = [
+  '#0083c8',
+  '#d15900',
+  '#3ab784',
+  '#8c3184',
+  '#d5a321',
+  '#57b4e8',
+  '#7a4a1f',
+  '#777c83',
+];
+export const [blue, orange, green, purple, gold, sky, brown, grey] = palette;
+
+// The series of all names that a figure does not single out.
+export const others = 'others';
+
+// Maps a name to itself, or to `others` where it is not among the first of `ranked`.
+export function folded(ranked, most = palette.length) {
+  const names = [...new Set(ranked)];
+  const kept = new Set(names.length > most ? names.slice(0, most - 1) : names);
+  return (name) => (kept.has(name) ? name : others);
+}
 
 const polygon = (corners, radius = 1, turn = 0) =>
   Array.from({ length: corners }, (_, k) => {
@@ -55,24 +78,24 @@ const dashes = [
 export const families = [
   {
     name: 'explicit, fixed step',
-    colours: ['#1F7FC2', '#6CC0EE'],
+    colour: blue,
     members: ['explicit_euler', 'symplectic_euler', 'velocity_verlet', 'rk4'],
   },
   {
     name: 'explicit, adaptive',
-    colours: ['#009E73', '#4FC9A4'],
+    colour: sky,
     members: ['gsl_rkf45', 'gsl_rk8pd', 'arkode_erk'],
   },
   {
     name: 'Adams',
-    colours: ['#9C8500', '#C9B03A'],
+    colour: green,
     members: ['gsl_msadams', 'cvode_adams'],
   },
   {
     name: 'implicit, fixed step',
-    colours: ['#D55E00', '#E69F00'],
+    colour: orange,
     members: [
-      'semi_implicit_euler',
+      'linearly_implicit_euler',
       'backward_euler',
       'implicit_midpoint',
       'linearly_implicit_midpoint',
@@ -83,18 +106,18 @@ export const families = [
   },
   {
     name: 'implicit, step or tolerance',
-    colours: ['#8C5A2B', '#C79A6B'],
+    colour: purple,
     members: ['tr_bdf2', 'esdirk43'],
   },
   {
     name: 'implicit, adaptive',
-    colours: ['#B6407F', '#DB8DBB'],
+    colour: gold,
     members: ['cvode_bdf', 'arkode_dirk', 'ida', 'gsl_bsimp'],
   },
-  { name: 'structure preserving', colours: ['#7A7F87'], members: ['rattle'] },
+  { name: 'structure preserving', colour: brown, members: ['rattle'] },
   {
     name: 'position-based',
-    colours: ['#4C5BD4', '#8FA6D8'],
+    colour: grey,
     members: [
       'predictor_corrector',
       'xpbd',
@@ -104,7 +127,7 @@ export const families = [
       'stable_cosserat_rods',
     ],
   },
-  { name: 'other', colours: ['#8E6CC9', '#B9A3E0'], members: [] },
+  { name: 'other', colour: '#1d9aa0', members: [] },
 ];
 
 // 'ida' matches 'ida', 'ida_index3', 'ida (order 2)'; the longest member name wins.
@@ -122,52 +145,43 @@ function family_of(name) {
 
 export const family_name = (name) => families[family_of(name).index].name;
 
-// {domain, shapes} for the families of integrator names: a shape each.
+const styled = (domain, colour_of) => ({
+  domain,
+  colours: domain.map((name, i) => colour_of(name, i)),
+  shapes: domain.map((_, i) => shapes[i % shapes.length]),
+  dashes: domain.map((_, i) => dashes[i % dashes.length]),
+});
+
+// The styles below are {domain, colours, shapes, dashes}: a colour and a shape for each name.
+
+// Families of integrators, each in its own colour in every figure.
 export function family_style(names) {
-  const used = new Set(names.map(family_name));
-  const domain = families.map(({ name }) => name).filter((name) => used.has(name));
-  return { domain, shapes: domain.map((_, i) => shapes[i]) };
+  const used = new Set(names);
+  return styled(
+    families.map(({ name }) => name).filter((name) => used.has(name)),
+    (name) => families.find((family) => family.name === name).colour,
+  );
 }
 
-// {domain, colours, shapes, dashes} for integrator names, ordered by family.
-export function series_style(names) {
-  const sorted = [...new Set(names)]
-    .map((name) => ({ name, ...family_of(name) }))
-    .sort(
-      (a, b) => a.index - b.index || a.member - b.member || a.name.localeCompare(b.name),
-    );
-  const used = new Map();
-  const entries = sorted.map(({ name, index }) => {
-    const k = used.get(index) ?? 0;
-    used.set(index, k + 1);
-    const { colours } = families[index];
-    return { name, colour: colours[k % colours.length], dash: dashes[k % dashes.length] };
-  });
-  return {
-    domain: entries.map((e) => e.name),
-    colours: entries.map((e) => e.colour),
-    shapes: entries.map((_, i) => shapes[i % shapes.length]),
-    dashes: entries.map((e) => e.dash),
-  };
+// Names in the order given, `others` last and grey. A figure has no more names than there are
+// colours; beyond that the shape alone tells two names apart.
+export function name_style(names) {
+  const known = [...new Set(names)].filter((name) => name !== others);
+  return styled(names.includes(others) ? [...known, others] : known, (name, i) =>
+    name === others ? grey : palette[i % palette.length],
+  );
 }
 
-// {domain, range} of dashes for `compared` solvers, recursive solid; the other solvers of
-// `rows` had no rival and stay solid.
-export function solver_dashes(compared, rows) {
-  const ranked = [...compared].sort(
-    (a, b) => (b === 'recursive') - (a === 'recursive') || a.localeCompare(b),
+// Integrators, ordered by family.
+export const series_style = (names) =>
+  name_style(
+    [...names]
+      .map((name) => ({ name, ...family_of(name) }))
+      .sort(
+        (a, b) => a.index - b.index || a.member - b.member || a.name.localeCompare(b.name),
+      )
+      .map(({ name }) => name),
   );
-  const alone = [...new Set(rows.map((row) => row.solver))].filter(
-    (solver) => !compared.includes(solver),
-  );
-  return {
-    domain: [...ranked, ...alone],
-    range: [
-      ...ranked.map((_, i) => dashes[i % dashes.length]),
-      ...alone.map(() => dashes[0]),
-    ],
-  };
-}
 
 const formulation_order = [
   'acceleration',
@@ -178,17 +192,7 @@ const formulation_order = [
   'rattle',
   'parametric',
 ];
-const formulation_colours = [
-  '#D55E00',
-  '#E69F00',
-  '#0072B2',
-  '#009E73',
-  '#B6407F',
-  '#56B4E9',
-  '#7A7F87',
-  '#8E6CC9',
-  '#9C8500',
-];
+const formulation_colours = [orange, gold, blue, green, purple, sky, grey, brown];
 
 export function formulation_style(names) {
   const rank = (name) => {
@@ -198,68 +202,17 @@ export function formulation_style(names) {
   const domain = [...new Set(names)].sort(
     (a, b) => rank(a) - rank(b) || a.localeCompare(b),
   );
-  return {
-    domain,
-    colours: domain.map((_, i) => formulation_colours[i % formulation_colours.length]),
-  };
+  return styled(domain, (_, i) => formulation_colours[i % formulation_colours.length]);
 }
 
-// Fills of cells that are told apart by lightness too (CIE L* 30, 53, 72, 88 in this
+// Fills of cells that are told apart by lightness too (CIE L* 30, 53, 68, 79 in this
 // order), and the colour of text on them.
 export const cell_fills = {
-  dark: { fill: '#00523a', text: '#ffffff' },
-  strong: { fill: '#d9541e', text: '#ffffff' },
-  middle: { fill: '#d9a93b', text: '#1d2127' },
-  light: { fill: '#b5e6d1', text: '#1d2127' },
+  dark: { fill: '#00523a', text: '#fefefe' },
+  strong: { fill: '#d9541e', text: '#fefefe' },
+  middle: { fill: '#cf9d2c', text: '#111111' },
+  light: { fill: '#8cd0b1', text: '#111111' },
 };
 
-// Sequential ramp for max order 1..5 (light to dark is not used: it must read on both
-// themes).
+// Ramp of the strands in the player, light to dark is not used: it must read on both themes.
 export const order_colours = ['#F2B134', '#E8743B', '#C9366F', '#8E3FB0', '#4C5BD4'];
-
-// Solvers and tangents of the strand models; a later match of the same family takes the
-// next shade.
-const method_families = [
-  {
-    match: /(banded|klu)/,
-    colours: ['#56B4E9', '#9C8500', '#C9366F', '#7A7F87', '#4C5BD4', '#8C6D31'],
-  },
-  { match: /^recursive(?!.*exact)/, colours: ['#1F7FC2', '#6CC0EE', '#8FA6D8'] },
-  { match: /^composite(?!.*exact)/, colours: ['#E69F00', '#C9B03A', '#9C8500'] },
-  { match: /^sparse(?!.*exact)/, colours: ['#8E6CC9', '#B9A3E0'] },
-  { match: /^(?!articulated).*exact/, colours: ['#009E73', '#4FC9A4', '#7A9B2E'] },
-  { match: /^articulated/, colours: ['#B6407F', '#DB8DBB', '#8E5A75'] },
-  { match: /^less implicit/, colours: ['#D55E00'] },
-  { match: /^/, colours: ['#7A7F87', '#B0B5BC'] },
-];
-
-// {domain, colours, shapes, dashes} for method names, ordered by family.
-export function method_style(names) {
-  const family = (name) => method_families.findIndex(({ match }) => match.test(name));
-  const entries = method_families.flatMap(({ colours }, index) =>
-    [...new Set(names)]
-      .filter((name) => family(name) === index)
-      .map((name, k) => ({
-        name,
-        colour: colours[k % colours.length],
-        dash: dashes[k % dashes.length],
-      })),
-  );
-  return {
-    domain: entries.map((e) => e.name),
-    colours: entries.map((e) => e.colour),
-    shapes: entries.map((_, i) => shapes[i % shapes.length]),
-    dashes: entries.map((e) => e.dash),
-  };
-}
-
-// The same for models: a colour of its own for each, solid lines.
-export function model_style(names) {
-  const domain = [...new Set(names)];
-  return {
-    domain,
-    colours: domain.map((_, i) => formulation_colours[(i + 2) % formulation_colours.length]),
-    shapes: domain.map((_, i) => shapes[i % shapes.length]),
-    dashes: domain.map(() => dashes[0]),
-  };
-}

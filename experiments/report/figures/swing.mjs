@@ -1,12 +1,11 @@
-// Figure 8: wall time against tip error on the swinging strand, beside other simulators.
-import { distinct, group_by, is_positive, swing_rows } from '../src/tables.mjs';
-import { fastest_at, spaced, swing_levels, swing_runs } from '../src/strand.mjs';
-import { swing_finding } from '../src/findings/swing.mjs';
+// Wall time against tip error on the swinging strand, compared with other simulators.
+import { distinct, group_by, is_positive, minimum_by, swing_rows } from '../src/tables.mjs';
+import { format_time } from '../src/format.mjs';
+import { fastest_at, swing_levels, swing_runs } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
   legend_selection,
-  lines_of,
   log_channel,
   log_extent,
   panels,
@@ -14,7 +13,8 @@ import {
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { series_style } from './palette.mjs';
+import { family_name, family_style } from './palette.mjs';
+import { simulator_points, ranking } from './swing_ranking.mjs';
 
 // The runs of one series that no other run of it beats in both error and time.
 export const front_of = (runs) =>
@@ -28,11 +28,19 @@ export const front_of = (runs) =>
       ),
   );
 
-// What is worth drawing: a useless answer and rounding are not.
+// Larger errors are useless answers, smaller ones are rounding: neither is drawn.
 const error_range = [1e-7, 1];
 
 const fronts = (tables, kind) =>
-  [...group_by(swing_runs(swing_rows(tables), kind), (row) => row.series).values()]
+  [
+    ...group_by(
+      swing_runs(swing_rows(tables), kind).map((row) => ({
+        ...row,
+        family: family_name(row.integrator),
+      })),
+      (row) => row.family,
+    ).values(),
+  ]
     .flatMap(front_of)
     .filter(
       ({ error_rel }) =>
@@ -44,18 +52,6 @@ const fronts = (tables, kind) =>
       wall_ms: 1e3 * row.wall_s,
     }));
 
-const peer_points = (tables) =>
-  (tables.peers_swing ?? []).flatMap((row) =>
-    swing_levels
-      .filter(({ peer }) => is_positive(row[peer]))
-      .map(({ error, name, peer }) => ({
-        peer: row.peer,
-        level: name,
-        error_pct: 100 * error,
-        wall_ms: 1e3 * row[peer],
-      })),
-  );
-
 const targets = swing_levels.map(({ error, target_s }) => ({
   error_pct: 100 * error,
   wall_ms: 1e3 * target_s,
@@ -65,8 +61,8 @@ const targets = swing_levels.map(({ error, target_s }) => ({
 function error_panel(title, rows, extra, { y_extent, x_extent, style, legend, ...look }) {
   const x = log_channel('error_pct', 'tip error (%)', x_extent);
   const y = log_channel('wall_ms', 'wall time (ms)', y_extent);
-  const series = series_channels('series', 'integrator', style, legend);
-  const opacity = dimmed_unless(['pick_integrator']);
+  const series = series_channels('family', 'family of integrators', style, legend);
+  const opacity = dimmed_unless(['pick_family']);
   const halo = { fontSize: 11, align: 'left', dx: 11, baseline: 'middle' };
   const text = (mark) => ({
     data: { values: extra.targets },
@@ -76,7 +72,7 @@ function error_panel(title, rows, extra, { y_extent, x_extent, style, legend, ..
   return {
     title,
     width: look.panel_width,
-    height: 340,
+    height: 260,
     layer: [
       {
         data: { values: rows },
@@ -91,7 +87,7 @@ function error_panel(title, rows, extra, { y_extent, x_extent, style, legend, ..
         },
       },
       {
-        data: { values: extra.peers },
+        data: { values: extra.other_simulators },
         mark: {
           type: 'tick',
           orient: 'horizontal',
@@ -103,7 +99,7 @@ function error_panel(title, rows, extra, { y_extent, x_extent, style, legend, ..
           x,
           y,
           tooltip: tooltips([
-            ['peer', 'simulator'],
+            ['simulator', 'simulator'],
             ['level', 'at an error of'],
             ['wall_ms', 'wall time (ms)', '.3g'],
           ]),
@@ -150,136 +146,41 @@ function error_panel(title, rows, extra, { y_extent, x_extent, style, legend, ..
   };
 }
 
-// Every simulator as a row, sorted by the time it needs for 1 %; ours coloured among them.
-function ranking(tables, { width, style, theme }) {
-  const runs = swing_runs(swing_rows(tables), 'time');
-  const points = peer_points(tables).map((p) => ({
-    ...p,
-    name: p.peer,
-    colour: theme.axis,
-  }));
-  const fastest = [...group_by(runs, (row) => row.series)]
-    .map(([series, members]) => ({ series, members, best: fastest_at(members, 1e-2) }))
-    .filter(({ best }) => best !== undefined)
-    .sort((a, b) => a.best.wall_s - b.best.wall_s)
-    .slice(0, 3);
-  for (const { series, members } of fastest) {
-    for (const { error, name: level } of swing_levels) {
-      const best = fastest_at(members, error);
-      if (best === undefined) continue;
-      points.push({
-        name: `ours: ${series}`,
-        colour: style.colours[style.domain.indexOf(series)],
-        level,
-        wall_ms: 1e3 * best.wall_s,
-      });
-    }
-  }
-  // Labels stand left of where x begins, or above their row where there is no room. They
-  // are text inside the plot, so that both rows of the figure start at the same edge.
-  const narrow = width < 720;
-  const plot_width = Math.floor(width - 84);
-  const longest = Math.max(...points.map((p) => p.name.length));
-  const label_room = narrow ? 0 : Math.min(6.6 * longest + 12, 0.45 * width);
-  const rank = ([, members]) =>
-    Math.min(
-      ...members.map((p) => p.wall_ms + (p.level === swing_levels[0].name ? 0 : 1e9)),
-    );
-  const order = [...group_by(points, (p) => p.name)]
-    .sort((a, b) => rank(a) - rank(b))
-    .map(([name, members]) => ({
-      name,
-      low: Math.min(...members.map((p) => p.wall_ms)),
-      high: Math.max(...members.map((p) => p.wall_ms)),
-    }));
-  const x_of = log_channel(
-    'wall_ms',
-    'wall time for 2 simulated seconds (ms)',
-    log_extent(
-      points.map((p) => p.wall_ms),
-      5,
-    ),
-  );
-  const x = { ...x_of, scale: { ...x_of.scale, range: [label_room, plot_width] } };
-  const y = {
-    field: 'name',
-    type: 'nominal',
-    title: null,
-    axis: null,
-    scale: { domain: order.map((row) => row.name) },
-  };
-  const row_y = narrow ? { yOffset: 8 } : {};
-  const label_place = narrow
-    ? { x: -56, align: 'left', dy: -8, fontSize: 10 }
-    : { x: label_room - 10, align: 'right', fontSize: 11, clip: true };
-  const marks = [...group_by(points, (p) => `${p.colour}|${p.level}`).values()];
-  return {
-    title: {
-      text: lines_of(
-        'Published simulators (grey, another machine) and our fastest three: filled 1 %, hollow 0.1 %',
-        width - 90,
-        7.6,
-      ),
-    },
-    width: plot_width,
-    height: { step: narrow ? 32 : 20 },
-    layer: [
-      {
-        data: { values: order },
-        mark: { type: 'rule', color: theme.axis, strokeWidth: 1.2, ...row_y },
-        encoding: { x: { ...x, field: 'low' }, x2: { field: 'high' }, y },
-      },
-      {
-        data: { values: order },
-        mark: { type: 'text', baseline: 'middle', color: theme.text, ...label_place },
-        encoding: { y, text: { field: 'name' } },
-      },
-      ...marks.map((values) => ({
-        data: { values },
-        mark: {
-          type: 'point',
-          filled: values[0].level === swing_levels[0].name,
-          color: values[0].colour,
-          size: 60,
-          strokeWidth: 1.8,
-          ...row_y,
-        },
-        encoding: {
-          x,
-          y,
-          tooltip: tooltips([
-            ['name', 'simulator'],
-            ['level', 'at an error of'],
-            ['wall_ms', 'wall time (ms)', '.3g'],
-          ]),
-        },
-      })),
-    ],
-  };
-}
-
 export const swing = {
   id: 'swing',
   title: 'A swinging strand at a stated error, with other simulators',
   table: 'work_precision',
-  finding: swing_finding,
-  caption: `Wall time of 2 simulated seconds on one core against the tip error (root mean
-    square over the run, over the strand's length); down and left is better. Each line
-    joins the runs of one integrator that none of its other runs beats in both. Grey ticks
+  headline(tables) {
+    const [level] = swing_levels;
+    const best = fastest_at(swing_runs(swing_rows(tables), 'time'), level.error);
+    const simulator = minimum_by(
+      (tables.other_simulators_swing ?? []).filter((row) => is_positive(row[level.simulator])),
+      (row) => row[level.simulator],
+    );
+    const ours = best
+      ? `A time error of ${level.name} takes ${format_time(best.wall_s)} with ${best.series}`
+      : `No run reaches a time error of ${level.name}`;
+    return simulator
+      ? `${ours}; published for the fastest other simulator (${simulator.simulator}): ${format_time(simulator[level.simulator])}`
+      : ours;
+  },
+  reading: `Wall time of one core for 2 simulated seconds against the tip error; lower left is better. A line joins the runs of
+    a family that none of its others beats. Time error: against fine steps of the same elements. Total error: against the rod.`,
+  caption: `Tip error: root mean square over the run, over the length. Grey ticks
     at 1 % and 0.1 %, and the rows below, are other simulators as published: time error
-    against their own finest run at 20 elements, measured on another machine of the same
+    against their own finest run with 20 elements, measured on another machine of the same
     class, so trust ratios. Large rings are the targets, 20 ms and 50 ms. Errors under
     1e-5 % and over 100 % are not drawn. Made from
-    work_precision.csv and peers_swing.csv; failed runs are in the tables only.`,
+    work_precision.csv and other_simulators_swing.csv; failed runs are in the tables only.`,
 
   rows: (tables) => [...fronts(tables, 'time'), ...fronts(tables, 'total')],
 
   spec(tables, { width, theme }) {
-    const style = series_style(this.rows(tables).map((row) => row.series));
-    const peers = peer_points(tables);
+    const style = family_style(this.rows(tables).map((row) => row.family));
+    const other_simulators = simulator_points(tables);
     const kinds = [
-      ['time', 'Time error', { peers, targets }],
-      ['total', 'Total error', { peers: [], targets: [] }],
+      ['time', 'Time error', { other_simulators, targets }],
+      ['total', 'Total error', { other_simulators: [], targets: [] }],
     ].filter(([kind]) => fronts(tables, kind).length > 0);
     const { columns, panel_width, legend } = layout(width, kinds.length, {
       columns_max: 2,
@@ -288,7 +189,7 @@ export const swing = {
     });
     const list = kinds.map(([kind, title, extra]) => {
       const rows = fronts(tables, kind);
-      const all = [...rows, ...extra.peers, ...extra.targets];
+      const all = [...rows, ...extra.other_simulators, ...extra.targets];
       return error_panel(title, rows, extra, {
         x_extent: log_extent(
           all.map((r) => r.error_pct),
@@ -302,10 +203,10 @@ export const swing = {
       });
     });
     const errors = panels(
-      with_parameters(list, [legend_selection('pick_integrator', 'series')]),
+      with_parameters(list, [legend_selection('pick_family', 'family')]),
       columns,
     );
-    if (peers.length === 0) return errors;
+    if (other_simulators.length === 0) return errors;
     // Two rows of their own, so that neither stretches the other's columns.
     return {
       vconcat: [errors, ranking(tables, { width, style, theme })],
@@ -317,8 +218,8 @@ export const swing = {
   describe(tables) {
     const rows = this.rows(tables);
     return `Wall time in milliseconds against tip error in percent, log-log, one line for
-      each of ${distinct(rows.map((r) => spaced(r.series))).length} integrators, the
-      targets marked, and ${(tables.peers_swing ?? []).length} published configurations of
+      each of ${distinct(rows.map((r) => r.family)).length} families of integrators, the
+      targets marked, and ${(tables.other_simulators_swing ?? []).length} published configurations of
       other simulators.`;
   },
 };

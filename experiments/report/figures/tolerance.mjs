@@ -1,91 +1,110 @@
-// Figure: the time error that a method with error control achieves, over the tolerance
-// asked for; one panel per model and scene.
-import { bounds, control_finding, control_rows } from '../src/findings/tolerance.mjs';
+// The time error that a method with error control reaches, over the tolerance; one row per
+// problem.
+import { bounds, control_rows } from '../src/findings/tolerance.mjs';
 import { distinct, group_by, problem_name } from '../src/tables.mjs';
 import { spaced } from '../src/strand.mjs';
 import {
   dimmed_unless,
-  layout,
   legend_selection,
   log_channel,
   log_extent,
-  marked_line,
-  panels,
   series_channels,
   tooltips,
-  with_parameters,
 } from './common.mjs';
 import { series_style } from './palette.mjs';
+import { row_channel, row_width } from './rows.mjs';
 
-const panel_name = (row) =>
+const row_name = (row) =>
   spaced(row.model) === problem_name(row)
     ? problem_name(row)
     : `${problem_name(row)}: ${spaced(row.model)}`;
 
-const bound_lines = (y, theme) => ({
-  data: { values: Object.values(bounds).map((achieved_over_asked) => ({ achieved_over_asked })) },
-  mark: { type: 'rule', stroke: theme.muted, strokeWidth: 1, strokeDash: [3, 2] },
-  encoding: { y },
-});
+const rows_of = (tables) =>
+  control_rows(tables).map((row) => ({ ...row, name: row_name(row) }));
+
+function headline(tables) {
+  const said = [...group_by(rows_of(tables), (row) => row.integrator)].map(
+    ([integrator, members]) =>
+      `${integrator} in ${members.filter((row) => row.error_over_tolerance <= bounds.most).length} of ${members.length}`,
+  );
+  return `The error stays below the tolerance: ${said.join(' runs, ')} runs`;
+}
 
 export const tolerance = {
   id: 'tolerance',
   title: 'Error over tolerance',
   table: 'work_precision',
-  finding: control_finding,
-  caption: `Largest time error at the compared instants, of
-    a point over the length, divided by the tolerance; the reference has the same elements.
-    At 1 the error is the tolerance; dashed lines mark that and a twentieth of it. A flat line is an
-    error in proportion to the tolerance. Click a legend entry to keep that method and dim the
-    other. Made from work_precision.csv; failed runs, and errors below ten times the gap of the
+  headline,
+  reading: `One row per problem, one mark per tolerance. Solid line: the error equals the tolerance; dashed: a twentieth of
+    it. Marks close together are an error in proportion to the tolerance.`,
+  caption: `Largest time error at the compared instants, of a point over the length, divided by the tolerance; the
+    reference has the same elements. Made from work_precision.csv; failed runs, and errors below ten times the gap of the
     references, are in the table only.`,
 
-  rows: control_rows,
+  rows: rows_of,
 
   spec(tables, { width, theme }) {
-    const rows = this.rows(tables);
-    const groups = [...group_by(rows, panel_name)];
-    const style = series_style(rows.map((row) => row.integrator));
-    const { columns, panel_width, legend } = layout(width, groups.length, {
-      labels: style.domain,
-    });
-    const x = log_channel('tolerance', 'tolerance', log_extent(rows.map((r) => r.tolerance), 3));
-    const ratios = rows.map((row) => row.achieved_over_asked);
-    const y = log_channel(
-      'achieved_over_asked',
-      'error over tolerance',
-      log_extent([...ratios, bounds.least, bounds.most], 4),
+    const rows = rows_of(tables);
+    const names = distinct(rows.map((row) => row.name));
+    const methods = series_style(rows.map((row) => row.integrator));
+    const ratios = rows.map((row) => row.error_over_tolerance);
+    const x = log_channel(
+      'error_over_tolerance',
+      'error / tolerance',
+      log_extent([...ratios, bounds.least, bounds.most], 6),
     );
-    const series = series_channels('integrator', 'integrator', style, legend);
+    const y = row_channel('name', names);
+    const yOffset = { field: 'integrator', scale: { domain: methods.domain } };
     const opacity = dimmed_unless(['pick_integrator']);
-    const tooltip = tooltips([
-      ['scene', 'scene'],
-      ['model', 'model'],
-      ['integrator', 'integrator'],
-      ['tolerance', 'tolerance'],
-      ['achieved_over_asked', 'error over tolerance', '.3f'],
-      ['steps', 'steps'],
-      ['rejected', 'rejected'],
-    ]);
-    const list = groups.map(([name, members]) => ({
-      title: name,
-      width: panel_width,
-      height: 170,
+    const series = series_channels('integrator', 'integrator', methods, {
+      orient: 'top',
+      direction: 'horizontal',
+    });
+    const bound = (value, strokeDash) => ({
+      data: { values: [{ error_over_tolerance: value }] },
+      mark: { type: 'rule', color: theme.text, strokeWidth: 1.1, strokeDash },
+      encoding: { x },
+    });
+    return {
+      width: row_width(width, names, 8),
+      height: { step: 24, for: 'position' },
       layer: [
-        ...marked_line(members, { x, y, series, opacity, tooltip }),
-        bound_lines(y, theme),
+        {
+          data: { values: rows },
+          params: [legend_selection('pick_integrator', 'integrator')],
+          mark: { type: 'line', strokeWidth: 1.4 },
+          encoding: { x, y, yOffset, color: series.color, detail: { field: 'name' }, opacity },
+        },
+        {
+          data: { values: rows },
+          mark: { type: 'point', filled: true, size: 48 },
+          encoding: {
+            x,
+            y,
+            yOffset,
+            ...series,
+            strokeDash: undefined,
+            opacity,
+            tooltip: tooltips([
+              ['name', 'problem'],
+              ['integrator', 'integrator'],
+              ['position_tol_rel', 'tolerance'],
+              ['error_over_tolerance', 'error / tolerance', '.3f'],
+              ['steps', 'steps'],
+              ['rejected', 'rejected'],
+            ]),
+          },
+        },
+        bound(bounds.most, [1, 0]),
+        bound(bounds.least, [3, 3]),
       ],
-    }));
-    return panels(
-      with_parameters(list, [legend_selection('pick_integrator', 'integrator')]),
-      columns,
-    );
+    };
   },
 
   describe(tables) {
-    const rows = this.rows(tables);
-    return `Log-log charts of the time error over the tolerance against the tolerance, for
-      ${distinct(rows.map(panel_name)).length} pairs of scene and model and
+    const rows = rows_of(tables);
+    return `Time error over tolerance, log scale, one row for each of
+      ${distinct(rows.map((row) => row.name)).length} pairs of scene and model, for
       ${distinct(rows.map((r) => r.integrator)).length} methods.`;
   },
 };

@@ -1,8 +1,9 @@
 // Every strand model against every published test: a matrix of errors.
-import { distinct, group_by, is_number, is_set } from '../src/tables.mjs';
+import { distinct, group_by, is_number, is_set, minimum_by } from '../src/tables.mjs';
 import { format_number } from '../src/format.mjs';
 import { spaced, variant_name } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
+import { row_channel } from './rows.mjs';
 import { cell_fills } from './palette.mjs';
 
 export const answered = (row) => is_number(row.error_rel);
@@ -31,7 +32,7 @@ function cell(members) {
     ...shared,
     outcome: within && !lost ? 'within' : judged.length > 0 ? 'outside' : 'not judged',
     error_pct: 100 * worst.error_rel,
-    tolerance_pct: 100 * worst.tolerance,
+    tolerance_pct: 100 * worst.accepted_error_rel,
     at: `${format_number(worst.parameter)}, ${worst.elements} elements`,
     label:
       worst.error_rel < 1e-4
@@ -55,20 +56,48 @@ export const validation_cells = (tables) =>
 // Name in the legend, fill and colour of the number; what does not apply is left grey.
 const outcomes = {
   within: ['within the accepted error', cell_fills.dark],
-  outside: ['outside, or a run without an answer', cell_fills.strong],
+  outside: ['outside the accepted error', cell_fills.strong],
   'not judged': ['outside, with fewer elements than it is judged at', cell_fills.light],
-  'no answer': ['\u2013: no answer found', cell_fills.middle],
+  'no answer': ['\u2013: no solution, or a run that failed', cell_fills.middle],
   'does not apply': ['empty: does not apply to this model', undefined],
 };
 
+// By model: its tests that count, and those within the accepted error.
+const scores_of = (tables) =>
+  [...group_by(validation_cells(tables), (row) => row.name)]
+    .map(([name, members]) => {
+      const told = members.filter(
+        (row) => !['does not apply', 'not judged'].includes(row.outcome),
+      );
+      return { name, told, within: told.filter((row) => row.outcome === 'within') };
+    })
+    .filter(({ told }) => told.length > 0);
+
+// Cells as they are drawn: a failed run among others within the error is no error.
+export const drawn_cells = (tables) =>
+  validation_cells(tables).map((row) => (row.lost ? { ...row, outcome: 'no answer' } : row));
+
+// "456 of 499 pairs of model and test are within the accepted error; best: ..., worst: ..."
+function headline(tables) {
+  const scores = scores_of(tables).map(({ name, told, within }) => ({
+    name,
+    told: told.length,
+    within: within.length,
+  }));
+  if (scores.length === 0) return 'No test has a result';
+  const total = (field) => scores.reduce((sum, score) => sum + score[field], 0);
+  const part = (score) => score.within / score.told;
+  const best = minimum_by(scores, (score) => -part(score));
+  const worst = minimum_by(scores, part);
+  const text = ({ name, told, within }) => `${name} meets ${within} of ${told}`;
+  return (
+    `${total('within')} of ${total('told')} pairs of model and test are within the accepted error; ` +
+    `${text(best)}${worst === best ? '' : `, ${text(worst)}`}`
+  );
+}
+
 export function validation_findings(tables) {
-  const cells = validation_cells(tables);
-  const by_model = [...group_by(cells, (row) => row.name)].map(([name, members]) => {
-    const told = members.filter(
-      (row) => !['does not apply', 'not judged'].includes(row.outcome),
-    );
-    return { name, told, within: told.filter((row) => row.outcome === 'within') };
-  });
+  const by_model = scores_of(tables);
   const sentence = ({ name, told, within }) => {
     const wrong = told.filter((row) => row.outcome !== 'within');
     const list = wrong
@@ -85,7 +114,6 @@ export function validation_findings(tables) {
   };
   return by_model
     .sort((a, b) => b.within.length - a.within.length)
-    .filter(({ told }) => told.length > 0)
     .map(sentence);
 }
 
@@ -93,44 +121,41 @@ export const validation = {
   id: 'validation',
   title: 'Every model against every test',
   table: 'validation',
-  caption: `Each row is a strand model, each column a published test of slender rods. The number
-    is the largest error in per cent of what the test measures, over the parameters of the test, at
-    the numbers of elements at which it is judged. Grey: the model's kinematics do not know
-    what the test is about (a planar model and twist, say); the table gives the reason.
+  headline,
+  reading: `Rows are published tests of slender rods, columns are models. A number is the largest error in per cent of the
+    quantity that the test measures, over the parameters of the test.`,
+  caption: `Each row is a published test of slender rods, each column a strand model. The number
+    is the largest error in per cent of the measured quantity, over the parameters of the test, at
+    the numbers of elements at which it is judged. Grey: the model's kinematics do not have the
+    degrees of freedom of the test (a planar model has no twist); the table gives the reason.
     Made from validation.csv.`,
 
-  rows: validation_cells,
+  rows: drawn_cells,
 
   spec(tables, { width, theme }) {
-    const rows = validation_cells(tables);
-    const tests = distinct(rows.map((row) => row.test));
+    const rows = drawn_cells(tables);
+    const models = distinct(rows.map((row) => row.name));
     const known = Object.entries(outcomes).filter(([id]) =>
       rows.some((row) => row.outcome === id),
     );
-    const step = Math.max(28, Math.min(64, Math.floor((width - 215) / tests.length)));
+    const step = Math.max(14, Math.min(58, Math.floor((width - 210) / models.length)));
     const x = {
-      field: 'test',
-      type: 'nominal',
-      title: null,
-      sort: tests,
-      axis: { orient: 'top', labelAngle: -50, labelLimit: 0, domain: false, ticks: false },
-    };
-    const y = {
       field: 'name',
       type: 'nominal',
       title: null,
-      sort: distinct(rows.map((row) => row.name)),
-      axis: { labelLimit: 0, domain: false, ticks: false },
+      scale: { domain: models },
+      axis: { orient: 'top', labelAngle: -40, labelLimit: 0, domain: false, ticks: false },
     };
+    const y = row_channel('test', distinct(rows.map((row) => row.test)), { grid: false });
     return {
       width: { step },
-      height: { step: 26 },
-      // The slanted name of the last test reaches beyond its column.
+      height: { step: 18 },
+      // The slanted name of the last model reaches beyond its column.
       padding: { left: 4, top: 4, right: 44, bottom: 4 },
       data: { values: rows },
       layer: [
         {
-          mark: { type: 'rect', cornerRadius: 3, stroke: theme.background, strokeWidth: 2 },
+          mark: { type: 'rect', stroke: theme.background, strokeWidth: 1.5 },
           encoding: {
             x,
             y,
@@ -145,7 +170,7 @@ export const validation = {
               legend: {
                 orient: 'bottom',
                 direction: 'horizontal',
-                columns: width > 600 ? 3 : 1,
+                columns: width > 600 ? 2 : 1,
                 symbolType: 'square',
                 symbolSize: 220,
                 symbolStrokeWidth: 0,
@@ -169,7 +194,7 @@ export const validation = {
           transform: [{ filter: { field: 'outcome', equal: id } }],
           mark: {
             type: 'text',
-            fontSize: 9.5,
+            fontSize: step < 26 ? 8 : 10,
             color: look?.text ?? theme.muted,
             fontWeight: 600,
             tooltip: null,
@@ -181,7 +206,7 @@ export const validation = {
   },
 
   describe(tables) {
-    const rows = validation_cells(tables);
+    const rows = drawn_cells(tables);
     const count = (id) => rows.filter((row) => row.outcome === id).length;
     return `Matrix of ${distinct(rows.map((row) => row.name)).length} models and
       ${distinct(rows.map((row) => row.test)).length} tests: ${count('within')} within the accepted

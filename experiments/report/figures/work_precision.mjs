@@ -1,13 +1,15 @@
-// Figure 4: work-precision diagrams, one panel per scene, Pareto front marked.
+// Work-precision diagrams: error against time, one panel per problem, by family of integrators.
 import {
   distinct,
   group_by,
   is_positive,
   is_set,
+  minimum_by,
   problem_name,
   problem_rows,
   succeeded,
 } from '../src/tables.mjs';
+import { format_number } from '../src/format.mjs';
 import {
   dimmed_unless,
   layout,
@@ -19,82 +21,41 @@ import {
   tooltips,
   with_parameters,
 } from './common.mjs';
-import { model_style, series_style, solver_dashes } from './palette.mjs';
+import { families, family_name, family_style } from './palette.mjs';
+import { front_of } from './swing.mjs';
 
-// Guides of error ~ time^-p from the lower left corner: what order p looks like.
-function order_guides(members) {
-  const [left, right] = log_extent(members.map((r) => r.wall_s_per_sim_s)).domain.map(
-    Math.log10,
-  );
-  const [bottom, top] = log_extent(members.map((r) => r.error_rel)).domain.map(
-    Math.log10,
-  );
-  const height = 0.3 * (top - bottom);
-  const reach = 0.24 * (right - left);
-  return [1, 2, 4].flatMap((order) => {
-    const run = Math.min(reach, height / order);
-    const end = bottom + height + 0.02 * (top - bottom) - order * run;
-    const start = {
-      x: 10 ** (left + 0.02 * (right - left)),
-      y: 10 ** (bottom + height + 0.02 * (top - bottom)),
-    };
-    return [
-      { order, ...start, i: 0 },
-      {
-        order,
-        x: 10 ** (Math.log10(start.x) + run),
-        y: 10 ** end,
-        i: 1,
-        text: `${order}`,
-      },
-    ];
-  });
-}
+// Runs whose error is known: a run closer to the reference than that is accurate proves nothing.
+const answered = (tables) =>
+  problem_rows(tables)
+    .filter(
+      (row) =>
+        succeeded(row) &&
+        is_positive(row.error_rel) &&
+        is_positive(row.wall_s_per_sim_s) &&
+        !is_set(row.below_reference),
+    )
+    .map((row) => ({
+      ...row,
+      problem: problem_name(row),
+      family: family_name(row.integrator),
+      formulation: row.formulation ?? '',
+      solver: row.solver ?? '',
+      wall_s: row.wall_s_per_sim_s,
+      wall_ms: 1e3 * row.wall_s_per_sim_s,
+    }));
 
-// The solvers of the problems that were solved with several; none when each had one.
-export function compared_solvers(rows) {
-  const groups = group_by(rows, (row) => `${problem_name(row)}|${row.model}`);
-  return distinct(
-    [...groups.values()].flatMap((members) => {
-      const solvers = group_by(members, (row) => row.integrator);
-      const several = [...solvers.values()].some(
-        (runs) => distinct(runs.map((row) => row.solver)).length > 1,
-      );
-      return several ? members.map((row) => row.solver) : [];
-    }),
-  ).filter(Boolean);
-}
+// One integrator on several models: the models are what such a problem tells apart.
+const compares_models = (members) =>
+  distinct(members.map((row) => row.integrator)).length === 1 &&
+  distinct(members.map((row) => row.model)).length > 1;
 
-// One curve: same integrator under the same settings, from loose to tight.
-const curve = (row) =>
-  [
-    row.model,
-    row.integrator,
-    row.solver,
-    row.elements,
-    row.max_order,
-    row.error_kind,
-    row.formulation,
-  ].join('|');
+const of_kind = (tables, models) =>
+  [...group_by(answered(tables), (row) => row.problem)]
+    .filter(([, members]) => compares_models(members) === models)
+    .flatMap(([, members]) => members);
 
-// A method that takes both has a curve for each.
-const driven_name = ({ integrator, tolerance }) =>
-  is_positive(tolerance) ? `${integrator} (tolerance)` : integrator;
-
-export function pareto_rows(members) {
-  if (members.some((row) => is_set(row.pareto)))
-    return members.filter((r) => is_set(r.pareto));
-  return members.filter(
-    (row) =>
-      !is_set(row.below_reference) &&
-      !members.some(
-        (other) =>
-          other !== row &&
-          other.error_rel <= row.error_rel &&
-          other.wall_s_per_sim_s < row.wall_s_per_sim_s,
-      ),
-  );
-}
+export const family_rows = (tables) => of_kind(tables, false);
+export const model_rows = (tables) => of_kind(tables, true);
 
 const counts = [
   ['integrator', 'integrator'],
@@ -104,215 +65,134 @@ const counts = [
   ['elements', 'elements'],
   ['dt_s', 'dt (s)'],
   ['rtol', 'rtol'],
-  ['tolerance', 'tolerance'],
+  ['position_tol_rel', 'tolerance'],
   ['max_order', 'max order'],
-  ['error_kind', 'error'],
   ['error_rel', 'relative error', '.3e'],
   ['scd', 'correct digits'],
-  ['wall_s_per_sim_s', 'wall time per simulated s', '.3e'],
-  ['wall_s', 'wall time (s)', '.3e'],
+  ['wall_ms', 'wall time per simulated second (ms)', '.3g'],
   ['steps', 'steps'],
   ['rejected', 'rejected'],
   ['residuals', 'residuals'],
   ['linearizations', 'linearizations'],
   ['solves', 'solves'],
   ['order_fit', 'fitted order'],
-  ['pareto_text', 'on the Pareto front'],
-  ['below', 'below the reference'],
 ];
 
-// `by`: the field that colour and shape tell apart.
-function panel(problem, members, { panel_width, legend, style, theme, dash, by }) {
-  const x = log_channel(
-    'wall_s_per_sim_s',
-    'wall time per simulated second (s/s)',
-    log_extent(
-      members.map((row) => row.wall_s_per_sim_s),
-      5,
-    ),
-  );
-  const y = log_channel(
-    'error_rel',
-    'relative error',
-    log_extent(members.map((r) => r.error_rel)),
-  );
-  const series = {
-    ...series_channels(by, by, style, legend),
-    ...(dash ? { strokeDash: dash } : {}),
-  };
-  const opacity = dimmed_unless([`pick_${by}`]);
-  const front = pareto_rows(members);
-  const guides = order_guides(members);
-  const guide_xy = { x: { ...x, field: 'x' }, y: { ...y, field: 'y' } };
-  return {
-    title: problem,
-    width: panel_width,
-    height: 330,
-    layer: [
-      {
-        data: { values: members },
-        mark: { type: 'line' },
-        encoding: {
-          x,
-          y,
-          ...series,
-          shape: undefined,
-          strokeWidth: { condition: { test: 'datum.rival', value: 0.9 }, value: 1.6 },
-          detail: { field: 'curve' },
-          order: { field: 'rank', type: 'quantitative' },
-          opacity,
+// Panels of problems: of each series the runs that no other of it beats, joined, and all others
+// small. `by`: the field of the series.
+export function work_panels(rows, { by, title, style, width, height, columns_max }) {
+  const groups = [...group_by(rows, (row) => row.problem)];
+  const { columns, panel_width, legend } = layout(width, groups.length, {
+    columns_max,
+    labels: style.domain,
+    above: true,
+    least: 220,
+  });
+  const series = series_channels(by, title, style, legend);
+  const pick = `pick_${by}`;
+  const list = groups.map(([problem, members]) => {
+    const x = log_channel(
+      'wall_ms',
+      'time per simulated second (ms)',
+      log_extent(members.map((row) => row.wall_ms), 5),
+    );
+    const y = log_channel(
+      'error_rel',
+      'relative error',
+      log_extent(members.map((row) => row.error_rel), 6),
+    );
+    const front = [...group_by(members, (row) => row[by]).values()].flatMap(front_of);
+    const opacity = (value) => dimmed_unless([pick], value);
+    return {
+      title: problem,
+      width: panel_width,
+      height,
+      layer: [
+        {
+          data: { values: members },
+          mark: { type: 'point', filled: true, size: 9, aria: false },
+          encoding: {
+            x,
+            y,
+            color: series.color,
+            opacity: opacity(0.35),
+            tooltip: tooltips(counts),
+          },
         },
-      },
-      {
-        data: { values: front },
-        mark: {
-          type: 'line',
-          strokeWidth: 7,
-          stroke: theme.axis,
-          strokeOpacity: 0.35,
-          strokeCap: 'round',
-          strokeJoin: 'round',
+        {
+          data: { values: front },
+          mark: { type: 'line', strokeWidth: 1.6 },
+          encoding: { x, y, color: series.color, opacity: opacity(1) },
         },
-        encoding: { x, y, order: { field: 'wall_s_per_sim_s', type: 'quantitative' } },
-      },
-      ...['no', 'yes'].map((below) => ({
-        data: { values: members.filter((row) => row.below === below) },
-        mark: { type: 'point', strokeWidth: 1.6, filled: below === 'no' },
-        encoding: {
-          x,
-          y,
-          ...series,
-          strokeDash: undefined,
-          size: { condition: { test: 'datum.rival', value: 16 }, value: 70 },
-          opacity,
-          tooltip: tooltips(counts),
+        {
+          data: { values: front },
+          mark: { type: 'point', filled: true, size: 42 },
+          encoding: {
+            x,
+            y,
+            ...series,
+            strokeDash: undefined,
+            opacity: opacity(1),
+            tooltip: tooltips(counts),
+          },
         },
-      })),
-      {
-        data: { values: front },
-        mark: {
-          type: 'point',
-          shape: 'circle',
-          size: 170,
-          strokeWidth: 1.5,
-          stroke: theme.text,
-          filled: false,
-        },
-        encoding: { x, y },
-      },
-      {
-        data: { values: guides },
-        mark: { type: 'line', stroke: theme.muted, strokeWidth: 1, strokeDash: [3, 2] },
-        encoding: { ...guide_xy, detail: { field: 'order' }, order: { field: 'i' } },
-      },
-      {
-        data: { values: guides.filter((g) => g.i === 1) },
-        mark: { type: 'text', align: 'left', dx: 3, fontSize: 10, color: theme.muted },
-        encoding: { ...guide_xy, text: { field: 'text' } },
-      },
-    ],
-  };
+      ],
+    };
+  });
+  return panels(with_parameters(list, [legend_selection(pick, by)]), columns);
 }
 
-// One integrator on several models: the models are what such a problem tells apart.
-const compares_models = (members) =>
-  distinct(members.map((row) => row.integrator)).length === 1 &&
-  distinct(members.map((row) => row.model)).length > 1;
+const level = 1e-4;
 
-function problem_panels(groups, { by, style, solvers, rows, width, theme }) {
-  const { columns, panel_width, legend } = layout(width, groups.length, {
-    columns_max: 2,
-    labels: style.domain,
+// "For an error of 1e-4, explicit, adaptive is the cheapest family on 5 of 7 problems, ..."
+function headline(tables) {
+  const groups = [...group_by(family_rows(tables), (row) => row.problem)];
+  const winners = groups.flatMap(([, members]) => {
+    const reached = members.filter((row) => row.error_rel <= level);
+    return reached.length > 0 ? [minimum_by(reached, (row) => row.wall_s).family] : [];
   });
-  const compared = by === 'integrator' && solvers.length > 0;
-  const dash = compared && {
-    field: 'solver',
-    type: 'nominal',
-    title: 'linear solver',
-    scale: solver_dashes(solvers, rows),
-    legend: { ...legend, values: solvers, symbolType: 'stroke', symbolSize: 500 },
-  };
-  // Solvers give one error at different times: the first in full, its rivals thin.
-  const rivals = dash ? dash.scale.domain.slice(1, solvers.length) : [];
-  return panels(
-    with_parameters(
-      groups.map(([problem, members]) =>
-        panel(
-          problem,
-          members.map((row) => ({ ...row, rival: rivals.includes(row.solver) })),
-          { panel_width, legend, style, theme, dash, by },
-        ),
-      ),
-      [legend_selection(`pick_${by}`, by)],
-    ),
-    columns,
-    { dashes: dash ? 'shared' : 'independent' },
+  if (winners.length === 0) return `No run reaches a relative error of ${format_number(level)}`;
+  const ranked = [...group_by(winners, (name) => name)].sort((a, b) => b[1].length - a[1].length);
+  const [[first, { length }], ...rest] = ranked;
+  const also = rest.map(([name, { length: count }]) => `“${name}” on ${count}`).join(', ');
+  return (
+    `For an error of ${format_number(level)}, “${first}” methods are the cheapest on ${length} of ` +
+    `${winners.length} problems${also === '' ? '' : `, ${also}`}`
   );
 }
 
 export const work_precision = {
   id: 'work_precision',
-  title: 'What accuracy costs in time',
+  title: 'Error against time',
   table: 'work_precision',
-  caption: `Relative error against wall time per simulated second; down and left is
-    better. Each line is one integrator from loose to tight; in a panel of one integrator on
-    several models, one model at one number of elements. Ringed points joined by the
-    grey band are the Pareto front: nothing else is both faster and more accurate. Hollow
-    points lie below the accuracy of the reference and prove nothing. The dashed fan shows
-    the slopes of orders 1, 2 and 4. Where one problem was solved with several linear
-    solvers, dashes tell them apart and all but the first are thin. Click a legend entry to keep that integrator and dim
-    the others. Made from work_precision.csv; failed runs are in the table only.`,
+  headline,
+  reading: `One panel per problem, one colour per family of integrators; lower left is better. A line joins the runs of a
+    family that no other of its runs beats in both, small dots are its other runs.`,
+  caption: `Relative error against wall time per simulated second. Runs that agree with the reference better than the
+    references agree with each other are left out. The integrators of each family: ${families
+      .filter(({ members }) => members.length > 0)
+      .map(({ name, members }) => `${name}: ${members.join(', ')}`)
+      .join('; ')}. Made from work_precision.csv; failed runs are in the table only.`,
 
-  rows: (tables) =>
-    problem_rows(tables)
-      .filter(
-        (row) =>
-          succeeded(row) &&
-          is_positive(row.error_rel) &&
-          is_positive(row.wall_s_per_sim_s),
-      )
-      .map((row) => ({
-        ...row,
-        integrator: driven_name(row),
-        formulation: row.formulation ?? '',
-        solver: row.solver ?? '',
-        curve: curve({ ...row, integrator: driven_name(row) }),
-        below: is_set(row.below_reference) ? 'yes' : 'no',
-        pareto_text: is_set(row.pareto) ? 'yes' : 'no',
-        rank: -Math.log10(row.rtol ?? row.tolerance ?? row.dt_s ?? row.error_rel),
-      })),
+  rows: family_rows,
 
-  spec(tables, { width, theme }) {
-    const rows = this.rows(tables);
-    const solvers = compared_solvers(rows);
-    const groups = [...group_by(rows, problem_name)];
-    const kinds = [
-      { by: 'integrator', groups: groups.filter(([, members]) => !compares_models(members)) },
-      { by: 'model', groups: groups.filter(([, members]) => compares_models(members)) },
-    ].filter((kind) => kind.groups.length > 0);
-    const list = kinds.map(({ by, groups }) => {
-      const members = groups.flatMap(([, group]) => group);
-      const names = members.map((row) => row[by]);
-      const style = by === 'model' ? model_style(names) : series_style(names);
-      return problem_panels(groups, { by, style, solvers, rows, width, theme });
+  spec(tables, { width }) {
+    const rows = family_rows(tables);
+    return work_panels(rows, {
+      by: 'family',
+      title: 'family of integrators',
+      style: family_style(rows.map((row) => row.family)),
+      width,
+      height: 165,
+      columns_max: 3,
     });
-    return list.length === 1
-      ? list[0]
-      : {
-          vconcat: list,
-          spacing: 36,
-          resolve: {
-            scale: { color: 'independent', shape: 'independent', strokeDash: 'independent' },
-            legend: { color: 'independent', shape: 'independent', strokeDash: 'independent' },
-          },
-        };
   },
 
   describe(tables) {
-    const rows = this.rows(tables);
+    const rows = family_rows(tables);
     return `Log-log work-precision diagrams for
-      ${distinct(rows.map((r) => r.scene)).length} scenes and
-      ${distinct(rows.map((r) => r.integrator)).length} integrators: relative error against
-      wall time per simulated second, with the Pareto front marked.`;
+      ${distinct(rows.map((r) => r.problem)).length} problems and
+      ${distinct(rows.map((r) => r.integrator)).length} integrators in
+      ${distinct(rows.map((r) => r.family)).length} families.`;
   },
 };

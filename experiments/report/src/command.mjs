@@ -1,5 +1,5 @@
 // report.mjs RESULTS [--out FILE] [--no-figures]: one self-contained page, one SVG per
-// figure beside the CSVs. A file that cannot be used is a warning on stderr and a gap on
+// figure next to the CSVs. A file that cannot be used is a warning on stderr and a gap on
 // the page.
 import { existsSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -25,7 +25,7 @@ export const sources = TRESS_SOURCES;
 const usage = `usage: ./tress film PAGE-OR-RUN ADDRESS OUT [options]
   PAGE-OR-RUN   a page that ./tress report wrote, or one scene as simulate writes it,
                 results/scenes/NAME.json
-  ADDRESS       what is seen, as the page's own address says it: 'scene=NAME&view=-60,15,1&
+  ADDRESS       what is seen, as in the address of the page: 'scene=NAME&view=-60,15,1&
                 colour=hair'; '' is the first scene as it opens
   OUT           film.webm, or a new or empty folder for 00000.png, 00001.png ...
   --size W,H    pixels, even numbers for a film (default 1280,720)

@@ -36,9 +36,9 @@ export function format_time(seconds) {
 
 // The steps of a run, given or chosen with error control; a table may know their mean.
 export function format_steps(row, time = format_time) {
-  if (typeof row.tolerance !== 'number') return time(row.dt_s);
+  if (typeof row.position_tol_rel !== 'number') return time(row.dt_s);
   const mean = row.mean_step_s > 0 ? `, mean step ${format_time(row.mean_step_s)}` : '';
-  return `adaptive (tolerance ${format_number(row.tolerance)}${mean})`;
+  return `adaptive (tolerance ${format_number(row.position_tol_rel)}${mean})`;
 }
 
 // Two numbers where the result of a run is extrapolated from them.

@@ -15,6 +15,15 @@ export const outcomes = [
   ['unstable', 'U', cell_fills.strong],
   ['refused', '\u2013', undefined],
 ];
+// What figures call them.
+export const outcome_words = {
+  'stable and accurate': 'stable and accurate',
+  stable: 'stable, inaccurate',
+  [not_compared]: 'stable, no reference',
+  'not finished': 'work limit reached',
+  unstable: 'unstable',
+  refused: 'not supported',
+};
 export const rank = ({ outcome }) => outcomes.findIndex(([name]) => name === outcome);
 export const survives = ({ outcome }) => outcome.startsWith('stable');
 
@@ -27,7 +36,7 @@ const same_run = (a, b) =>
   !by_tolerance(a);
 
 // Every row with the outcome that its error supports. A quick table cuts the million steps
-// // short: these rows have the number of their steps in `cut`, and those of the whole table come
+// short: these rows have the number of their steps in `cut`, and those of the whole table come
 // after them.
 export function hard_rows({ hard_cases = [], hard_cases_million_steps: whole = [] }) {
   const quick = hard_cases.filter(is_long);

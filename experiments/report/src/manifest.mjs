@@ -120,7 +120,7 @@ export function manifest_html(tables, warnings) {
   const bare = Object.keys(tables).filter((name) => tables[name].manifest === undefined);
   return [
     made.length === 0
-      ? '<p>No manifest (.meta.json) lies beside the tables.</p>'
+      ? '<p>No manifest (.meta.json) lies next to the tables.</p>'
       : '<div class="table-box" tabindex="0" role="region" aria-label="How each table was made">' +
         `<table class="facts"><thead><tr><th scope="col">table</th>${facts
           .map(([label]) => `<th scope="col">${label}</th>`)

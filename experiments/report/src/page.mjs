@@ -1,8 +1,8 @@
 // The text of the page: tabs, sections, findings, places for figures and tables.
-import { cost_findings } from '../figures/cost_of_accuracy.mjs';
 import { cost_by_model_findings } from '../figures/cost_by_model.mjs';
 import { family_findings } from '../figures/family.mjs';
-import { descent_findings, map_findings } from '../figures/block_descent.mjs';
+import { descent_findings } from '../figures/block_descent.mjs';
+import { map_findings } from '../figures/cosserat_map.mjs';
 import { transport_findings } from '../figures/force_transport.mjs';
 import { hard_findings } from '../figures/hard_cases.mjs';
 import { model_step_findings } from '../figures/model_steps.mjs';
@@ -12,13 +12,14 @@ import { validation_findings } from '../figures/validation.mjs';
 import { figures, figure_spec } from '../figures/all.mjs';
 import { paper_theme, paper_width } from '../figures/common.mjs';
 import { escape_html } from './format.mjs';
+import { cost_findings } from './findings/cost.mjs';
 import {
   boundary_sentences,
   drift_answer,
   drift_findings,
   recovery_sentences,
 } from './findings/drift.mjs';
-import { scaling_findings } from './findings/scaling.mjs';
+import { scaling_finding, scaling_findings } from './findings/scaling.mjs';
 import { stability_answer, stability_findings } from './findings/stability.mjs';
 import { swing_answer, swing_findings } from './findings/swing.mjs';
 import { control_findings } from './findings/tolerance.mjs';
@@ -56,6 +57,7 @@ const measurements = [
     tables: [],
   },
   { figure: 'work_precision', findings: work_findings, tables: ['work_precision'] },
+  { figure: 'work_models', findings: none, tables: [] },
   { figure: 'tolerance', findings: control_findings, tables: [] },
   { figure: 'bdf_order', findings: bdf_findings, tables: [] },
   {
@@ -68,7 +70,8 @@ const measurements = [
   { figure: 'nodal_steps', findings: nodal_step_findings, tables: [] },
   {
     figure: 'scaling',
-    findings: scaling_findings,
+    findings: (objects) =>
+      [scaling_finding(objects), ...scaling_findings(objects)].filter(Boolean),
     summary: scaling_summary,
     tables: ['scaling'],
   },
@@ -76,7 +79,7 @@ const measurements = [
     figure: 'swing',
     findings: swing_findings,
     summary: swing_summary,
-    tables: ['peers_swing'],
+    tables: ['other_simulators_swing'],
   },
   {
     figure: 'force_transport',
@@ -96,9 +99,9 @@ const questions = [
     name: 'validation',
     tab: 'Is it right?',
     heading: 'Is the physics right?',
-    intro: `Before speed comes truth. Each strand model is put to published tests of slender rods, where the
-      answer for the continuous rod is known from theory: how far a hair bends under its weight, when a rod buckles, at which
-      frequencies it swings. A model that is right comes closer to the rod the finer it is cut.`,
+    intro: `Each strand model is compared with published tests of slender rods, where the
+      solution of the continuous rod is known from theory: the deflection of a hair under its weight, the load at which a rod buckles, the
+      frequencies at which it swings. A correct model converges to the rod with more elements.`,
     sections: [
       {
         figure: 'validation',
@@ -114,10 +117,11 @@ const questions = [
     name: 'hard',
     tab: 'What survives?',
     heading: 'What survives a hard case?',
-    intro: `Situations that break hair simulators, each with a criterion of physics: energy that nobody put in, a point
-      faster than anything drove it, a body passed through. A run is stable when no bound breaks, not merely when its numbers
-      stay finite, and accurate when it also agrees with a reference.`,
+    intro: `Situations that break hair simulators, each with a physical criterion: no energy gain, no point
+      faster than its drive allows, no penetration. A run is stable when no bound breaks; finite numbers are not
+      enough. It is accurate when it also agrees with a reference.`,
     sections: [
+      { figure: 'hard_cases_summary', findings: none, tables: [] },
       {
         figure: 'hard_cases',
         findings: hard_findings,
@@ -130,7 +134,7 @@ const questions = [
     name: 'cost',
     tab: 'What does accuracy cost?',
     heading: 'What does accuracy cost in time?',
-    intro: `For each scene and each wanted error a search over model, integrator, number of elements and step for the
+    intro: `For each scene and each target error, a search over model, integrator, number of elements and step finds the
       cheapest run that meets it. The error is total: against the continuous rod, on which two models of different families
       agree, not against a finer run of the same model.`,
     sections: [
@@ -182,18 +186,12 @@ const list_html = (sentences, visible = 8) => {
   );
 };
 
-// A caption starts with what the figure shows, where that can be said in a sentence.
-function finding_html({ finding }, objects) {
-  const text = finding?.(objects) ?? '';
-  return text === '' ? '' : `<strong class="finding">${prose_html(text)}</strong> `;
-}
-
-const figure_html = (figure, objects, finding) => {
+const figure_html = (figure) => {
   const caption_id = `${figure.id}-caption`;
   return (
     `<figure class="card"><div class="plot" id="plot-${figure.id}" data-figure="${figure.id}" ` +
     `aria-describedby="${caption_id}"></div><figcaption id="${caption_id}">` +
-    `${finding}${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
+    `${escape_html(one_line(figure.caption))} <span class="tools" data-tools="${figure.id}">` +
     '</span></figcaption></figure>'
   );
 };
@@ -207,12 +205,11 @@ function section_html(section, { tables, objects, warnings }) {
   const drawn =
     present &&
     guard(`figure ${figure.id}`, () => figure_spec(figure, objects, look), undefined);
-  const finding = guard('the caption', () => finding_html(figure, objects), '');
   const body = !present
     ? missing_html(figure.table, warnings.of(figure.table))
     : drawn === undefined
       ? `<p class="missing">${figure.table}.csv holds no rows for this figure.</p>`
-      : figure_html(figure, objects, finding);
+      : figure_html(figure);
   const listed = section.tables.flatMap((name) => {
     if (name in tables)
       return [table_html(name, known_tables[name].title, tables[name].rows.length)];
@@ -316,7 +313,7 @@ function measured_html(contents) {
   const extra = Object.keys(tables).filter((name) => !is_known(name));
   return [
     header_html(contents),
-    '<noscript><p class="missing">Scripts are off: the text stands, figures lie beside this file ' +
+    '<noscript><p class="missing">Scripts are off: the text stands, figures lie next to this file ' +
       'as SVG, tables as CSV.</p></noscript>',
     ...measurements.map((section) => section_html(section, contents)),
     extra.length > 0

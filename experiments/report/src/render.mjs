@@ -3,7 +3,7 @@ import * as vega from 'vega';
 import * as vega_lite from 'vega-lite';
 import { expressionInterpreter } from 'vega-interpreter';
 import { figures, figure_spec } from '../figures/all.mjs';
-import { paper_theme, paper_width, vega_config } from '../figures/common.mjs';
+import { dark_theme, paper_theme, paper_width, vega_config } from '../figures/common.mjs';
 
 export const sources = TRESS_SOURCES;
 
@@ -37,6 +37,28 @@ class Errors {
   level = () => this;
 }
 
+// Colours of the theme in the file change where the reader prefers dark.
+const dark_rules = Object.entries(paper_theme)
+  .flatMap(([name, colour]) =>
+    ['fill', 'stroke'].map(
+      (property) => `.tress [${property}="${colour}"]{${property}:${dark_theme[name]}}`,
+    ),
+  )
+  .join('');
+
+const escaped = (text) =>
+  text.replace(/[&<>]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;' })[c]);
+
+// What a reader that sees no picture is told, and the dark theme.
+const with_head = (svg, headline, description) =>
+  svg.replace(
+    /^<svg\b([^>]*?)class="([^"]*)"([^>]*)>/,
+    (_, before, of, after) =>
+      `<svg${before}class="tress ${of}"${after}><title>${escaped(headline)}</title>` +
+      `<desc>${escaped(description)}</desc>` +
+      `<style>@media (prefers-color-scheme:dark){${dark_rules}}</style>`,
+  );
+
 // The figure as SVG text, undefined when the tables hold nothing to draw.
 async function render(figure, tables) {
   const spec = figure_spec(figure, tables, { width: paper_width, theme: paper_theme });
@@ -52,7 +74,7 @@ async function render(figure, tables) {
   const svg = await view.toSVG();
   view.finalize();
   if (logger.first !== undefined) throw logger.first;
-  return `${svg}\n`;
+  return `${with_head(svg, figure.headline(tables), spec.description)}\n`;
 }
 
 // [{id, svg}] for every figure the tables can fill; another one is a warning.

@@ -37,7 +37,7 @@ ${select_html(
   'Scene',
   scenes.map(({ scene, title }) => [scene, `${scene}: ${title}`]),
 )}
-${select_html('scene-beside', 'Beside it')}
+${select_html('scene-beside', 'Next to it')}
 ${select_html('scene-colour', 'Colour')}
 ${select_html('scene-forces', 'Contact forces', [
   ['hidden', 'hidden'],

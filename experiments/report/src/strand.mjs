@@ -12,32 +12,32 @@ export const spaced = (name) => String(name ?? '').replaceAll('_', ' ');
 export const variant_name = ({ model, variant }) =>
   variant ? `${spaced(model)}, ${String(variant).split('=').at(-1)}` : spaced(model);
 
-const papers_step = 'semi_implicit_euler';
-// Reduced coordinates: the models of [Bertails et al. 2006], whose solvers and tangents are compared.
+const papers_step = 'linearly_implicit_euler';
+// Reduced coordinates: the models of [Bertails et al. 2006], whose solvers and Jacobians are compared.
 export const is_reduced = (row) => /^(super_helix|articulated_chain)/.test(row.model);
 const is_helix = (row) => /^super_helix/.test(row.model);
-const is_less_implicit = (row) =>
-  [row.model, row.solver, row.tangent, row.integrator].some((name) =>
-    /less_implicit/.test(name ?? ''),
+const is_elastic_local = (row) =>
+  [row.model, row.solver, row.jacobian, row.integrator].some((name) =>
+    /elastic_local/.test(name ?? ''),
   );
 
-// "recursive", "sparse, exact tangent", "articulated chain, recursive, bend planar": the
-// super-helix with all modes and the stiff tangent goes without saying.
+// "recursive", "sparse, exact Jacobian", "articulated chain, recursive, bend planar": the
+// super-helix with all modes and the elastic Jacobian goes without saying.
 export function method_name(row) {
   const extra = [
-    row.tangent === 'exact' ? 'exact tangent' : '',
+    row.jacobian === 'exact' ? 'exact Jacobian' : '',
     ['', 'bend_twist'].includes(row.modes ?? '') ? '' : spaced(row.modes),
   ];
-  const base = is_less_implicit(row)
-    ? ['less implicit (our reconstruction)']
+  const base = is_elastic_local(row)
+    ? ['local elastic Jacobian']
     : [is_helix(row) ? '' : spaced(row.model), spaced(row.solver)];
   return [...base, ...extra].filter(Boolean).join(', ');
 }
 
-// The same with the integrator, where it is not the papers' semi-implicit step.
+// The same with the integrator, where it is not the papers' linearly implicit step.
 export function run_name(row) {
   const integrator =
-    row.integrator === papers_step || is_less_implicit(row) ? '' : row.integrator;
+    row.integrator === papers_step || is_elastic_local(row) ? '' : row.integrator;
   return [method_name(row), integrator].filter(Boolean).join(', ');
 }
 
@@ -50,19 +50,19 @@ export const has_limit = (row) => succeeded(row) && is_positive(row.dt_max_s);
 const dampings = {
   none: 'no damping',
   light: 'light damping',
-  seed: 'the published damping',
+  published: 'the published damping',
 };
 export const damping_rank = ({ damping }) => Object.keys(dampings).indexOf(damping);
 export const damping_name = ({ damping }) => dampings[damping] ?? spaced(damping);
 
 // What the figure draws of one method: all modes, the papers' step (and backward Euler
-// beside it with the exact tangent), one solver where solvers share one name in it.
+// next to it with the exact Jacobian), one solver where solvers share one name in it.
 export function principal_runs(rows) {
   const main = rows.filter((row) => ['', 'bend_twist'].includes(row.modes ?? ''));
   const kind = (row) =>
-    is_less_implicit(row) || (is_helix(row) && row.tangent !== 'exact')
+    is_elastic_local(row) || (is_helix(row) && row.jacobian !== 'exact')
       ? method_name(row)
-      : `${row.model} ${row.tangent}`;
+      : `${row.model} ${row.jacobian}`;
   return [...group_by(main, kind)].flatMap(([name, members]) => {
     if (name === 'sparse') return [];
     const solvers = [...new Set(members.map((row) => row.solver))];
@@ -70,15 +70,15 @@ export function principal_runs(rows) {
       ['recursive', 'sparse', 'composite'].find((s) => solvers.includes(s)) ?? solvers[0];
     const of = members.filter((row) => row.solver === solver);
     const wanted =
-      members[0].tangent === 'exact' ? [papers_step, 'backward_euler'] : [papers_step];
+      members[0].jacobian === 'exact' ? [papers_step, 'backward_euler'] : [papers_step];
     const kept = of.filter(
-      (row) => wanted.includes(row.integrator) || is_less_implicit(row),
+      (row) => wanted.includes(row.integrator) || is_elastic_local(row),
     );
     return kept.length > 0 ? kept : of.filter((r) => r.integrator === of[0].integrator);
   });
 }
 
-// Rows of scaling.csv as series, the fitted exponent of each beside its name.
+// Rows of scaling.csv as series, the fitted exponent of each next to its name.
 export function scaling_series(rows) {
   const timed = rows.filter((row) => succeeded(row) && is_positive(row.cost_per_step_s));
   const straight = timed.filter((row) => row.structure === 'straight');
@@ -107,18 +107,18 @@ export function solver_pairs(rows) {
         composite,
         recursive,
         ours: ratio(cost(composite), cost(recursive)),
-        source: ratio(recursive?.seed_fps, composite?.seed_fps),
+        source: ratio(recursive?.published_fps, composite?.published_fps),
       };
     },
   );
 }
 
 export const swing_levels = [
-  { error: 1e-2, name: '1 %', target_s: 20e-3, peer: 'wall_1pct_s' },
-  { error: 1e-3, name: '0.1 %', target_s: 50e-3, peer: 'wall_0p1pct_s' },
+  { error: 1e-2, name: '1 %', target_s: 20e-3, simulator: 'wall_1pct_s' },
+  { error: 1e-3, name: '0.1 %', target_s: 50e-3, simulator: 'wall_0p1pct_s' },
 ];
 
-// Runs of the swing with one kind of error; time errors at the peers' element count.
+// Runs of the swing with one kind of error; time errors at the other simulators' element count.
 export function swing_runs(rows, kind) {
   const good = rows.filter(
     (row) =>

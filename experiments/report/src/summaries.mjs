@@ -124,8 +124,8 @@ export function scaling_summary({ scaling: rows = [] }) {
   const listed = solver_pairs(rows).filter(
     ({ structure, composite, recursive }) =>
       structure !== 'straight' ||
-      is_positive(composite?.seed_fps) ||
-      is_positive(recursive?.seed_fps),
+      is_positive(composite?.published_fps) ||
+      is_positive(recursive?.published_fps),
   );
   return grid_html(
     'scaling-numbers',
@@ -146,8 +146,8 @@ export function scaling_summary({ scaling: rows = [] }) {
       cells: [
         spaced(structure),
         String(elements),
-        number(composite?.seed_fps),
-        number(recursive?.seed_fps),
+        number(composite?.published_fps),
+        number(recursive?.published_fps),
         number(source),
         number(composite?.fps),
         number(recursive?.fps),
@@ -161,10 +161,10 @@ export function scaling_summary({ scaling: rows = [] }) {
 }
 
 export function swing_summary(tables) {
-  const { peers_swing = [] } = tables;
+  const { other_simulators_swing = [] } = tables;
   const milliseconds = (value) => (is_positive(value) ? format_number(1e3 * value) : '');
-  const peers = peers_swing.map((row) => ({
-    name: row.peer,
+  const other_simulators = other_simulators_swing.map((row) => ({
+    name: row.simulator,
     step_us: row.us_per_step_n20,
     one: row.wall_1pct_s,
     dt: row.dt_1pct_s,
@@ -195,7 +195,7 @@ export function swing_summary(tables) {
       '1 %: dt (ms)',
       '0.1 %: wall time (ms)',
     ],
-    [...ours, ...peers]
+    [...ours, ...other_simulators]
       .sort((a, b) => (rank(a) < rank(b) ? -1 : rank(a) > rank(b) ? 1 : 0))
       .map((row) => ({
         strong: row.strong,

@@ -18,7 +18,7 @@ export const known_tables = {
       'measured',
       'reference',
       'error_rel',
-      'tolerance',
+      'accepted_error_rel',
       'order',
       'dt_s',
       'rtol',
@@ -37,7 +37,7 @@ export const known_tables = {
     required: ['case', 'model', 'integrator', 'dt_s', 'outcome'],
     numeric: [
       'dt_s',
-      'tolerance',
+      'position_tol_rel',
       'measure',
       'limit',
       'error_rel',
@@ -60,7 +60,7 @@ export const known_tables = {
       'rank',
       'elements',
       'dt_s',
-      'tolerance',
+      'position_tol_rel',
       'error_rel',
       'error_refined_rel',
       'reference_gap',
@@ -98,13 +98,13 @@ export const known_tables = {
     optional: true,
   },
   family_tolerance: {
-    title: 'Runs by tolerance on a family of hairs',
-    required: ['claim', 'hair', 'model', 'tolerance', 'value', 'holds', 'status'],
-    numeric: ['hair', 'tolerance', 'value', 'growth', 'horizon_s', 'gap', 'work', 'fixed_work'],
+    title: 'Adaptive runs on a family of hairs',
+    required: ['claim', 'hair', 'model', 'position_tol_rel', 'value', 'holds', 'status'],
+    numeric: ['hair', 'position_tol_rel', 'value', 'growth', 'horizon_s', 'gap', 'work', 'fixed_work'],
     ...of_family_by_tolerance,
   },
   family_tolerance_summary: {
-    title: 'Runs by tolerance on a family of hairs, distribution',
+    title: 'Adaptive runs on a family of hairs, distribution',
     required: ['claim', 'family', 'range', 'model', 'integrator', 'hairs', 'holds_share', 'median'],
     numeric: ['hairs', 'no_answer', 'holds_share', 'decile_1', 'median', 'decile_9'],
     ...of_family_by_tolerance,
@@ -167,10 +167,10 @@ export const known_tables = {
       'elements',
       'dt_s',
       'rtol',
-      'tolerance',
+      'position_tol_rel',
       'max_order',
       'error_rel',
-      'achieved_over_asked',
+      'error_over_tolerance',
       'scd',
       'wall_s_per_sim_s',
       'wall_s',
@@ -195,7 +195,7 @@ export const known_tables = {
       'model',
       'integrator',
       'solver',
-      'tangent',
+      'jacobian',
       'elements',
       'damping',
       'dt_max_s',
@@ -229,13 +229,13 @@ export const known_tables = {
       'exponent',
       'dt_max_s',
       'fps',
-      'seed_fps',
+      'published_fps',
     ],
     command: './tress run',
     program: 'scaling',
   },
   force_transport: {
-    title: 'Force transport beside CORDE',
+    title: 'Force transport compared with CORDE',
     required: ['comparison', 'scene', 'model', 'elements', 'youngs_modulus_pa', 'status'],
     numeric: [
       'elements',
@@ -251,7 +251,7 @@ export const known_tables = {
       'chord_rel',
       'slowest_rad_s',
       'slowest_ratio',
-      'growth_1_s',
+      'growth_per_s',
       'complex_modes',
       'energy_growth',
       'energy_gain_rel',
@@ -277,9 +277,9 @@ export const known_tables = {
       'cores',
       'cost_per_step_s',
       'ghosts_per_strand',
-      'claim_per_element_s',
-      'exchange_per_element_s',
-      'meet_per_element_s',
+      'ghost_search_per_element_s',
+      'halo_exchange_per_element_s',
+      'ghost_contact_per_element_s',
       'beside',
       'memory_mb',
       'model_cost_per_step_s',
@@ -301,7 +301,7 @@ export const known_tables = {
       'sweeps',
       'block',
       'chebyshev',
-      'penalty_1_s2',
+      'penalty_per_s2',
       'primal_sweeps',
       'direct_distance_rel',
       'direct_error_rel',
@@ -314,9 +314,9 @@ export const known_tables = {
     command: './tress run',
     program: 'block_descent',
   },
-  peers_swing: {
+  other_simulators_swing: {
     title: 'Published rows of other simulators on the swinging strand',
-    required: ['peer', 'wall_1pct_s', 'wall_0p1pct_s'],
+    required: ['simulator', 'wall_1pct_s', 'wall_0p1pct_s'],
     numeric: [
       'stable_dt_n5_s',
       'stable_dt_n20_s',
@@ -326,7 +326,7 @@ export const known_tables = {
       'dt_1pct_s',
       'wall_0p1pct_s',
     ],
-    command: 'git checkout -- results/peers_swing.csv',
+    command: 'git checkout -- results/other_simulators_swing.csv',
     program: 'work_precision',
     optional: true,
   },
@@ -351,7 +351,7 @@ export const distinct = (values) => [...new Set(values)];
 export const swing_rows = ({ work_precision = [] }) =>
   work_precision.filter((row) => row.scene === 'swing');
 
-// The maximum order of BDF on the Beam, beside methods that are stable on the imaginary
+// The maximum order of BDF on the Beam, compared with methods that are stable on the imaginary
 // axis and Adams.
 const beside_bdf = [
   'arkode_dirk',
@@ -374,7 +374,7 @@ export const order_rows = ({ work_precision = [] }) =>
         : row.integrator,
     }));
 
-// Every integrator on every other problem, BDF with the order it has unless told otherwise.
+// Every integrator on every other problem, BDF with its default order.
 const usual_order = 2;
 export const problem_rows = ({ work_precision = [] }) =>
   work_precision.filter(

@@ -4,8 +4,9 @@
 
 namespace tress::experiments::validation {
 
-/// omega of the `mode`-th transverse vibration of a hanging rod of weight Gamma = rho g S
-/// L^3/EI (Gamma < 0: standing), clamped at its upper end, over sqrt(EI/(rho S L^4)):
+/// Returns omega of the `mode`-th transverse vibration of a hanging rod of weight Gamma =
+/// rho g S L^3/EI (Gamma < 0: standing), clamped at its upper end. The unit is
+/// sqrt(EI/(rho S L^4)):
 ///
 ///     w'''' = Gamma (x w')' + omega^2 w,   x from the free tip, where w'' = w''' = 0,
 ///     w = w' = 0 at x = 1,
@@ -16,11 +17,11 @@ namespace tress::experiments::validation {
 /// Throws InputError otherwise and for a rod that does not stand (Gamma < -7.837).
 double heavy_rod_mode(double gamma, int mode);
 
-/// omega of the `mode`-th vibration in the plane of a rod that is naturally an arc of
-/// angle `opening` (rad), clamped at one end, in the same unit. With tangential and
-/// normal displacements u, w, the turn theta of the tangent, and M, T, N moment and force
-/// over EI/L and EI/L^2, by the linearised equations of an inextensible rod of curvature
-/// k = opening,
+/// Returns omega of the `mode`-th vibration in the plane of a rod, in the same unit. The
+/// rod is naturally an arc of angle `opening` (rad), clamped at one end. u and w are
+/// tangential and normal displacements, theta the turn of the tangent, and M, T, N moment
+/// and force over EI/L and EI/L^2. The linearised equations of an inextensible rod of
+/// curvature k = opening are
 ///
 ///     u' = k w,   w' = theta - k u,   theta' = M,
 ///     M' = -N,   T' = k N - omega^2 u,   N' = -k T - omega^2 w,

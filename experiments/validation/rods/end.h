@@ -19,20 +19,20 @@ struct End {
   Vec place{};               // ... at this position, m
   Section section = Section::free;
   Frame frame{};  // to which the section is held
-  /// A spring in place of the last half edge, for models in which it neither bends nor
-  /// twists, between the edge and the support: compliance (rad/(N m)) to a moment, and
-  /// rotation (rad) at rest, about the axes of the section.
+  /// Spring in place of the last half edge, between the edge and the support, for models
+  /// in which that half edge neither bends nor twists. Compliance (rad/(N m)) to a
+  /// moment, and rotation (rad) at rest, about the axes of the section.
   Vec compliance{}, rest{};
 
   /// Rows of the section: 0, 2 (about e1, e2) or 3 (about e0, e1, e2).
   int section_rows() const;
 };
 
-/// The conditions c = 0 that hold an end, as functions of q: along_i . (x - place), then
-/// the rotation vector from `frame` to the section, about the axes of `frame`; with a
-/// half edge, from `frame` to that edge, plus `rest` and compliance times the moment.
-/// Gradients of the position are exact, from the velocities of the tip; those of the
-/// section are by differences of order 4.
+/// Conditions c = 0 that hold an end, as functions of q. They are along_i . (x - place),
+/// then the rotation vector from `frame` to the section, about the axes of `frame`. With
+/// a half edge it is that from `frame` to the edge, plus `rest` and compliance times the
+/// moment. Gradients of the position are exact, from the velocities of the tip; those of
+/// the section are by differences of order 4.
 class EndConditions {
  public:
   /// Throws std::runtime_error when the section is held and the model has no end_frame.
@@ -41,7 +41,8 @@ class EndConditions {
   int rows() const { return places_ + sections_; }
   int places() const { return places_; }
   Eigen::VectorXd value(double t, In q);
-  Eigen::MatrixXd gradient(double t, In q);  // (n x rows)
+  /// Computes the gradient of the conditions, (n x rows).
+  Eigen::MatrixXd gradient(double t, In q);
   /// d(gradient of the section . moment)/dq, (n x n), by differences, relative error
   /// 1e-8.
   Eigen::MatrixXd curvature(double t, In q, const Eigen::VectorXd& moment);
@@ -51,7 +52,8 @@ class EndConditions {
  private:
   Eigen::VectorXd section(double t, In q);
   /// Coordinates that rotate the section.
-  Eigen::MatrixXd section_gradient(double t, In q);  // (n, sections)
+  /// Computes the gradient of the section rows, (n, sections).
+  Eigen::MatrixXd section_gradient(double t, In q);
   std::vector<std::size_t> turning(double t, In q);
 
   System& system_;

@@ -25,12 +25,12 @@ class Weight final : public Effect {
   Vec g_;
 };
 
-/// Interpolates the tip from the last points. If the last point is a node it is the
-/// tip. Gauss points of a segment stop short of the tip: a quantity that is smooth
-/// along the segment is then sum_k w_k f_k at the tip, by the polynomial through the
-/// points of the last segment. Exact for cubic splines and rigid links; for a helix the
-/// tip position is off by 6e-4 kappa^3 h^4 or less with four points, and by less with
-/// the additional points that models take for a large angle kappa h.
+/// Interpolates the tip from the last points. If the last point is a node it is the tip.
+/// Gauss points of a segment stop short of the tip. A quantity that is smooth along the
+/// segment is then sum_k w_k f_k at the tip, by the polynomial through the points of the
+/// last segment. Exact for cubic splines and rigid links. For a helix the tip position is
+/// off by 6e-4 kappa^3 h^4 or less with four points. It is off by less with the
+/// additional points that models take for a large angle kappa h.
 class TipPoints {
  public:
   explicit TipPoints(int elements) : elements_(elements) {}
@@ -62,9 +62,9 @@ class TipForce final : public Effect {
   TipPoints tip_;
 };
 
-/// A force P (N) that pushes the tip back along the strand's tangent there: -P w_k t_k on
-/// each of the TipPoints, so that its work -P t . dx is that at the tip. It has no
-/// potential.
+/// Force P (N) that pushes the tip back along the strand's tangent there. It acts as -P
+/// w_k t_k on each of the TipPoints, so that its work -P t . dx is that at the tip. It
+/// has no potential.
 class FollowerForce final : public Effect {
  public:
   FollowerForce(int elements, double force) : tip_(elements), force_(force) {}

@@ -4,9 +4,9 @@
 
 namespace tress::experiments::validation {
 
-/// A planar inextensible rod clamped horizontally, under its own weight and a force P
-/// down on its tip: with theta the angle below the horizontal and s from the clamp, over
-/// the length, Gamma = rho g S L^3/EI and alpha = P L^2/EI,
+/// Planar inextensible rod clamped horizontally, under its own weight and a force P down
+/// on its tip. theta is the angle below the horizontal and s the arc length from the
+/// clamp, over the length. With Gamma = rho g S L^3/EI and alpha = P L^2/EI,
 ///
 ///     theta'' = -(Gamma (1 - s) + alpha) cos theta,   theta(0) = 0,   theta'(1) = 0,
 ///     width = int cos theta ds,   height = int sin theta ds.

@@ -8,8 +8,8 @@
 namespace tress::experiments::validation {
 
 /// Integrates dy/dx = f(x, y) over [from, to] by the Runge-Kutta method of Prince and
-/// Dormand (order 8, GSL), each step within 1e-13 of every entry of y, or of the step's
-/// increment. Throws std::runtime_error if the step vanishes.
+/// Dormand (order 8, GSL). Each step is within 1e-13 of every entry of y, or of the
+/// step's increment. Throws std::runtime_error if the step vanishes.
 using Slope = std::function<void(double x, const double* y, double* dy)>;
 std::vector<double> integrate(const Slope& slope, double from, double to,
                               std::vector<double> y);

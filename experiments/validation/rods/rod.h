@@ -40,8 +40,8 @@ Frame standing_clamp();
 std::unique_ptr<System> on_strand(const ModelVariant& variant, const Strand& strand,
                                   Effects effects);
 
-/// An end whose section is held to `frame`. For models whose end section is fixed to
-/// their last edge or link, it includes the half segment beyond the last joint: the
+/// Returns an end whose section is held to `frame`. For models whose end section is fixed
+/// to their last edge or link, it includes the half segment beyond the last joint. The
 /// support must have its compliance, or half an edge of the rod would be missing. Models
 /// that bend up to their tip have no such half segment.
 End held_section(const ModelVariant& variant, const Strand& strand, End::Section section,

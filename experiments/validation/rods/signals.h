@@ -19,9 +19,9 @@ double period(const Track& track);
 /// sample and its neighbours. Steps must be equal.
 double time_of_peak(const Track& track);
 
-/// Angular frequency in [from, to] (rad/s) that maximises the Fourier integral of the
-/// value minus its mean under a Hann window: other frequencies of the signal disturb it
-/// little once they are 4 pi/duration away.
+/// Returns the angular frequency in [from, to] (rad/s) that maximises the Fourier
+/// integral of the value minus its mean under a Hann window. Other frequencies of the
+/// signal disturb it little once they are 4 pi/duration away.
 double strongest_rate(const Track& track, double from, double to);
 
 /// Decay rate (1/s) of an oscillation about 0: the slope of ln(half swing) over time by

@@ -14,12 +14,12 @@ struct SmallMotion {
   Eigen::VectorXd shape;
 };
 
-/// Solutions of M x'' + K x = columns e with rows x = 0, ascending. M must be positive
-/// definite on that subspace. In the symmetric case, K = K^T and columns = rows^T: the
-/// eigenvalues of M against K + shift M with the least shift >= 0 that makes it definite,
-/// so that the smallest are as accurate as K is, however stiff the rest (stretching,
-/// shear). Otherwise: real parts of the eigenvalues of M^-1 K and their vectors.
-/// `typical`: sizes of the unknowns.
+/// Returns the solutions of M x'' + K x = columns e with rows x = 0, ascending. M must be
+/// positive definite on that subspace. In the symmetric case K = K^T and columns =
+/// rows^T. The solutions are then the eigenvalues of M against K + shift M, with the
+/// least shift >= 0 that makes it definite. The smallest are thus as accurate as K is,
+/// however stiff the rest (stretching, shear). Otherwise they are the real parts of the
+/// eigenvalues of M^-1 K and their vectors. `typical`: sizes of the unknowns.
 std::vector<SmallMotion> small_motions(const Eigen::MatrixXd& mass,
                                        const Eigen::MatrixXd& stiffness,
                                        const Eigen::MatrixXd& columns,

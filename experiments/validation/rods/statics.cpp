@@ -123,9 +123,9 @@ void Statics::load_tip() {
   tip_force_->force = force;
 }
 
-/// lambda and e of the least residual in the current state: with those of another load,
-/// or zero, the first corrections of a strand under tension would be those of a slack
-/// one.
+/// Sets lambda and e to those of the least residual in the current state. With those of
+/// another load, or zero, the first corrections of a strand under tension would be those
+/// of a slack one.
 void Statics::guess_forces() {
   const Index m = lambda_.size(), rows = m + conditions_->rows();
   if (rows == 0) return;

@@ -13,8 +13,8 @@
 namespace tress::experiments::validation {
 
 /// One strand model and its equilibria: r(q) = G^T lambda + C^T e under the load t, g =
-/// 0, c = 0, with the model's own constraints g, and the end conditions c, by Newton's
-/// iteration on all unknowns. Dense, O(n^3): for some hundred unknowns.
+/// 0, c = 0. g are the model's own constraints and c the end conditions. Newton's
+/// iteration solves for all unknowns. Dense, O(n^3): for a few hundred unknowns.
 class Statics {
  public:
   /// Starts at the strand's initial state. Under the load t the strand has the weight of

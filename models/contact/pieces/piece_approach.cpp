@@ -38,9 +38,10 @@ Pack inverse_of(const Pack& x) { return where_less(Pack(0), x, Pack(1) / x, Pack
 
 Pack within_piece(const Pack& s) { return larger(smaller(s, Pack(1)), Pack(-1)); }
 
-/// The nearest points are middle + s half of the first and middle + t half of the second
-/// piece: those of the lines, and where these are beyond an end the ones nearest to it.
-/// On parallel lines any points across from each other will do.
+/// Returns the least distance of each pair. The nearest points are middle + s half of the
+/// first and middle + t half of the second piece. They are those of the lines, and where
+/// these are beyond an end the ones nearest to it. On parallel lines any points across
+/// from each other serve.
 Pack least_approach(const Motions& first, const Motions& second) {
   constexpr double parallel = 1e-9;  // squared sine of an angle
   const Vec3<Pack> between = second.middle - first.middle;

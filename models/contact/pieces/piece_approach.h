@@ -7,9 +7,9 @@
 
 namespace tress::models {
 
-/// What bounds need to know of a straight piece whose ends move straight on during a
-/// step: its middle and half of its edge at half of the step, how its middle moves, and
-/// how much farther its ends do.
+/// Motion of a straight piece whose ends move uniformly during a step, for bounds. It
+/// consists of the middle and half edge at the middle of the step, the motion of the
+/// middle, and the additional motion of the ends.
 struct PieceMotion {
   PieceMotion() = default;
   PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1, const Vec& to1);
@@ -17,9 +17,9 @@ struct PieceMotion {
   double turned = 0;        // m
 };
 
-/// Tells the distance (m) that the two pieces of each pair keep at least during the step:
-/// that at half of it, less how far they move relative to each other until its ends. NaN
-/// if one is not finite. By lanes, about 10 ns a pair.
+/// Computes a lower bound (m) of the distance of the two pieces of each pair during the
+/// step. The bound is the distance at half of the step less the relative motion until its
+/// ends. NaN if a piece is not finite. By lanes, about 10 ns per pair.
 void least_approaches(std::span<const PieceMotion> motion,
                       std::span<BoxPairs::Pair> pairs);
 

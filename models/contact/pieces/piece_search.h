@@ -13,12 +13,12 @@
 
 namespace tress::models {
 
-/// Which straight pieces of many polylines ("strands") touch or would pass through each
-/// other while their points move straight on during a step. Pairs that may touch are
-/// gathered once a step, with room for points to be moved by contact forces, and looked
-/// at again where these may have moved them so near that they touch.
+/// Search for straight pieces of many polylines ("strands") that touch or would pass
+/// through each other while their points move uniformly during a step. Pairs that may
+/// touch are gathered once per step, with a margin for the motion due to contact forces.
+/// Pairs are examined again where these forces may bring them into contact.
 ///
-/// Use: begin(), then find(), and place() and find() again while forces are sought.
+/// Use: begin(), then find(), and place() and find() again while forces are computed.
 class PieceSearch {
  public:
   struct Strand {
@@ -37,7 +37,7 @@ class PieceSearch {
 
   /// A step from points `from` to `to`, 3 numbers each, strand after strand.
   void begin(In from, In to);
-  /// Where the points of a strand are at its end, changed by forces.
+  /// Sets the positions of a strand's points at the end of the step, changed by forces.
   void place(std::size_t strand, In x);
   /// Pairs that touch, in order. wider(first, second): whether a pair counts when it is
   /// up to half its thickness apart (called at once from several threads).
@@ -60,7 +60,7 @@ class PieceSearch {
   In from() const { return from_; }
   In to() const { return to_; }
   In now() const { return now_; }
-  /// Whether forces have moved a strand since find() looked at it.
+  /// Returns whether forces have moved a strand since the last find().
   bool moved(std::size_t strand) const { return moved_[strand] != 0; }
   /// The first of the two points of a piece, among all points.
   std::size_t point_of(int piece) const {
@@ -70,14 +70,15 @@ class PieceSearch {
   std::array<std::size_t, 4> ends(int first, int second) const;
   /// Distance of the axes of two pieces that touch, m.
   double thickness(int first, int second) const;
-  /// How far two pieces are apart along the normal, less their thickness, m.
+  /// Returns the distance of two pieces along the normal, less their thickness, m.
   double gap(const Found& pair, In x) const;
   double gap_before(const Found& pair) const { return gap(pair, from_); }
   double gap_now(const Found& pair) const { return gap(pair, now_); }
-  /// How far two pieces that touch are in each other at the end of the step, with the
-  /// forces, m; more than their thickness if they have passed through each other.
+  /// Returns the overlap of two touching pieces at the end of the step, with the forces,
+  /// m. It exceeds their thickness if they have passed through each other.
   double depth(const Found& pair) const;
-  /// Of a place on a piece along its strand at the start of the step, m.
+  /// Returns the arc length of a point on a piece along its strand at the start of the
+  /// step, m.
   double arc(int piece, double part) const;
 
  private:

@@ -12,7 +12,8 @@ struct MovingPieces {
   std::array<Vec, 4> from, to;  // m
 };
 
-/// Where the pieces touch, and the direction from the second to the first one there.
+/// Contact points of two pieces, and the direction from the second to the first one
+/// there.
 struct PieceTouch {
   double s, t;  // of the first, of the second piece, in [0, 1]
   Vec normal;   // of length 1
@@ -24,15 +25,15 @@ struct PieceTouch {
 /// Between pieces with these ends, m.
 double distance(const std::array<Vec, 4>& ends);
 
-/// Where the pieces are first nearer to each other than `reach` in the step, or at its
-/// end; by steps in which they cannot come so near [Mirtich 1996, conservative
-/// advancement].
+/// Returns the points where the pieces are first nearer to each other than `reach` in the
+/// step, or those at its end. Advances by steps in which they cannot come so near
+/// [Mirtich 1996, conservative advancement].
 PieceTouch first_touch(const MovingPieces& pieces, double reach);
 
-/// If one piece passes through the other during the step, the place and the side where it
-/// came from: axes of no thickness that cross at a time are coplanar then, which is a
-/// root of a cubic polynomial [Provot 1997]. Otherwise the nearest points at the end of
-/// the step, if they are closer than `reach`. Empty: neither.
+/// Returns the place and the side of origin if one piece passes through the other during
+/// the step. Axes without thickness that cross are coplanar at that time, which is a root
+/// of a cubic polynomial [Provot 1997]. Otherwise returns the nearest points at the end
+/// of the step, if they are closer than `reach`. Empty: neither.
 std::optional<PieceTouch> touch(const MovingPieces& pieces, double reach);
 
 }  // namespace tress::models

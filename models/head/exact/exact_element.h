@@ -27,7 +27,7 @@ class ExactElement {
                const Vec& v, const Vec& a)
       : kernel_(kernel), m_(m), pos_(w.pos), element_(m, w, q, v, a) {}
 
-  /// What it does by itself and with the wrench on its tip: A, B, C, D, R and H.
+  /// Computes the element's own factors with the wrench on its tip: A, B, C, D, R and H.
   void own(const Hanging& hanging, Factors& e, Columns& to) const {
     const Motion& from = e.start;
     const VariedTip<T> tip = element_.tip();
@@ -63,7 +63,8 @@ class ExactElement {
     to.x.own = to.x.own + diagonal(bending.tangent);
   }
 
-  /// With the load f on a point P that moves with u, A = -df/dx and B = -df/du:
+  /// Adds the loads on the element's points. With the load f on a point P that moves with
+  /// u, A = -df/dx and B = -df/du:
   ///
   ///     dF = phi x f + A (d + phi x P + dP) + B (dv + domega x P + du + phi x u)
   void add_loads(const ExactPoint<T>* loads, Factors& e, Columns& to,

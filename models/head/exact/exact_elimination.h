@@ -15,7 +15,7 @@ class ExactElimination {
   using Matrix = Matrix3<T>;
   using Motion = ReducedMotion<T>;
 
-  /// Of an element between sweeps.
+  /// Factors of an element between sweeps.
   struct Factors {
     Motion start;
     Matrix rotation;  // of its tip
@@ -33,8 +33,8 @@ class ExactElimination {
     std::array<Matrix, 2> z_of_place;  // and of z
   };
 
-  /// Of a column of states or unknowns: wrench about the element's start, and what the
-  /// unknowns feel.
+  /// Column of states or unknowns: the wrench about the element's start, and the force on
+  /// the unknowns.
   struct Column {
     Matrix force, moment, own;
   };
@@ -94,8 +94,8 @@ class ExactElimination {
     turn(by[acceleration], by[alpha]);
     for (std::size_t k = 0; k < 4; ++k) lift(by[k], e, to.state[k]);
   }
-  /// The same for displacements, which unknowns change by `pos` times how they move the
-  /// tip.
+  /// Carries columns of displacements to the start of the element. Unknowns change
+  /// displacements by `pos` times their effect on the tip.
   static void carry(const Hanging& hanging, const T& pos, const Factors& e, Columns& to,
                     Places& places) {
     std::array<Wrench, 2> by;
@@ -113,7 +113,8 @@ class ExactElimination {
     by[1].moment = by[1].moment - times_cross(by[0].moment, e.position);
     for (std::size_t k = 0; k < 2; ++k) lift(by[k], e, places[k]);
   }
-  /// Only where there is a load; elsewhere not even the sign of a zero changes.
+  /// Stores `from` only in lanes with a load; elsewhere not even the sign of a zero
+  /// changes.
   template <class M>
   static void put(const T& some, const M& from, M& to) {
     to = where_less(T(0), some, from, to);

@@ -10,26 +10,27 @@ namespace tress::models {
 ///
 /// The equations are those of models/reduced/exact_tangent.h. A frame's state is the
 /// variation of its velocity (v, omega) and acceleration (a, alpha) in its own
-/// components, in which gravity, inertia and linear drag know no displacement; where
-/// bodies load what hangs on an element, of its displacement (d, phi) as well. Of an
-/// element with the state s at its start, unknowns x and the wrench w_tip on its tip
+/// components, in which gravity, inertia and linear drag do not depend on displacements.
+/// Where bodies load the part that hangs on an element, the state includes its
+/// displacement (d, phi). For an element with the state s at its start, unknowns x and
+/// the wrench w_tip on its tip
 ///
 ///     s_tip = A s + B x,    w = C s + D x + G w_tip,    r = R s + H x + J w_tip
 ///
-/// What hangs on a tip answers with w_tip = L s_tip + beta [models/reduced/
-/// recursive_solver.h]; elimination of x from r = b passes to the start
+/// The part that hangs on a tip responds with w_tip = L s_tip + beta
+/// (models/reduced/recursive_solver.h). Elimination of x from r = b passes to the start
 ///
 ///     L' = C + G L A - Y R',  Y = (D + G L B) H'^-1,  R' = R + J L A,  H' = H + J L B
 ///     beta' = G beta + Y (b - J beta)
 ///
-/// A and G are motions of a rigid body but for how omega enters accelerations, so they
-/// act by cross products, in the components of the start. x-columns are derivatives of
-/// the element's tip and wrench by varied numbers (VariedElement), s-columns closed sums
-/// over its points. H' is inverted as it stands, without the exchange of rows: Newton's
-/// iteration mends what that costs.
+/// A and G are motions of a rigid body except for the effect of omega on accelerations,
+/// so they act by cross products, in the components of the start. The x-columns are
+/// derivatives of the element's tip and wrench by varied numbers (VariedElement). The
+/// s-columns are closed sums over its points. H' is inverted without pivoting; Newton's
+/// iteration corrects the error.
 ///
-/// Compiled without fused products, whose choice depends on the number of lanes: the same
-/// bits for all.
+/// Compiled without fused products, whose choice depends on the number of lanes: results
+/// are bit-identical for all.
 template <class Kind>
 class ExactKernel {
  public:
@@ -55,7 +56,7 @@ class ExactKernel {
   T newton(const Material& m, const Motion& end, const ExactPoint<T>* const* loads,
            const Vec* rest, Weights w, const Vec* q, const Vec* v, const Vec* a,
            Vec* correction, Factors* factors) const;
-  /// The same by the factors of the last newton(), at another state.
+  /// Computes a correction with the factors of the last newton(), at another state.
   T again(const Material& m, const Motion& end, const LoadSums<T>* const* loads,
           const Vec* rest, const Vec* v, const Vec* a, Vec* correction,
           const Scratch* scratch, Factors* factors) const;

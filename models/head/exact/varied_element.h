@@ -41,7 +41,8 @@ struct VariedPoint {
   Matrix3<Varied<T>> slope;
 };
 
-/// Of inertia and drag on an element about its start, in the components of the latter.
+/// Wrench of inertia and drag on an element about its start, in the components of the
+/// start.
 template <class T>
 struct VariedWrench {
   VariedVec<T> force, moment, unknown;
@@ -58,8 +59,8 @@ struct ElementSums {
   Matrix3<T> spin;       // rows j: w P x d_j
   Vec3<T> moved;         // w P'
   Matrix3<T> moving;     // w P' P^T
-  /// Rows j: w ((d_j.omega) P + (P.omega) d_j - 2 (d_j.P) omega + 2 P' x d_j), by which
-  /// unknown j feels a change of the start's angular velocity omega through centrifugal
+  /// Rows j: w ((d_j.omega) P + (P.omega) d_j - 2 (d_j.P) omega + 2 P' x d_j), the effect
+  /// on unknown j of a change of the start's angular velocity omega through centrifugal
   /// and Coriolis forces.
   Matrix3<T> convective;
 };

@@ -47,7 +47,7 @@ class VariedElement<HelixKind<T>> {
     const Matrix3<Varied<T>> slope = element_.slope(f);
     return {element_.position(Varied<T>(arc), f), slope * rate_, slope};
   }
-  /// From the components of the element's axes.
+  /// Transforms from the components of the element's axes to those of its start.
   template <class X>
   const X& in_start(const X& x) const {
     return x;

@@ -5,8 +5,8 @@
 
 namespace tress::models {
 
-/// A rigid link behind a ball joint (models/head/chain_strand.h), seen from the joint in
-/// the axes of the link before: P = s t, t = E e0, and with W_j the columns of W
+/// Rigid link behind a ball joint (models/head/chain_strand.h), seen from the joint in
+/// the axes of the link before. P = s t and t = E e0. With W_j the columns of W,
 /// dP/dtheta_j = s W_j x t, so sums over the link are closed.
 template <class T>
 class VariedElement<ChainKind<T>> {
@@ -55,7 +55,7 @@ class VariedElement<ChainKind<T>> {
         {arc * slope_.row[0], arc * slope_.row[1], arc * slope_.row[2]}};
     return {arc * along_, arc * moving_, rows.transposed()};
   }
-  /// From the components of the element's axes.
+  /// Transforms from the components of the element's axes to those of its start.
   Vec in_start(const Vec& x) const { return tip_.rotation * x; }
   Matrix in_start(const Matrix& m) const {
     return tip_.rotation * m * tip_.rotation.transposed();

@@ -122,12 +122,12 @@ using ExactRods = DerModel<T, true>;
 }  // namespace
 
 AnyLaneKernel der_lanes(const LaneOptions& options, const HeadPack& pack,
-                        Tangent tangent) {
+                        Jacobian jacobian) {
   check_for_head(options);
   refuse_if(!options.twist, "a discrete elastic rod without twist", place_of_head,
             "leave twist on");
-  return tangent == Tangent::exact ? lanes_of<ExactRods>(options, pack)
-                                   : lanes_of<StiffRods>(options, pack);
+  return jacobian == Jacobian::exact ? lanes_of<ExactRods>(options, pack)
+                                     : lanes_of<StiffRods>(options, pack);
 }
 
 }  // namespace tress::models

@@ -13,7 +13,7 @@
 
 namespace tress::models {
 
-/// What the edges of a discrete rod have in common, in consistent units.
+/// Data common to all edges of a discrete rod, in consistent units.
 template <class T>
 struct DerMaterial {
   T length;           // of an edge at rest
@@ -24,19 +24,19 @@ struct DerMaterial {
   T friction;         // of a joint: gamma/l; clamp: twice
   T rate;             // typical: speeds are of the order of `rate` lengths
 
-  /// Of node i + 1 of n.
+  /// Returns the inertia of node i + 1 of n.
   T inertia_of_node(Weights w, int i, int n) const {
     return T(i + 1 < n ? 1 : 0.5) * (T(w.acc) * mass + T(w.vel) * drag);
   }
 };
 
-/// What an edge remembers.
+/// State that an edge keeps between steps.
 template <class T>
 struct DerEdge {
   Vec3<T> rest;                // strain of the joint before it
   Vec3<T> tangent, direction;  // reference frame: e0, e1
 
-  /// What steps change, of a lane.
+  /// Number of values per lane that steps change.
   static constexpr std::size_t kept = 6;
   void keep(int lane, double* to) const {
     for (const Vec3<T>* x : {&tangent, &direction}) {
@@ -50,14 +50,14 @@ struct DerEdge {
   }
 };
 
-/// The discrete elastic rod of models/maximal/der.cpp (clamped, edges of equal length,
-/// extensible, dynamic twist) for as many strands as T has lanes: Newton's step
+/// Discrete elastic rod of models/maximal/der.cpp (clamped, edges of equal length,
+/// extensible, dynamic twist) for the strands in the lanes of T. Newton's step
 ///
 ///     correction = S(w)^-1 r(q, v, a)
 ///
-/// in O(edges). Coordinates: of every edge e (3) and theta, in axes that do not turn.
-/// Velocities and accelerations: the same, but the first edge's are those of its end,
-/// whatever the root does.
+/// takes O(edges). Coordinates: e (3) and theta of every edge, in axes that do not turn.
+/// Velocities and accelerations: the same, but those of the first edge are those of its
+/// end, whatever the motion of the root.
 ///
 /// With its frame (t, m1, m2) and length L, a change of an edge is a rotation omega (in
 /// components of the frame) and a lengthening sigma,
@@ -65,14 +65,15 @@ struct DerEdge {
 ///     de = sigma t + L (omega_2 m1 - omega_1 m2),    dtheta = omega . p,
 ///     p = (t + a)/(1 + a . t),  a the tangent of the reference frame.
 ///
-/// A joint depends on rotations only. So everything beyond an edge is, after elimination,
-/// a quadratic form of the position of its start and of the rotation of the edge before:
-/// 6 x 6 as the articulated inertia of [Featherstone 1983], where banded elimination over
-/// (x, theta) keeps 7 unknowns and has couplings of 11. In these unknowns the small
-/// entries of twist stay apart from the large ones of bending, which matters in 32 bits.
+/// A joint depends on rotations only. After elimination, all that follows an edge is
+/// therefore a quadratic form of the position of its start and of the rotation of the
+/// edge before. It is 6 x 6 as the articulated inertia of [Featherstone 1983]; banded
+/// elimination over (x, theta) keeps 7 unknowns and has couplings of 11. In these
+/// unknowns the small entries of twist are separate from the large ones of bending, which
+/// matters in single precision.
 ///
 /// `exact`: with the second derivatives of strains, edges and stretch, and the slopes of
-/// rates of friction, which are not symmetric, but for what they owe to lengthening
+/// rates of friction. These are symmetric except for the parts due to lengthening
 /// (DerForces::ByLengthening).
 template <class T, bool exact>
 class DerStrand {
@@ -128,8 +129,8 @@ class DerStrand {
     return substitute(m, w, placed, factors, correction);
   }
 
-  /// The same by the matrix of the last newton() at another state. `now` (edges):
-  /// scratch.
+  /// Computes a correction with the matrix of the last newton() at another state. `now`
+  /// (edges): scratch.
   TRESS_FLATTEN T again(const DerMaterial<T>& m, const DerEdge<T>* edges,
                         const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
                         const T* a, T* correction, const Placed* placed, Factor* factors,
@@ -169,7 +170,8 @@ class DerStrand {
     return some;
   }
 
-  /// At (q, v); `at`: of the root, seen from the head's position.
+  /// Computes the energies at (q, v); `at`: position of the root seen from the head's
+  /// position.
   LaneEnergies<T> energies(const DerMaterial<T>& m, const DerEdge<T>* edges,
                            const LaneClamp<T>& clamp, Vec at, const T* q,
                            const T* v) const {
@@ -257,7 +259,7 @@ class DerStrand {
     return larger(T(w.vel) / m.rate, T(w.pos)) * larger(angle, most / m.length) + finite;
   }
 
-  /// Where `far` > 0.
+  /// Renews the reference frame in lanes with `far` > 0.
   [[gnu::noinline]] static void renew_lanes(DerEdge<T>& edge, T far, Vec e, Vec rate,
                                             T& theta, T& theta_rate) {
     const T by_length = inverse_sqrt(dot(e, e));

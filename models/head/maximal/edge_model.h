@@ -15,10 +15,10 @@
 
 namespace tress::models {
 
-/// What LaneModels (models/head/lane_model.h) have in common whose strands are
-/// chains of edges from the root on: `per_element` numbers of an edge, the first three
-/// the vector along it, in axes of the world, and all others without unit. The rate of
-/// the first edge is that of its end. Flat as ReducedLoads.
+/// Common code of LaneModels (models/head/lane_model.h) whose strands are chains of
+/// edges. Edges are numbered from the root. An edge has `per_element` numbers: the vector
+/// along it (3) in axes of the world, then numbers without unit. The rate of the first
+/// edge is that of its end. Flat as ReducedLoads.
 template <class Pack, int per_element>
 class EdgeModel {
  public:
@@ -68,7 +68,8 @@ class EdgeModel {
     return k % per_element < 3 ? units.length : 1;
   }
 
-  /// Of nodes over edges, and of all others, as those of a strand by itself are counted.
+  /// Returns the size of dq: displacements of nodes over edges, and all other entries as
+  /// in the System of a single strand.
   template <class Strand>
   Real coordinate_size(const Strand& strand, const Real* dq) const {
     V node{};

@@ -12,7 +12,7 @@
 
 namespace tress::models {
 
-/// What effects do to the node at an edge's end: PointLoad or ExactLoad.
+/// Load of effects on the node at an edge's end: PointLoad or ExactLoad.
 template <class T, template <class> class Load>
 struct NodeLoad {
   Load<T> load;
@@ -29,9 +29,10 @@ class NodeLoads {
 
   explicit NodeLoads(std::size_t edges) : loads_(edges), x_(edges), v_(edges) {}
 
-  /// Of the ends of edges, or null; of PointLoads from the motion at the step's end,
-  /// whose length is h (s). `root`: from the head's position, in its units as `length` of
-  /// an edge, its `drag` on the velocity, q and v, `of_edge` numbers of each edge.
+  /// Computes the loads on the ends of edges; null: none. PointLoads are for the motion
+  /// at the end of the step of h (s). `root` (from the head's position), `length` of an
+  /// edge, `drag` on the velocity, q and v are in the batch's units; q and v have
+  /// `of_edge` numbers per edge.
   TRESS_FLATTEN const OfNode* find(std::span<const NearBody> bodies,
                                    const HeadUnits& units, double h, Vec3T root,
                                    const T& length, const T& drag, const T* q, const T* v,
@@ -68,7 +69,7 @@ class NodeLoads {
  private:
   static constexpr bool symmetric = std::is_same_v<Load<T>, PointLoad<T>>;
 
-  /// Of an edge, at the node at its end.
+  /// Returns the share of an edge's length at the node at its end.
   T part(std::size_t i) const { return T(i + 1 < x_.size() ? 1 : 0.5); }
 
   template <class Shape>

@@ -14,7 +14,7 @@
 
 namespace tress::models {
 
-/// What the edges of a strand have in common, in consistent units.
+/// Data common to all edges of a strand, in consistent units.
 template <class T, template <class> class EdgeOf>
 struct QuaternionMaterial {
   T length;   // of an edge
@@ -25,7 +25,7 @@ struct QuaternionMaterial {
   T inertia;  // of a quaternion
   EdgeOf<T> edge;
 
-  /// Of the node at the end of edge i of n, over that of an edge.
+  /// Returns the mass of the node at the end of edge i of n over that of an edge.
   static T part(int i, int n) { return T(i + 1 < n ? 1 : 0.5); }
 };
 
@@ -44,14 +44,14 @@ struct QuaternionClamp {
   Vec3<T> v, omega;
 };
 
-/// The rods of models/quaternion_rods/quaternion_rod.h (clamped, edges of equal length)
-/// for as many strands as T has lanes: Newton's step
+/// Rods of models/quaternion_rods/quaternion_rod.h (clamped, edges of equal length) for
+/// the strands in the lanes of T. Newton's step
 ///
 ///     correction = S(w)^-1 r(q, v, a)
 ///
-/// in O(edges), with the exact Jacobian. Coordinates: of every edge the vector along it,
-/// in axes that do not turn, and its quaternion; rates the same, but the first edge's
-/// are those of its end.
+/// takes O(edges), with the exact Jacobian. Coordinates: the vector along every edge, in
+/// axes that do not turn, and its quaternion. Rates are the same, but those of the first
+/// edge are those of its end.
 template <class T, template <class> class EdgeOf>
 class QuaternionStrand {
  public:
@@ -64,7 +64,7 @@ class QuaternionStrand {
   using Load = NodeLoad<T, ExactLoad>;
   static constexpr int per_element = Elimination::size;
 
-  /// Of an edge and the joint before it, elastic.
+  /// Elastic stresses of an edge and the joint before it.
   struct Stresses {
     T edge[EdgeOf<T>::strains], joint[QuaternionJointOf<T>::strains];
   };
@@ -83,15 +83,15 @@ class QuaternionStrand {
     return solve<true>(m, elements, clamp, w, q, v, a, loads, correction, factors, forces,
                        stresses);
   }
-  /// By the matrix of the last newton() at another state.
+  /// Computes a correction with the matrix of the last newton() at another state.
   TRESS_FLATTEN T again(const Material& m, const Element* elements, const Clamp& clamp,
                         Weights w, const T* q, const T* v, const T* a, const Load* loads,
                         T* correction, Factor* factors, Vec* forces) const {
     return solve<false>(m, elements, clamp, w, q, v, a, loads, correction, factors,
                         forces, nullptr);
   }
-  /// Of the edges and joints at q, where `which` > 0. That of the wall has no terms of
-  /// second order.
+  /// Writes the stresses of the edges and joints at q, in lanes with `which` > 0. The
+  /// stress of the wall has no second-order terms.
   void take_stresses(const Material& m, const Element* elements, const T* q,
                      const T& which, Stresses* stresses) const {
     const auto take = [&](const auto& part, const T* x, T* to) {
@@ -111,7 +111,8 @@ class QuaternionStrand {
     }
   }
 
-  /// At (q, v); `at`: of the root, seen from the head's position.
+  /// Computes the energies at (q, v); `at`: position of the root seen from the head's
+  /// position.
   LaneEnergies<T> energies(const Material& m, const Element* elements, const Clamp& clamp,
                            Vec at, const T* q, const T* v) const {
     const T end = T(0.5) * m.mass;
@@ -200,7 +201,7 @@ class QuaternionStrand {
     return substitute<with_tangent>(m, elements, w, q, factors, correction, stresses);
   }
 
-  /// Of the node at the end of edge i.
+  /// Returns the diagonal block of the node at the end of edge i.
   Matrix3<T> block(const Material& m, Weights w, int i, const Load* loads) const {
     const T inertia = m.part(i, n_) * (T(w.acc) * m.mass + T(w.vel) * m.drag), o(0);
     const Matrix3<T> own{{{inertia, o, o}, {o, inertia, o}, {o, o, inertia}}};

@@ -183,14 +183,15 @@ using ExactSprings = SpringModel<T, true>;
 }  // namespace
 
 AnyLaneKernel spring_lanes(const LaneOptions& options, const HeadPack& pack,
-                           Tangent tangent) {
+                           Jacobian jacobian) {
   check_for_head(options);
-  // The strain of a hair under its weight is some 1e-6: 32 bits know it to 6 %.
+  // The strain of a hair under its weight is about 1e-6: single precision resolves it to
+  // 6 %.
   refuse_if(pack.number != HeadNumber::float64,
-            "springs in 32 bits, which do not resolve their strains", place_of_head,
-            "use 64 bits");
-  return tangent == Tangent::exact ? lanes_of<ExactSprings, false>(options, pack)
-                                   : lanes_of<StiffSprings, false>(options, pack);
+            "springs in single precision, which does not resolve their strains",
+            place_of_head, "use 64 bits");
+  return jacobian == Jacobian::exact ? lanes_of<ExactSprings, false>(options, pack)
+                                     : lanes_of<StiffSprings, false>(options, pack);
 }
 
 }  // namespace tress::models

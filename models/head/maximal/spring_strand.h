@@ -14,7 +14,7 @@
 
 namespace tress::models {
 
-/// What the edges of a strand have in common, in consistent units.
+/// Data common to all edges of a strand, in consistent units.
 template <class T>
 struct SpringMaterial {
   T length;    // of an edge
@@ -25,7 +25,7 @@ struct SpringMaterial {
   T friction;  // moment per rate of strain, likewise
   T rate;      // typical: speeds are of the order of `rate` lengths
 
-  /// Of the node at the end of edge i of n.
+  /// Returns the inertia of the node at the end of edge i of n.
   T inertia_of_node(Weights w, int i, int n) const {
     const T part(i + 1 < n ? 1 : 0.5);
     return part * (T(w.acc) * mass + T(w.vel) * drag);
@@ -42,18 +42,18 @@ struct SpringEdge {
   void recall(int /*lane*/, const double* /*from*/) {}
 };
 
-/// The strand of point masses and springs of models/maximal/mass_spring.cpp (clamped,
-/// edges of equal length, bending = angular, torsion = none) for as many strands as T has
-/// lanes: Newton's step
+/// Point masses and springs of models/maximal/mass_spring.cpp (clamped, edges of equal
+/// length, bending = angular, torsion = none) for the strands in the lanes of T. Newton's
+/// step
 ///
 ///     correction = S(w)^-1 r(q, v, a)
 ///
-/// in O(edges), with tangent = filtered or, if it is `exact`, the exact one. Coordinates:
-/// of every edge the vector along it, in axes that do not turn; rates the same, but the
-/// first edge's are those of its end.
+/// takes O(edges), with jacobian = filtered or, if it is `exact`, the exact one.
+/// Coordinates: the vector along every edge, in axes that do not turn. Rates are the
+/// same, but those of the first edge are those of its end.
 ///
-/// A change of an edge is a lengthening and a turn, y = (along t, m1, m2). Springs know
-/// edges, masses know nodes x.
+/// A change of an edge is a lengthening and a turn, y = (along t, m1, m2). Springs act on
+/// edges, masses on nodes x.
 template <class T, bool exact>
 class SpringStrand {
  public:
@@ -94,10 +94,10 @@ class SpringStrand {
     }
     return substitute(m, w, placed, factors, correction);
   }
-  /// The same with the exact tangent, in which edges resist turns by these `tensions`,
-  /// which are from then on those that the correction has found (StressForm). Returns the
-  /// size of the correction: the largest of displacements of nodes over edges and of
-  /// their speeds over rate times edges. `placed` and `factors` (edges) then serve
+  /// Computes a correction with the exact Jacobian, in which edges resist turns by these
+  /// `tensions`. The correction replaces them by the tensions that it found (StressForm).
+  /// Returns the size of the correction: the largest of displacements of nodes over edges
+  /// and of their speeds over rate times edges. `placed` and `factors` (edges) then serve
   /// again().
   TRESS_FLATTEN T newton(const SpringMaterial<T>& m, const SpringEdge<T>* edges,
                          const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
@@ -127,7 +127,8 @@ class SpringStrand {
     }
     return size;
   }
-  /// By the matrix of the last newton() at another state. `now` (edges): scratch.
+  /// Computes a correction with the matrix of the last newton() at another state. `now`
+  /// (edges): scratch.
   TRESS_FLATTEN T again(const SpringMaterial<T>& m, const SpringEdge<T>* edges,
                         const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
                         const T* a, const Load* loads, T* correction,
@@ -141,7 +142,7 @@ class SpringStrand {
     }
     return substitute(m, w, placed, factors, correction);
   }
-  /// Of the edges at q, where `which` > 0.
+  /// Writes the tensions of the edges at q, in lanes with `which` > 0.
   void take_tensions(const SpringMaterial<T>& m, const T* q, const T& which,
                      T* tensions) const {
     for (int i = 0; i < n_; ++i) {
@@ -153,7 +154,8 @@ class SpringStrand {
     }
   }
 
-  /// At (q, v); `at`: of the root, seen from the head's position.
+  /// Computes the energies at (q, v); `at`: position of the root seen from the head's
+  /// position.
   TRESS_FLATTEN LaneEnergies<T> energies(const SpringMaterial<T>& m,
                                          const SpringEdge<T>* edges,
                                          const LaneClamp<T>& clamp, Vec at, const T* q,

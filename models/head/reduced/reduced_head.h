@@ -121,8 +121,8 @@ class ReducedHead : public Head {
       loads = scratch.loads.find(*reached, v, elements);
     }
     by(instructions_, [&] {
-      kernel_.semi_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
-                                 elements);
+      kernel_.linearly_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
+                                     elements);
     });
     T finite(0);  // 0 or NaN
     for (std::size_t i = 0; i < n_; ++i) {
@@ -373,7 +373,7 @@ class ReducedHead : public Head {
   std::vector<Vec3<T>> q_, v_, rest_;  // (blocks, elements)
   std::vector<char> lost_;             // of each strand
   HeadLosses losses_;
-  std::vector<char> hurt_;    // of each block: whether it has a lost strand
+  std::vector<char> hurt_;    // of each block: whether it has a failed strand
   std::vector<Effects> own_;  // of each strand, or empty
 };
 

@@ -2,8 +2,7 @@
 
 #include "math/matrix3.h"
 
-/// What the kernels of this folder do with 3 x 3 matrices beyond
-/// math/matrix3.h.
+/// Operations of this folder's kernels on 3 x 3 matrices beyond math/matrix3.h.
 namespace tress::models {
 
 /// s += w x x^T.

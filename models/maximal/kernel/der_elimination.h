@@ -16,9 +16,9 @@ struct DerPlaced {
   T tension;
   Symmetric3<T> stiff;  // K: w (edge - edge before) . K (edge - edge before)
 
-  /// The force on its end, in components of the world, that is work-conjugate to its
-  /// tension and a moment on it: moment . omega = force . de + torque dtheta, where the
-  /// torque is the moment along the edge.
+  /// Returns the force on the edge's end, in world components, that is work-conjugate to
+  /// its tension and a moment on the edge. It satisfies moment . omega = force . de +
+  /// torque dtheta, where the torque is the moment along the edge.
   Vec3<T> force_by(const Vec3<T>& on_it) const {
     const T along = on_it.x;
     return tension * frame.e0 + (inverse_length * (on_it.z - along * p.z)) * frame.e1 -
@@ -43,8 +43,8 @@ struct DerChange {
   Vec3<T> omega;
   T sigma;
 };
-/// Of an edge whose start moves by x, by the rotation of the edge before, of which the
-/// first has none.
+/// Computes the change of an edge whose start moves by x while the edge before rotates by
+/// `before`; the first edge has none before it.
 template <class T, class Factor>
 DerChange<T> der_change(const DerPlaced<T>& e, const Factor& f, bool first,
                         const Vec3<T>& x, const Vec3<T>& before) {
@@ -72,8 +72,9 @@ struct DerStiffElimination {
     T own_sigma;
   };
 
-  /// Of everything beyond an edge, by the position x of its start and the rotation w of
-  /// the edge before; before eliminate() with the inertia of the node at its end.
+  /// Quadratic form of all that follows an edge, by the position x of its start and the
+  /// rotation w of the edge before. Before eliminate() it includes the inertia of the
+  /// node at the edge's end.
   struct Beyond {
     Symmetric xx{}, ww{};
     Matrix xw{};
@@ -130,9 +131,9 @@ struct DerStiffElimination {
     ww = congruent(e.turn, upper(f.of_turn.transposed(), full(h)));
   }
 
-  /// Right sides of an edge's unknowns, given residuals of the node at its end and of
-  /// omega and sigma; passes on what is left to the start and to the edge before, in the
-  /// edge's components.
+  /// Reduces the right-hand sides of an edge's unknowns, given residuals of the node at
+  /// its end and of omega and sigma. Passes the remainder to the start and to the edge
+  /// before, in the edge's components.
   static void reduce(const Placed& e, Factor& f, const Vec& force, const Vec& moment,
                      const T& tension, Vec& f_x, Vec& f_omega) {
     f_x = f_x + force;
@@ -146,7 +147,7 @@ struct DerStiffElimination {
   }
 };
 
-/// The same with second derivatives; those of friction are not symmetric.
+/// Elimination of an edge with second derivatives; those of friction are not symmetric.
 template <class T>
 struct DerExactElimination {
   using Vec = Vec3<T>;

@@ -7,8 +7,8 @@
 
 namespace tress::models {
 
-/// Frame of an edge along t as models/maximal/rod_edge.h's edge_frame(): `tangent` and
-/// `direction` are e0 and e1 of its reference, beside = 1/(1 + tangent . t).
+/// Frame of an edge along t as edge_frame() of models/maximal/rod_edge.h. `tangent` and
+/// `direction` are e0 and e1 of its reference, `beside` = 1/(1 + tangent . t).
 template <class T>
 FrameOf<T> der_frame(const Vec3<T>& tangent, const Vec3<T>& direction, const Vec3<T>& t,
                      const T& beside, const T& theta) {
@@ -18,7 +18,7 @@ FrameOf<T> der_frame(const Vec3<T>& tangent, const Vec3<T>& direction, const Vec
   return {t, m1, cross(t, m1)};
 }
 
-/// How an edge moves: spin in components of its frame, and rate of its length.
+/// Motion of an edge: spin in components of its frame, and rate of its length.
 template <class T>
 struct DerMotion {
   Vec3<T> spin;
@@ -61,9 +61,9 @@ class DerForces {
     return DerJoint<T>(e.turn);
   }
 
-  /// What friction adds to the moment on an edge where it and the edge before lengthen:
-  /// they then turn less at the same rates. Elimination leaves it out, as it is small
-  /// beside the stiffness against lengthening.
+  /// Contribution of friction to the moment on an edge where it and the edge before
+  /// lengthen. They then turn less at the same rates. Elimination omits it, as it is
+  /// small compared with the stiffness against lengthening.
   struct ByLengthening {
     Vec own, before;
   };

@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// Of an edge, between sweeps.
+/// Data of an edge between sweeps.
 template <class T>
 struct SpringPlaced : SpringDirection<T> {
   Vec3<T> rate;  // of the edge, seen from the root
@@ -112,8 +112,9 @@ struct SpringStiffElimination {
     add_product(of_x, T(-2) * turns.xy, b1, b2);
   }
 
-  /// Right sides of an edge, given the residuals of the node at its end and of its
-  /// springs in its frame; passes on what is left to the start and to the edge before.
+  /// Reduces the right-hand sides of an edge, given the residuals of the node at its end
+  /// and of its springs in its frame. Passes the remainder to the start and to the edge
+  /// before.
   static void reduce(const Placed& e, bool first, Factor& factor, const Vec& force,
                      const Vec& springs, Right& right) {
     Vec& f = right.f;
@@ -154,9 +155,9 @@ struct SpringStiffElimination {
   }
 };
 
-/// The same with second derivatives, of which those of friction are not symmetric.
-/// Everything beyond an edge answers a change x of its start and y of the edge before
-/// with a force and a moment,
+/// Elimination of an edge with second derivatives, of which those of friction are not
+/// symmetric. All that follows an edge responds to a change x of its start and y of the
+/// edge before with a force and a moment,
 ///
 ///     A x + C y - f,    E x + D y - g.
 template <class T>

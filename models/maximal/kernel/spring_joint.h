@@ -67,13 +67,14 @@ struct SpringBinormal {
   Vec value;
 };
 
-/// Strains s of a joint do not change with the lengths of its edges. So a turn by m
-/// counts less, the longer the edge,
+/// Computes the change of the strain rate s' of a joint by its edge's own rate. Strains s
+/// of a joint do not change with the lengths of its edges. The effect of a turn by m
+/// falls with the length of the edge,
 ///
 ///     d^2s/(dt dm) = -(ds/dm)/length,    d^2s/dt^2 = 0,
 ///
-/// and s' has this derivative by a change of an edge (along t, m1, m2), as far as it
-/// comes from the edge's own rate, in its frame; g: ds/dm, `second`: that of both m.
+/// so s' has this derivative by a change of an edge (along t, m1, m2), in its frame. g:
+/// ds/dm; `second`: the second derivative by both m.
 template <class T>
 Vec3<T> rate_by_own(const T (&g)[2], const TurnForm<T>& second, const T& inverse_length,
                     const Vec3<T>& rate) {
@@ -83,8 +84,9 @@ Vec3<T> rate_by_own(const T (&g)[2], const TurnForm<T>& second, const T& inverse
           second.xy * rate.y + second.yy * rate.z - longer * g[1]};
 }
 
-/// Second derivative of d . kb by turns k, l of one edge, of the binormal kb and a fixed
-/// d, with the first derivatives g and c = by (t of the other edge . m)/length:
+/// Computes the second derivative of d . kb by turns k, l of one edge, for the binormal
+/// kb and a fixed d. With the first derivatives g and c = by (t of the other edge .
+/// m)/length it is
 ///
 ///     -(c_k g_l + c_l g_k) - delta_kl by d.kb/length^2.
 ///
@@ -123,7 +125,8 @@ struct SpringHinge {
     TurnForm<T> by_before, by_after;
     T mixed[2][2];  // [before][after]
   };
-  /// With d along kb: the second derivative of d . kb, and what kb changes across d.
+  /// Computes the second derivative of d . kb with d along kb, and the changes of kb
+  /// across d.
   Second second() const {
     const FrameOf<T>&f0 = before.frame, &f1 = after.frame;
     const T by0 = kb.by * before.inverse_length, by1 = kb.by * after.inverse_length;

@@ -99,12 +99,13 @@ TEST(SuperClothoid, OfAReleasedRodThreeElementsAreWithin1PercentAndSixWithinATen
 // In units of the rod, sqrt(rho S L^4/EI).
 TEST(SuperClothoid, RecursionIsTheDenseSolutionAtManyElementsAndShortSteps) {
   const double h = 1e-3 * std::sqrt(line_density);
-  for (const std::string tangent : {"stiff", "exact"}) {
+  for (const std::string jacobian : {"elastic", "exact"}) {
     for (const std::string curvature : {"0", "18"}) {
-      const ModelSettings settings = with(unit_rod, {{"elements", "40"},
-                                                     {"tangent", tangent},
-                                                     {"natural_curvature_1_m", curvature},
-                                                     {"natural_twist_1_m", "3"}});
+      const ModelSettings settings =
+          with(unit_rod, {{"elements", "40"},
+                          {"jacobian", jacobian},
+                          {"natural_curvature_per_m", curvature},
+                          {"natural_twist_per_m", "3"}});
       const auto recursive =
           make_model("super_clothoid", with(settings, {{"solver", "recursive"}}));
       const auto dense =
@@ -119,7 +120,7 @@ TEST(SuperClothoid, RecursionIsTheDenseSolutionAtManyElementsAndShortSteps) {
           ASSERT_EQ(one->solve(b, one == dense.get() ? y : x), Status::ok);
         }
         const double difference = relative_difference(x, y, s.a_typ);
-        std::printf("%s, curvature %s: %.1e\n", tangent.c_str(), curvature.c_str(),
+        std::printf("%s, curvature %s: %.1e\n", jacobian.c_str(), curvature.c_str(),
                     difference);
         EXPECT_LE(difference, 1e-10);
       }
@@ -153,9 +154,9 @@ TEST(SuperClothoid, RefusesWhatItsPointsCannotTell) {
   for (const std::string points : {"1", "3"}) {
     EXPECT_THROW(make_model("super_clothoid", {{"quadrature", points}}), InputError);
   }
-  EXPECT_THROW(
-      make_model("super_clothoid", {{"elements", "2"}, {"natural_curvature_1_m", "1e4"}}),
-      InputError);
+  EXPECT_THROW(make_model("super_clothoid",
+                          {{"elements", "2"}, {"natural_curvature_per_m", "1e4"}}),
+               InputError);
 }
 
 }  // namespace tress::test_super_clothoid

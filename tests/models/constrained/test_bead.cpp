@@ -114,7 +114,7 @@ TEST_P(Wires, ExactTangentIsTheDerivativeAndTheStiffOneDropsInertia) {
                            {"start_rad", "0.4"},
                            {"speed_m_s", "1.5"},
                            {"drag_kg_s", "0.3"},
-                           {"tangent", "stiff"}});
+                           {"jacobian", "elastic"}});
   const Oracle at(*exact);
   const double a0 = 0.8;
   const Eigen::VectorXd a = Eigen::VectorXd::Constant(1, a0);

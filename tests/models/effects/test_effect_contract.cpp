@@ -31,7 +31,7 @@ using Settings = std::map<std::string, std::string>;
 Settings lively(std::string_view id) {
   if (id == "constant_force")
     return {{"force_n_m", "1,-2,0.5"}, {"force_n_kg", "2,1,-3"}};
-  if (id == "linear_drag") return {{"drag_kg_m_s", "0.7"}, {"mass_damping_1_s", "0.4"}};
+  if (id == "linear_drag") return {{"drag_kg_m_s", "0.7"}, {"mass_damping_per_s", "0.4"}};
   if (id == "quadratic_drag") return {{"strand_radius_m", "0.1"}};
   if (id == "wind") {
     return {{"velocity_m_s", "1.5,-0.4,0.7"}, {"frequency_hz", "0.6"},

@@ -69,7 +69,7 @@ inline std::unique_ptr<System> rod_alone(const RodCase& c, std::size_t k,
                                          const char* tangent) {
   const models::ModelEntry& entry = models::find_model("der");
   Parameters parameters(entry.parameters, "test");
-  parameters.set("tangent", tangent);
+  parameters.set("jacobian", tangent);
   const simulation::HeadOptions o = rod_options(c);
   return entry.on_strand(rod(c, k), parameters,
                          {std::make_shared<models::Gravity>(o.gravity),

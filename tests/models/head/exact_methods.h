@@ -25,13 +25,13 @@ struct HairMethod {
     return std::min(steps, solved) * left * Options{}.newton_tolerance;
   }
 };
-inline constexpr HairMethod one_solve{HeadMethod::semi_implicit_euler,
-                                      "semi_implicit_euler", "", 0, 0},
+inline constexpr HairMethod one_solve{HeadMethod::linearly_implicit_euler,
+                                      "linearly_implicit_euler", "", 0, 0},
     newton{HeadMethod::backward_euler, "backward_euler", "Newton", 1},
     midpoint{HeadMethod::linearly_implicit_midpoint, "linearly_implicit_midpoint",
              "Midpoint", 1, 2},
     tr_bdf2{HeadMethod::tr_bdf2, "tr_bdf2", "TrBdf2", 7};
-/// Those with the exact tangent.
+/// Those with the exact Jacobian.
 inline constexpr const HairMethod* exact_methods[] = {&newton, &midpoint, &tr_bdf2};
 
 }  // namespace tress::testing_support

@@ -59,7 +59,7 @@ struct Case {
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
-/// The same with the exact tangent, whose steps are longer, of hairs that are let go in
+/// The same with the exact Jacobian, whose steps are longer, of hairs that are let go in
 /// their rest shape: sprung ones whirl so fast that such steps have no solution, or turn
 /// back.
 inline Case exact(Case c, const HairMethod& method) {
@@ -147,10 +147,11 @@ inline double change_of_start(const Case& c, int steps) {
 inline Alone alone(const Case& c, std::size_t k, std::span<const double> times,
                    double step, double change) {
   const Strand one = strand(c, k);
-  const ReducedOptions of_model{
-      .dofs = c.twist ? 3 : 2,
-      .tangent = c.method == &one_solve ? ReducedTangent::stiff : ReducedTangent::exact,
-      .quadrature = c.points};
+  const ReducedOptions of_model{.dofs = c.twist ? 3 : 2,
+                                .jacobian = c.method == &one_solve
+                                                ? ReducedJacobian::elastic
+                                                : ReducedJacobian::exact,
+                                .quadrature = c.points};
   const HeadOptions o = options(c);
   Effects effects = {std::make_shared<Gravity>(o.gravity),
                      std::make_shared<LinearDrag>(o.drag, o.mass_damping)};

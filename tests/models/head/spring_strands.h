@@ -44,7 +44,7 @@ inline std::unique_ptr<System> spring_alone(const models::Strand& strand,
                                             const models::Effects& more = {}) {
   const models::ModelEntry& entry = models::find_model("mass_spring");
   Parameters parameters(entry.parameters, "test");
-  parameters.set("tangent", method.left > 0 ? "exact" : "filtered");
+  parameters.set("jacobian", method.left > 0 ? "exact" : "filtered");
   models::Effects effects = {
       std::make_shared<models::Gravity>(o.gravity),
       std::make_shared<models::LinearDrag>(o.drag, o.mass_damping)};

@@ -193,7 +193,7 @@ std::pair<long, Motion> by_integrator(const HeadMaker& maker, const Strand& in_h
   strand.root.centre = o.motion.position;
   const ModelEntry& entry = find_model(maker.model);
   Parameters parameters(entry.parameters, "test");
-  if (parameters.knows("tangent")) parameters.set("tangent", "exact");
+  if (parameters.knows("jacobian")) parameters.set("jacobian", "exact");
   if (!maker.stretches) parameters.set("quadrature", "4");
   const auto system =
       entry.on_strand(strand, parameters,

@@ -198,7 +198,7 @@ TEST_P(ControlledHead, RefusesWhatItCannotKeep) {
                 HasSubstr("between 0 and 1"));
   }
   for (const HeadMethod method :
-       {HeadMethod::semi_implicit_euler, HeadMethod::linearly_implicit_midpoint,
+       {HeadMethod::linearly_implicit_euler, HeadMethod::linearly_implicit_midpoint,
         HeadMethod::backward_euler}) {
     EXPECT_THAT(why(1e-3, HeadNumber::float64, method), HasSubstr("use tr_bdf2"));
   }

@@ -58,7 +58,7 @@ struct Alone {
 };
 Alone alone(const RodCase& c, const Method& method, std::size_t k, int steps, double h,
             double change) {
-  const auto system = rod_alone(c, k, method.left > 0 ? "exact" : "stiff");
+  const auto system = rod_alone(c, k, method.left > 0 ? "exact" : "elastic");
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
   std::vector<double> q(n), v(n);
   system->initial_state(q, v);
@@ -92,7 +92,7 @@ class DerHead : public testing::TestWithParam<RodCase> {};
 // The head renews references a step later: an angle that has just become 0 is left out.
 // By tr_bdf2 steps of these strands without friction have no solution after some 20 ms,
 // in the head or alone. By linearly_implicit_midpoint they are the ones that are
-// compared: the head's tangent lacks slopes of friction, which show where one correction
+// compared: the head's Jacobian lacks slopes of friction, which show where one correction
 // is a step; with friction test_head_methods.cpp has the order of the errors.
 TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
   const RodCase& c = GetParam();
@@ -154,12 +154,12 @@ TEST_P(DerHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
   all->motion(0, t, x, v);
   for (std::size_t k = 0; k < 8; ++k) {
     SCOPED_TRACE(k);
-    const auto system = rod_alone(c, k, "stiff");
+    const auto system = rod_alone(c, k, "elastic");
     Options options;
     options.step = h;
     std::vector<double> q0(4 * n), v0(4 * n), u(3 * (n + 1));
     system->initial_state(q0, v0);
-    const auto one = make_integrator("semi_implicit_euler", *system, options);
+    const auto one = make_integrator("linearly_implicit_euler", *system, options);
     ASSERT_EQ(one->start(0, q0, v0), Status::ok);
     ASSERT_EQ(one->advance(t), Status::ok);
     const Energy want = system->energetics()->energy(t, one->q(), one->v());

@@ -79,7 +79,7 @@ std::vector<double> wanted(System& system, Weights w, const BentState& linear,
 template <bool exact>
 void compare(const RodCase& c, double h, bool unstretched, double off) {
   const Rod rod(c);
-  const auto system = rod_alone(c, 3, exact ? "exact" : "stiff");
+  const auto system = rod_alone(c, 3, exact ? "exact" : "elastic");
   const BentState first = state(*system, 0, unstretched ? &rod : nullptr),
                   second = state(*system, 1, unstretched ? &rod : nullptr);
   const Weights w{1, h, h * h};

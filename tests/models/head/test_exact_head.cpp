@@ -9,7 +9,7 @@
 #include "tests/support/apart.h"
 
 /// Newton's corrections of a head's strands against those of the same strands by
-/// themselves with the exact tangent (models/reduced/exact_tangent.h).
+/// themselves with the exact Jacobian (models/reduced/exact_tangent.h).
 namespace tress::test_exact_head {
 
 using namespace simulation;

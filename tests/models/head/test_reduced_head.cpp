@@ -118,10 +118,11 @@ INSTANTIATE_TEST_SUITE_P(Cases, ReducedHead, testing::ValuesIn(cases()),
 /// Energetics of the strand by itself, in the head's state.
 Energy energy_alone(const Case& c, std::size_t k, double t, const Head& all,
                     const Effects& effects) {
-  const auto system = c.model->alone(
-      strand(c, k),
-      {.dofs = c.twist ? 3 : 2, .tangent = ReducedTangent::stiff, .quadrature = c.points},
-      effects);
+  const auto system = c.model->alone(strand(c, k),
+                                     {.dofs = c.twist ? 3 : 2,
+                                      .jacobian = ReducedJacobian::elastic,
+                                      .quadrature = c.points},
+                                     effects);
   const auto n = static_cast<std::size_t>(3 * c.elements);
   std::vector<double> q(n), v(n);
   all.state(k, q, v);
@@ -296,7 +297,7 @@ TEST_P(HeadOfModel, MemoryIsTheStateAndTwentyNumbers) {
   const Case& c = GetParam();
   const auto all = head(c, {HeadNumber::float64, 8}, 16);
   EXPECT_EQ(all->blocks(), 2u);
-  // Of an element coordinates, rates and rest; with the exact tangent accelerations from
+  // Of an element coordinates, rates and rest; with the exact Jacobian accelerations from
   // which steps go on, and the size of corrections, which takes two numbers more. Two of
   // them have two numbers of when they were.
   const std::size_t numbers = c.method == &testing_support::one_solve ? 10 * 9 + 21

@@ -7,7 +7,7 @@
 #include "models/effects/constant_force.h"
 #include "tests/models/head/spring_strands.h"
 
-/// Heads of springs by semi_implicit_euler; by the other methods in
+/// Heads of springs by linearly_implicit_euler; by the other methods in
 /// test_spring_methods.cpp.
 namespace tress::test_spring_head {
 

@@ -7,7 +7,7 @@
 #include "tests/models/head/spring_strands.h"
 #include "tests/support/bare_system.h"
 
-/// Heads of springs by the methods with the exact tangent; by semi_implicit_euler in
+/// Heads of springs by the methods with the exact Jacobian; by linearly_implicit_euler in
 /// test_spring_head.cpp.
 namespace tress::test_spring_methods {
 

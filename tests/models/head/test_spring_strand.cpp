@@ -1,4 +1,4 @@
-// The kernel of springs with the exact tangent against the System of one strand: each
+// The kernel of springs with the exact Jacobian against the System of one strand: each
 // step of Newton's.
 #include <gtest/gtest.h>
 

@@ -20,7 +20,7 @@ inline const ModelSettings bent_throw = {{"elements", "6"},
                                          {"youngs_modulus_pa", "1e6"},
                                          {"radius_m", "1e-3"},
                                          {"initial", "bent"},
-                                         {"initial_curvature_1_m", "20"}};
+                                         {"initial_curvature_per_m", "20"}};
 
 /// What implicit_midpoint loses of a free strand in `duration`: root mean square of the
 /// energy's drift over the largest kinetic energy, and the largest drift of linear and

@@ -68,12 +68,12 @@ INSTANTIATE_TEST_SUITE_P(
                     StrandCase{"dynamic_spline", "dynamic_spline", {{"twist", "none"}}},
                     StrandCase{"dynamic_spline_curly",
                                "dynamic_spline",
-                               {{"natural_curvature_1_m", "20"},
-                                {"natural_twist_1_m", "10"},
+                               {{"natural_curvature_per_m", "20"},
+                                {"natural_twist_per_m", "10"},
                                 {"internal_friction_kg_m3_s", "1e-9"}}},
                     StrandCase{"kirchhoff_nodal",
                                "kirchhoff_nodal",
-                               {{"natural_curvature_1_m", "20"},
+                               {{"natural_curvature_per_m", "20"},
                                 {"internal_friction_kg_m3_s", "1e-9"}}}),
     [](const auto& test) { return test.param.name; });
 

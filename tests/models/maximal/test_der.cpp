@@ -82,8 +82,8 @@ TEST_P(ReferenceFrames, NewOnesLeaveTheMotionAsItIs) {
   const auto [model, nodes] = GetParam();
   const auto system = make_model(model, {{"elements", "6"},
                                          {"motion", "free"},
-                                         {"natural_curvature_1_m", "40"},
-                                         {"natural_twist_1_m", "30"},
+                                         {"natural_curvature_per_m", "40"},
+                                         {"natural_twist_per_m", "30"},
                                          {"gravity_m_s2", "0"}});
   State state = initial_state(*system);
   const std::size_t angles = 3 * nodes;
@@ -191,9 +191,9 @@ TEST(Der, TangentIsExactForCurlsWithFriction) {
       const auto system = make_model("der", {{"elements", "6"},
                                              {"motion", root},
                                              {"stretch", stretch},
-                                             {"natural_curvature_1_m", "40"},
-                                             {"natural_curvature2_1_m", "10"},
-                                             {"natural_twist_1_m", "20"},
+                                             {"natural_curvature_per_m", "40"},
+                                             {"natural_curvature2_per_m", "10"},
+                                             {"natural_twist_per_m", "20"},
                                              {"ellipticity", "1.3"},
                                              {"internal_friction_kg_m3_s", "1e-7"}});
       States s(*system);

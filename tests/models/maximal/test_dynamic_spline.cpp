@@ -127,9 +127,9 @@ TEST(DynamicSpline, ClampedFrequenciesAreThoseOfTheBeamToOrder4) {
 }
 
 TEST(DynamicSpline, RefusesWhatNeedsAMaterialFrame) {
-  for (const auto& [key, value] : ModelSettings{{"natural_curvature_1_m", "10"},
-                                                {"natural_curvature2_1_m", "10"},
-                                                {"natural_twist_1_m", "10"},
+  for (const auto& [key, value] : ModelSettings{{"natural_curvature_per_m", "10"},
+                                                {"natural_curvature2_per_m", "10"},
+                                                {"natural_twist_per_m", "10"},
                                                 {"ellipticity", "1.2"},
                                                 {"internal_friction_kg_m3_s", "1e-10"}}) {
     EXPECT_NO_THROW((void)make_model("dynamic_spline", {{key, value}})) << key;

@@ -68,9 +68,9 @@ TEST(SplineStrains, HaveExactDerivatives) {
 }
 
 const ModelSettings curly_hair = {{"elements", "6"},
-                                  {"natural_curvature_1_m", "40"},
-                                  {"natural_curvature2_1_m", "10"},
-                                  {"natural_twist_1_m", "20"},
+                                  {"natural_curvature_per_m", "40"},
+                                  {"natural_curvature2_per_m", "10"},
+                                  {"natural_twist_per_m", "20"},
                                   {"ellipticity", "1.3"}};
 
 TEST(FramedSpline, TangentIsExactForCurlsWithFriction) {
@@ -129,7 +129,7 @@ TEST(FramedSpline, TwistsAtTheFrequenciesOfAShaft) {
   for (const int n : {10, 20, 40}) {
     const ModelSettings settings = {{"elements", std::to_string(n)},
                                     {"ellipticity", "1.3"},
-                                    {"natural_twist_1_m", "20"}};
+                                    {"natural_twist_per_m", "20"}};
     const auto system = make_model("dynamic_spline", settings);
     const Strand shaft = strand(parameters_of("dynamic_spline", settings));
     const CrossSection& section = shaft.segments.front().section;
@@ -186,8 +186,8 @@ TEST(FramedSpline, CurlsOnAShakenRootMoveAsDiscreteRodsDo) {
                                                   {"elements", elements},
                                                   {"radius_m", "1e-3"},
                                                   {"youngs_modulus_pa", "1e7"},
-                                                  {"natural_curvature_1_m", "40"},
-                                                  {"natural_twist_1_m", "20"},
+                                                  {"natural_curvature_per_m", "40"},
+                                                  {"natural_twist_per_m", "20"},
                                                   {"ellipticity", "1.3"},
                                                   {"internal_friction_kg_m3_s", "1e-8"}},
                                                  0.2, q);

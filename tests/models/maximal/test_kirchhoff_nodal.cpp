@@ -120,13 +120,13 @@ TEST(KirchhoffNodal, ClampedFrequenciesApproachTheBeamAtOrder2) {
 
 const ModelSettings everything = {{"elements", "9"},
                                   {"motion", "shake_rotate"},
-                                  {"natural_curvature_1_m", "60"},
-                                  {"natural_curvature2_1_m", "-20"},
-                                  {"natural_twist_1_m", "30"},
+                                  {"natural_curvature_per_m", "60"},
+                                  {"natural_curvature2_per_m", "-20"},
+                                  {"natural_twist_per_m", "30"},
                                   {"ellipticity", "1.5"},
                                   {"internal_friction_kg_m3_s", "1e-11"},
                                   {"drag_kg_m_s", "1e-5"},
-                                  {"mass_damping_1_s", "3"}};
+                                  {"mass_damping_per_s", "3"}};
 
 TEST(KirchhoffNodal, TangentHoldsCurlsFrictionDragAndTheClamp) {
   const auto system = make_model("kirchhoff_nodal", everything);
@@ -156,7 +156,7 @@ TEST(KirchhoffNodal, TheGridKeepsTheBalanceOfEnergy) {
   EXPECT_NEAR(rate, energetics.power(t0, s.q, s.v), 1e-10 * scale / time);
 }
 
-/// S(w) x of the exact tangent where the strand starts.
+/// S(w) x of the exact Jacobian where the strand starts.
 std::vector<double> exact_times(const ModelSettings& settings, Weights w,
                                 const std::vector<double>& x) {
   const auto system = make_model("kirchhoff_nodal", settings);
@@ -179,7 +179,7 @@ TEST(KirchhoffNodal, StiffTangentIsThatOfTheStraightStrand) {
   const ModelSettings straight =
       with(weightless, {{"ellipticity", "1.5"}, {"internal_friction_kg_m3_s", "0.01"}});
   const auto stiff =
-      make_model("kirchhoff_nodal", with(straight, {{"tangent", "stiff"}}));
+      make_model("kirchhoff_nodal", with(straight, {{"jacobian", "elastic"}}));
   const std::vector<double> zero = zeros(*stiff);
   const int n = static_cast<int>(zero.size()) / 3;
   for (const Weights w : {Weights{0, 0, 1}, Weights{0, 1, 0}, Weights{1, 0.1, 0.01}}) {
@@ -198,7 +198,7 @@ TEST(KirchhoffNodal, StiffTangentIsThatOfTheStraightStrand) {
 // kappa h/2 for the shortest waves, k = 2/h.
 TEST(KirchhoffNodal, StiffTangentHoldsTheTermsOfHighestOrder) {
   const ModelSettings bent =
-      with(weightless, {{"initial", "bent"}, {"initial_curvature_1_m", "1"}});
+      with(weightless, {{"initial", "bent"}, {"initial_curvature_per_m", "1"}});
   std::vector<double> sizes, left_out[3];
   for (const int n : {20, 40, 80}) {
     const ModelSettings elements = {{"elements", std::to_string(n)}};
@@ -233,8 +233,8 @@ Vec released_tip(std::string_view model, int n, const ModelSettings& more,
 }
 
 TEST(KirchhoffNodal, FallsAsHelicesDo) {
-  const ModelSettings hair = {{"natural_curvature_1_m", "20"},
-                              {"natural_twist_1_m", "20"}};
+  const ModelSettings hair = {{"natural_curvature_per_m", "20"},
+                              {"natural_twist_per_m", "20"}};
   const auto helices = [&](int n) {
     return released_tip("super_helix", n, hair, "implicit_midpoint", 1e-4);
   };
@@ -254,7 +254,7 @@ TEST(KirchhoffNodal, FallsAsHelicesDo) {
 
 // In a plane the grid is that of der without stretch, in other coordinates.
 TEST(KirchhoffNodal, FallsInThePlaneAsDerDoesOnTheSameGrid) {
-  const ModelSettings hair = {{"natural_curvature_1_m", "20"}};
+  const ModelSettings hair = {{"natural_curvature_per_m", "20"}};
   std::vector<double> steps, errors;
   for (const double step : {4e-4, 2e-4, 1e-4}) {
     const Vec der = released_tip("der", 10, with(hair, {{"stretch", "inextensible"}}),

@@ -16,8 +16,8 @@ using namespace experiments;
 using namespace testing_support;
 
 const ModelSettings curls = {{"elements", "8"},
-                             {"natural_curvature_1_m", "40"},
-                             {"natural_twist_1_m", "20"},
+                             {"natural_curvature_per_m", "40"},
+                             {"natural_twist_per_m", "20"},
                              {"torsion", "altitude"}};
 
 class CurledSprings : public testing::TestWithParam<StrandCase> {};
@@ -88,8 +88,8 @@ INSTANTIATE_TEST_SUITE_P(
                     StrandCase{"lifted_curls",
                                "lifted_curls",
                                {{"elements", "8"},
-                                {"natural_curvature_1_m", "40"},
-                                {"natural_twist_1_m", "20"}}},
+                                {"natural_curvature_per_m", "40"},
+                                {"natural_twist_per_m", "20"}}},
                     StrandCase{"inextensible", "inextensible_strand", curls}),
     [](const auto& tested) { return tested.param.name; });
 
@@ -138,18 +138,23 @@ INSTANTIATE_TEST_SUITE_P(MassSpring, Springs,
 
 // A soft curl released straight, thrown into space with a spin of 10 rad/s.
 TEST(MassSpring, MidpointKeepsMomentumAndEnergyToOrder2) {
-  const ModelSettings thrown = {
-      {"elements", "10"},           {"motion", "free"},   {"gravity_m_s2", "0"},
-      {"youngs_modulus_pa", "1e6"}, {"radius_m", "1e-3"}, {"natural_curvature_1_m", "20"},
-      {"natural_twist_1_m", "10"},  {"initial", "bent"},  {"initial_curvature_1_m", "-5"},
-      {"torsion", "altitude"}};
+  const ModelSettings thrown = {{"elements", "10"},
+                                {"motion", "free"},
+                                {"gravity_m_s2", "0"},
+                                {"youngs_modulus_pa", "1e6"},
+                                {"radius_m", "1e-3"},
+                                {"natural_curvature_per_m", "20"},
+                                {"natural_twist_per_m", "10"},
+                                {"initial", "bent"},
+                                {"initial_curvature_per_m", "-5"},
+                                {"torsion", "altitude"}};
   expect_midpoint_keeps("mass_spring", thrown,
                         {0.5e-3, 0.25e-3, 0.125e-3, 0.0625e-3, 0.03125e-3}, 1e-9);
 }
 
 Eigen::MatrixXd tangent_of(const char* word, const std::vector<double>& q) {
   const auto system =
-      make_model("mass_spring", with(curls, {{"tangent", word}, {"gravity_m_s2", "0"}}));
+      make_model("mass_spring", with(curls, {{"jacobian", word}, {"gravity_m_s2", "0"}}));
   return dense_tangent(*system, q, {0, 0, 1});
 }
 

@@ -33,8 +33,8 @@ TEST_P(QuaternionRods, TangentIsExactWithFrictionOnATurningRoot) {
   const auto system = make_model(GetParam().model, {{"elements", "6"},
                                                     {"motion", "shake_rotate"},
                                                     {"internal_friction_kg_m3_s", "1e-7"},
-                                                    {"natural_curvature_1_m", "40"},
-                                                    {"natural_twist_1_m", "20"},
+                                                    {"natural_curvature_per_m", "40"},
+                                                    {"natural_twist_per_m", "20"},
                                                     {"ellipticity", "1.3"}});
   States s(*system);
   for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}}) {
@@ -51,7 +51,7 @@ TEST_P(QuaternionRods, SolveTheAssembledEquations) {
     return make_model(GetParam().model, {{"elements", "12"},
                                          {"motion", "shake_rotate"},
                                          {"internal_friction_kg_m3_s", "1e-7"},
-                                         {"natural_curvature_1_m", "40"},
+                                         {"natural_curvature_per_m", "40"},
                                          {"solver", solver}});
   };
   const auto system = made("auto"), assembled = made("klu");
@@ -139,11 +139,14 @@ TEST_P(QuaternionRods, ClampedFrequenciesApproachTheBeamAtOrder2) {
 // keeps the momenta, bilinear in q and v, as they are. Steps resolve the twist waves, up
 // to 2 sqrt(G/rho)/l = 3.4e3 rad/s: h omega <= 0.34, so that the next order is 1 % or so.
 TEST_P(QuaternionRods, MidpointKeepsMomentumAndEnergyToOrder2) {
-  const ModelSettings thrown = {
-      {"elements", "10"},          {"motion", "free"},
-      {"gravity_m_s2", "0"},       {"youngs_modulus_pa", "1e6"},
-      {"radius_m", "1e-3"},        {"natural_curvature_1_m", "20"},
-      {"natural_twist_1_m", "10"}, {"initial", "straight"}};
+  const ModelSettings thrown = {{"elements", "10"},
+                                {"motion", "free"},
+                                {"gravity_m_s2", "0"},
+                                {"youngs_modulus_pa", "1e6"},
+                                {"radius_m", "1e-3"},
+                                {"natural_curvature_per_m", "20"},
+                                {"natural_twist_per_m", "10"},
+                                {"initial", "straight"}};
   // Newton's tolerance is 1e-12.
   expect_midpoint_keeps(GetParam().model, thrown, {0.1e-3, 0.05e-3, 0.025e-3, 0.0125e-3},
                         1e-12);

@@ -67,7 +67,7 @@ TEST(InextensibleStrand, HangsAsStiffSpringsDo) {
 }
 
 /// Where a strand that Newton does not find lies at rest: steps down the potential, with
-/// the filtered tangent and as much of M as they need [Levenberg 1944, Marquardt 1963].
+/// the filtered Jacobian and as much of M as they need [Levenberg 1944, Marquardt 1963].
 std::vector<double> lowest(System& system) {
   std::vector<double> q = zeros(system), v = q, r = q;
   const std::vector<double> zero = q;
@@ -101,7 +101,7 @@ TEST(MassSpring, SecondNeighboursConvergeToARope) {
     const auto system = make_model(
         "mass_spring", with(thin_rod, {{"elements", std::to_string(n)},
                                        {"bending", "second_neighbour"},
-                                       {"tangent", "filtered"},
+                                       {"jacobian", "filtered"},
                                        {"gravity_m_s2", text(weight / line_density)}}));
     const std::vector<double> x = lowest(*system);
     const double width = x[x.size() - 3], edge = 1.0 / n;

@@ -73,10 +73,10 @@ TEST(XpbdCosserat, SoftenedItStretchesByItsWeight) {
 TEST(XpbdCosserat, ComplianceFormIsTheResidualWithFrictionOnATurningRoot) {
   const ModelSettings moving = {{"elements", "6"},
                                 {"motion", "shake_rotate"},
-                                {"mass_damping_1_s", "2"},
+                                {"mass_damping_per_s", "2"},
                                 {"internal_friction_kg_m3_s", "1e-7"},
-                                {"natural_curvature_1_m", "40"},
-                                {"natural_twist_1_m", "20"},
+                                {"natural_curvature_per_m", "40"},
+                                {"natural_twist_per_m", "20"},
                                 {"ellipticity", "1.3"}};
   for (const char* model : {"xpbd_cosserat", "corde", "mass_spring"}) {
     const auto system = make_model(

@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedEnergy,
 // The crank's equations come from T = v.M v / 2 and V = q.K q / 2; the same law, with M
 // and K read from the tangent.
 TEST(SliderCrank, InertiaForcesComeFromTheKineticEnergy) {
-  const auto system = make_model("slider_crank", {{"tangent", "stiff"}});
+  const auto system = make_model("slider_crank", {{"jacobian", "elastic"}});
   SparseForm& form = *system->sparse_form();
   const auto matrix = [&](const DenseState& s, Weights w) {
     Vector values(form.pattern().nonzeros());

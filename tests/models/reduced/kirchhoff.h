@@ -65,8 +65,8 @@ inline CurlyError curly_error(std::string_view model, const ModelSettings& rod,
   const Hung hung = hang(model,
                          with(rod, {{"elements", std::to_string(n)},
                                     {"root_tangent", "down"},
-                                    {"natural_curvature2_1_m", "18.0361544841071"},
-                                    {"natural_twist_1_m", "3.58817892564338"}}),
+                                    {"natural_curvature2_per_m", "18.0361544841071"},
+                                    {"natural_twist_per_m", "3.58817892564338"}}),
                          curly_gamma / line_density, accuracy, growth);
   const std::vector<double> x = points(hung);
   double farthest = 0;

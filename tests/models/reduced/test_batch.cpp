@@ -29,7 +29,7 @@ class Batch : public testing::TestWithParam<BatchCase> {
  protected:
   Batch() {
     options.dofs = GetParam().dofs;
-    options.tangent = ReducedTangent::stiff;
+    options.jacobian = ReducedJacobian::elastic;
     options.quadrature = 8;
     std::vector<Strand> strands;
     std::vector<Effects> acting;
@@ -99,7 +99,7 @@ TEST_P(Batch, SolvesAsTheStrandsDo) {
 std::vector<double> after(System& system, const std::vector<double>& q, int steps) {
   Options given;
   given.step = h;
-  const auto integrator = make_integrator("semi_implicit_euler", system, given);
+  const auto integrator = make_integrator("linearly_implicit_euler", system, given);
   EXPECT_EQ(integrator->start(0, q, std::vector<double>(q.size())), Status::ok);
   EXPECT_EQ(integrator->advance(steps * h), Status::ok);
   const In end = integrator->q();

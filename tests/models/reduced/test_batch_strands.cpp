@@ -10,7 +10,7 @@ using namespace testing_support;
 
 class BatchOf : public testing::Test {
  protected:
-  BatchOf() { options.tangent = ReducedTangent::stiff; }
+  BatchOf() { options.jacobian = ReducedJacobian::elastic; }
   void expect_refused(const char* what) {
     try {
       super_helix_batch(strands, options, acting);
@@ -40,8 +40,8 @@ TEST_F(BatchOf, FewerEffectsThanStrandsIsRefused) {
   expect_refused("1 lists of effects for 2 strands");
 }
 TEST_F(BatchOf, ExactTangentsIsRefused) {
-  options.tangent = ReducedTangent::exact;
-  expect_refused("stiff tangent");
+  options.jacobian = ReducedJacobian::exact;
+  expect_refused("elastic Jacobian");
 }
 TEST_F(BatchOf, DenseSolversIsRefused) {
   options.method = TreeMethod::composite;

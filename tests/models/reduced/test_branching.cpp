@@ -18,9 +18,9 @@ constexpr double tolerance = 1e-12;
 constexpr Weights weights{1, 1e-2, 1e-4};
 
 const ModelSettings curly_chain = {{"elements", "12"},
-                                   {"natural_curvature_1_m", "60"},
-                                   {"natural_curvature2_1_m", "10"},
-                                   {"natural_twist_1_m", "20"},
+                                   {"natural_curvature_per_m", "60"},
+                                   {"natural_curvature2_per_m", "10"},
+                                   {"natural_twist_per_m", "20"},
                                    {"grading", "2"},
                                    {"drag_kg_m_s", "1e-5"},
                                    {"internal_friction_kg_m3_s", "1e-11"}};
@@ -154,11 +154,11 @@ std::vector<ModelSettings> variants(const std::vector<std::string>& roots) {
   std::vector<ModelSettings> all;
   for (const std::string& root : roots) {
     for (const std::string modes : {"bend_twist", "bend"}) {
-      for (const std::string tangent : {"exact", "stiff"}) {
+      for (const std::string jacobian : {"exact", "elastic"}) {
         for (const std::string solver : {"recursive", "composite", "sparse"}) {
           all.push_back({{"modes", modes},
                          {"motion", root},
-                         {"tangent", tangent},
+                         {"jacobian", jacobian},
                          {"solver", solver}});
         }
       }
@@ -214,11 +214,11 @@ TEST(ForkOfHalves, MovesAsTheWholeInItsPlane) {
   const ModelSettings planar = {{"elements", "12"},
                                 {"motion", "shake"},
                                 {"root_tangent", "down"},
-                                {"natural_curvature_1_m", "40"}};
-  for (const std::string tangent : {"exact", "stiff"}) {
+                                {"natural_curvature_per_m", "40"}};
+  for (const std::string jacobian : {"exact", "elastic"}) {
     for (const std::string solver : {"recursive", "composite", "sparse"}) {
       const ModelSettings settings =
-          with(planar, {{"tangent", tangent}, {"solver", solver}});
+          with(planar, {{"jacobian", jacobian}, {"solver", solver}});
       const Parameters flat =
           parameters_of("super_helix", with(settings, {{"modes", "bend_planar"}}));
       const Parameters full = parameters_of("super_helix", settings);
@@ -227,8 +227,8 @@ TEST(ForkOfHalves, MovesAsTheWholeInItsPlane) {
       const Solved e = on_random_state(*whole);
       Solved s{fork(e.q, from, 1), fork(e.v, from, 1), fork(e.a, from, 1), {}, {}};
       evaluate(*tree, s);
-      EXPECT_LE(apart(s.r, fork(e.r, from, 0.5)), tolerance) << tangent << solver;
-      EXPECT_LE(apart(s.x, fork(e.x, from, 1)), tolerance) << tangent << solver;
+      EXPECT_LE(apart(s.r, fork(e.r, from, 0.5)), tolerance) << jacobian << solver;
+      EXPECT_LE(apart(s.x, fork(e.x, from, 1)), tolerance) << jacobian << solver;
     }
   }
 }

@@ -29,9 +29,9 @@ std::string name_of(const testing::TestParamInfo<Way>& tested) {
 }
 
 const ModelSettings ten = {{"elements", "10"}};
-const ModelSettings curly = with(ten, {{"natural_curvature_1_m", "40"},
-                                       {"natural_curvature2_1_m", "10"},
-                                       {"natural_twist_1_m", "20"},
+const ModelSettings curly = with(ten, {{"natural_curvature_per_m", "40"},
+                                       {"natural_curvature2_per_m", "10"},
+                                       {"natural_twist_per_m", "20"},
                                        {"ellipticity", "1.3"}});
 
 /// Both integrators on every strand, and the midpoint rule alone on those of `twisting`.
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
          {"super_helix_planar", "super_helix", with(ten, {{"modes", "bend_planar"}})},
          {"articulated_chain_straight", "articulated_chain", ten},
          {"palm_tree", "super_helix_tree", {{"tree", "palm_tree"}}},
-         {"der", "der", with(soft, {{"natural_twist_1_m", "20"}})}},
+         {"der", "der", with(soft, {{"natural_twist_per_m", "20"}})}},
         {{"super_helix_curly", "super_helix", curly},
          {"super_clothoid_curly", "super_clothoid", with(curly, {{"elements", "4"}})},
          {"articulated_chain_curly", "articulated_chain", curly}})),

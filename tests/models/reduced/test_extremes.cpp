@@ -90,9 +90,9 @@ class ManyTurns : public testing::TestWithParam<Winding> {
     return make_model("super_helix", {{"modes", GetParam().modes},
                                       {"elements", "3"},
                                       {"length_m", text(3 * element_m)},
-                                      {"natural_twist_1_m", text(kappa.x)},
-                                      {"natural_curvature_1_m", text(kappa.y)},
-                                      {"natural_curvature2_1_m", text(kappa.z)}});
+                                      {"natural_twist_per_m", text(kappa.x)},
+                                      {"natural_curvature_per_m", text(kappa.y)},
+                                      {"natural_curvature2_per_m", text(kappa.z)}});
   }
   static constexpr double element_m = 0.03;  // m
   static constexpr double angles[] = {pi / 2, 2 * pi, 3.7 * pi, 6 * pi};
@@ -208,7 +208,7 @@ TEST_P(Sizes, AcceleratesAndSteps) {
       r = residual(*system, start.q, start.v, a);
       // The solve for a is backward stable: n rounding errors of the load.
       EXPECT_LE(largest(r), 100 * static_cast<double>(r.size()) * eps * largest(load));
-      for (const std::string integrator : {"semi_implicit_euler", "backward_euler"}) {
+      for (const std::string integrator : {"linearly_implicit_euler", "backward_euler"}) {
         Options options;
         options.step = 1e-3;
         const Simulation run = simulate(integrator, *system, options, start, 5e-3);

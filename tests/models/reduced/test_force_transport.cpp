@@ -14,9 +14,9 @@ using namespace experiments;
 
 using namespace testing_support;
 
-const ModelSettings curly = {{"natural_curvature_1_m", "60"},
-                             {"natural_curvature2_1_m", "10"},
-                             {"natural_twist_1_m", "20"},
+const ModelSettings curly = {{"natural_curvature_per_m", "60"},
+                             {"natural_curvature2_per_m", "10"},
+                             {"natural_twist_per_m", "20"},
                              {"ellipticity", "1.3"},
                              {"grading", "2"},
                              {"internal_friction_kg_m3_s", "1e-11"}};
@@ -140,7 +140,7 @@ TEST(ForceTransport, MassIsTheLowerBlockTriangleOfTheChains) {
 // falls in the norm e^T M e = e^T r with every sweep [Golub, Van Loan, section 11.2].
 TEST(ForceTransport, IsTheFirstGaussSeidelSweepOfTheChain) {
   for (const Modes& modes : all_modes) {
-    const Pair models = pair(modes, 4, {{"tangent", "stiff"}});
+    const Pair models = pair(modes, 4, {{"jacobian", "elastic"}});
     States s(*models.chain);
     s.shake(0.5);
     std::vector<double> exact(s.n), a(s.n), step(s.n);
@@ -171,7 +171,7 @@ TEST(ForceTransport, TangentIsExactOnCurls) {
   for (const Modes& modes : all_modes) {
     const ModelSettings setting = {{"motion", "shake_rotate"}, {"drag_kg_m_s", "1e-6"}};
     const Pair models = pair(modes, 6, setting);
-    const Pair stiff = pair(modes, 6, with(setting, {{"tangent", "stiff"}}));
+    const Pair stiff = pair(modes, 6, with(setting, {{"jacobian", "elastic"}}));
     double most = 0, without = std::numeric_limits<double>::infinity();
     for (const Weights w : {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01},
                             Weights{1, 0, 0}, Weights{0, 0, 1}, Weights{400, 20, 1}}) {
@@ -238,8 +238,8 @@ TEST(ForceTransport, OfTwoHangingLinksFlutters) {
   // Springs of EI/l = 3e-10 m g l; differences leave 1e-10 of K, thirty times that of
   // the small difference of size and real.
   EXPECT_NEAR(modes.slowest_rad_s / std::sqrt(size * unit), 1, 1e-7);
-  EXPECT_NEAR(modes.growth_1_s / std::sqrt((size - real) / 2 * unit), 1, 1e-7);
-  EXPECT_EQ(linear_modes(*models.chain, rest).growth_1_s, 0);
+  EXPECT_NEAR(modes.growth_per_s / std::sqrt((size - real) / 2 * unit), 1, 1e-7);
+  EXPECT_EQ(linear_modes(*models.chain, rest).growth_per_s, 0);
 }
 
 TEST(ForceTransport, OfStiffHangingStrandsFluttersToo) {
@@ -250,9 +250,9 @@ TEST(ForceTransport, OfStiffHangingStrandsFluttersToo) {
       const std::vector<double> rest = zeros(*models.transport);
       const LinearModes modes = linear_modes(*models.transport, rest);
       std::printf("E = %s Pa, N = %d: grows at %.2f 1/s, %d of %d complex\n", modulus, n,
-                  modes.growth_1_s, modes.complex_modes, n);
-      EXPECT_GT(modes.growth_1_s, 1);
-      EXPECT_EQ(linear_modes(*models.chain, rest).growth_1_s, 0);
+                  modes.growth_per_s, modes.complex_modes, n);
+      EXPECT_GT(modes.growth_per_s, 1);
+      EXPECT_EQ(linear_modes(*models.chain, rest).growth_per_s, 0);
     }
   }
 }
@@ -260,7 +260,7 @@ TEST(ForceTransport, OfStiffHangingStrandsFluttersToo) {
 // As in test_solvers.cpp: rounding on a condition of up to 1e5 from steps of 0.1 ms on.
 TEST(ForceTransport, SweepSolvesTheDenseMatrix) {
   for (const Modes& modes : all_modes) {
-    const ModelSettings stiff = {{"tangent", "stiff"}, {"motion", "shake_rotate"}};
+    const ModelSettings stiff = {{"jacobian", "elastic"}, {"motion", "shake_rotate"}};
     const Pair sweep = pair(modes, 20, stiff);
     const Pair dense = pair(modes, 20, with(stiff, {{"solver", "composite"}}));
     for (const double h : {1e-4, 1e-3, 1e-2, 1e-1}) {

@@ -54,10 +54,11 @@ TEST(FreeRoot, ReferenceStaysWhileTheAngleIsSmall) {
 }
 
 std::unique_ptr<System> thrown_chain(const ModelSettings& more = {}) {
-  ModelSettings settings = {{"elements", "6"},         {"motion", "free"},
-                            {"gravity_m_s2", "0"},     {"drag_kg_m_s", "1e-5"},
-                            {"root_tangent", "x"},     {"natural_curvature_1_m", "20"},
-                            {"natural_twist_1_m", "5"}};
+  ModelSettings settings = {
+      {"elements", "6"},           {"motion", "free"},
+      {"gravity_m_s2", "0"},       {"drag_kg_m_s", "1e-5"},
+      {"root_tangent", "x"},       {"natural_curvature_per_m", "20"},
+      {"natural_twist_per_m", "5"}};
   settings.insert(settings.end(), more.begin(), more.end());
   return make_model("articulated_chain", settings);
 }
@@ -65,7 +66,7 @@ std::unique_ptr<System> thrown_chain(const ModelSettings& more = {}) {
 // Its mass matrix is singular: of a frame that has no mass, and turns.
 TEST(FreeChain, TangentIsTheDerivativeOfTheResidual) {
   for (const char* modes : {"bend_twist", "bend"}) {
-    const auto system = thrown_chain({{"modes", modes}, {"tangent", "exact"}});
+    const auto system = thrown_chain({{"modes", modes}, {"jacobian", "exact"}});
     EXPECT_FALSE(system->traits().regular_mass);
     EXPECT_EQ(system->explicit_form(), nullptr);
     testing_support::States s(*system);

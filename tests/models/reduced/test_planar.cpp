@@ -15,7 +15,7 @@ using namespace testing_support;
 struct Plane {
   std::string name, model;
   ModelSettings settings;
-  std::string integrator, tangent;
+  std::string integrator, jacobian;
 };
 
 void PrintTo(const Plane& plane, std::ostream* out) { *out << plane.name; }
@@ -24,9 +24,9 @@ class InThePlane : public testing::TestWithParam<Plane> {
  protected:
   Simulation run(const std::string& modes) const {
     const Plane& plane = GetParam();
-    const auto system =
-        make_model(plane.model,
-                   with(plane.settings, {{"modes", modes}, {"tangent", plane.tangent}}));
+    const auto system = make_model(
+        plane.model,
+        with(plane.settings, {{"modes", modes}, {"jacobian", plane.jacobian}}));
     Options options;
     options.step = 5e-4;
     options.newton_tolerance = 1e-13;
@@ -69,22 +69,24 @@ TEST_P(InThePlane, FewerModesMoveTheSame) {
 std::vector<Plane> planes() {
   // Down is in the plane of x and z, where e1 bends; so is the shaking of a strand that
   // starts upwards or downwards.
-  const ModelSettings release = {{"root_tangent", "x"}, {"natural_curvature_1_m", "30"}};
+  const ModelSettings release = {{"root_tangent", "x"},
+                                 {"natural_curvature_per_m", "30"}};
   const ModelSettings shake = {{"root_tangent", "down"},
                                {"motion", "shake"},
                                {"initial", "bent"},
-                               {"initial_curvature_1_m", "10"},
+                               {"initial_curvature_per_m", "10"},
                                {"drag_kg_m_s", "1e-5"}};
   std::vector<Plane> all;
   for (const std::string model : {"super_helix", "articulated_chain"}) {
-    all.push_back({model + "_release", model, release, "semi_implicit_euler", "stiff"});
+    all.push_back(
+        {model + "_release", model, release, "linearly_implicit_euler", "elastic"});
     all.push_back({model + "_release_exact", model, release, "backward_euler", "exact"});
-    all.push_back({model + "_shake", model, shake, "semi_implicit_euler", "stiff"});
+    all.push_back({model + "_shake", model, shake, "linearly_implicit_euler", "elastic"});
     all.push_back({model + "_shake_exact", model, shake, "implicit_midpoint", "exact"});
   }
   const ModelSettings few = {{"elements", "4"}};
   all.push_back({"super_clothoid_release", "super_clothoid", with(release, few),
-                 "semi_implicit_euler", "stiff"});
+                 "linearly_implicit_euler", "elastic"});
   all.push_back({"super_clothoid_shake_exact", "super_clothoid", with(shake, few),
                  "implicit_midpoint", "exact"});
   return all;

@@ -24,9 +24,9 @@ Eigen::MatrixXd mass_matrix(const Vec& kappa, int points) {
   const auto system =
       make_model("super_helix", {{"elements", "1"},
                                  {"length_m", "1"},
-                                 {"natural_twist_1_m", text(kappa.x)},
-                                 {"natural_curvature_1_m", text(kappa.y)},
-                                 {"natural_curvature2_1_m", text(kappa.z)},
+                                 {"natural_twist_per_m", text(kappa.x)},
+                                 {"natural_curvature_per_m", text(kappa.y)},
+                                 {"natural_curvature2_per_m", text(kappa.z)},
                                  {"quadrature", std::to_string(points)},
                                  {"motion", "free"},
                                  {"gravity_m_s2", "0"},

@@ -18,9 +18,9 @@ using namespace testing_support;
 
 constexpr std::array solvers = {"composite", "recursive", "sparse"};
 
-const ModelSettings curly = {{"natural_curvature_1_m", "60"},
-                             {"natural_curvature2_1_m", "10"},
-                             {"natural_twist_1_m", "20"},
+const ModelSettings curly = {{"natural_curvature_per_m", "60"},
+                             {"natural_curvature2_per_m", "10"},
+                             {"natural_twist_per_m", "20"},
                              {"ellipticity", "1.3"},
                              {"grading", "2"},
                              {"internal_friction_kg_m3_s", "1e-11"}};
@@ -76,10 +76,10 @@ double scaled_condition(System& system) {
 class Solvers : public testing::TestWithParam<StrandCase> {};
 
 TEST_P(Solvers, AgreeOnRandomStates) {
-  for (const std::string tangent : {"stiff", "exact"}) {
+  for (const std::string jacobian : {"elastic", "exact"}) {
     std::array<std::unique_ptr<System>, solvers.size()> systems;
     for (std::size_t k = 0; k < solvers.size(); ++k) {
-      systems[k] = GetParam().make({{"tangent", tangent}, {"solver", solvers[k]}});
+      systems[k] = GetParam().make({{"jacobian", jacobian}, {"solver", solvers[k]}});
     }
     System& composite = *systems[0];
     unsigned seed = 1;
@@ -90,7 +90,7 @@ TEST_P(Solvers, AgreeOnRandomStates) {
       ASSERT_EQ(composite.residual(t0, s.q, s.v, s.a, b), Status::ok);
       std::array<std::vector<double>, solvers.size()> x;
       for (std::size_t k = 0; k < solvers.size(); ++k) {
-        SCOPED_TRACE(std::string(solvers[k]) + ", " + tangent +
+        SCOPED_TRACE(std::string(solvers[k]) + ", " + jacobian +
                      ", h = " + std::to_string(h));
         x[k] = zeros(composite);
         ASSERT_EQ(systems[k]->linearize(t0, s.q, s.v, s.a, {1, h, h * h}), Status::ok);
@@ -103,15 +103,15 @@ TEST_P(Solvers, AgreeOnRandomStates) {
           h >= 1e-4 ? 1e-10 : std::max(1e-10, eps * scaled_condition(composite));
       for (std::size_t k = 1; k < solvers.size(); ++k) {
         EXPECT_LE(relative_difference(x[k], x[0], s.a_typ), tolerance)
-            << solvers[k] << ", " << tangent << ", h = " << h;
+            << solvers[k] << ", " << jacobian << ", h = " << h;
       }
     }
   }
 }
 
-/// The stiff tangent has no derivatives of inertial and geometric terms, but all of drag:
-/// with y = S^-1 b of the strand with drag and D y = r_v y the force of drag at rates y,
-/// the strand without drag has S y = b - w.vel D y.
+/// The elastic Jacobian has no derivatives of inertial and geometric terms, but all of
+/// drag: with y = S^-1 b of the strand with drag and D y = r_v y the force of drag at
+/// rates y, the strand without drag has S y = b - w.vel D y.
 TEST_P(Solvers, StiffTangentHoldsTheDerivativesOfEffects) {
   const Weights w{1, 1e-3, 1e-6};
   // h nu L = 1e-5 kg against a hair's 6.5e-7 kg; trees are heavier.
@@ -123,7 +123,7 @@ TEST_P(Solvers, StiffTangentHoldsTheDerivativesOfEffects) {
   };
   const auto by_drag = GetParam().make(drag), bare = GetParam().make(none);
   for (const std::string solver : solvers) {
-    const ModelSettings stiff{{"tangent", "stiff"}, {"solver", solver}};
+    const ModelSettings stiff{{"jacobian", "elastic"}, {"solver", solver}};
     const auto with_drag = GetParam().make(with(stiff, drag));
     const auto without = GetParam().make(stiff);
     States s(*with_drag, 3);
@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Reduced, Solvers, testing::ValuesIn(solver_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 /// In contact with a plane at the height of the root, in wind and with drag, from which
-/// the pivots of the exact tangent get every sign.
+/// the pivots of the exact Jacobian get every sign.
 std::unique_ptr<System> loaded_strand(std::string_view model,
                                       const ModelSettings& settings) {
   const Parameters parameters = parameters_of(model, settings);
@@ -186,10 +186,10 @@ TEST(ExactRecursion, KeepsTheDigitsThatSmallPivotsCost) {
     for (const std::string root : {"fixed", "free"}) {
       for (const std::string elements : {"10", "40"}) {
         const ModelSettings settings = {
-            {"elements", elements},      {"motion", root},
-            {"root_tangent", "x"},       {"natural_curvature_1_m", "300"},
-            {"natural_twist_1_m", "60"}, {"drag_kg_m_s", "1e-4"},
-            {"tangent", "exact"}};
+            {"elements", elements},        {"motion", root},
+            {"root_tangent", "x"},         {"natural_curvature_per_m", "300"},
+            {"natural_twist_per_m", "60"}, {"drag_kg_m_s", "1e-4"},
+            {"jacobian", "exact"}};
         std::array<std::unique_ptr<System>, solvers.size()> systems;
         for (std::size_t k = 0; k < solvers.size(); ++k) {
           systems[k] = loaded_strand(model, with(settings, {{"solver", solvers[k]}}));
@@ -230,10 +230,10 @@ class Trajectories : public testing::TestWithParam<StrandCase> {};
 TEST_P(Trajectories, OfAllSolversAreTheSame) {
   constexpr double step = 2e-4, t_end = 0.2;  // 1000 steps, below the limit of 0.5 ms
   const auto run = [&](const std::string& solver) {
-    const auto system = GetParam().make({{"tangent", "stiff"}, {"solver", solver}});
+    const auto system = GetParam().make({{"jacobian", "elastic"}, {"solver", solver}});
     Options options;
     options.step = step;
-    return simulate("semi_implicit_euler", *system, options, initial_state(*system),
+    return simulate("linearly_implicit_euler", *system, options, initial_state(*system),
                     t_end);
   };
   const Simulation composite = run("composite");
@@ -276,11 +276,11 @@ std::vector<double> stiffness(const Strand& strand) {
 }
 
 // Relative residual |S x - b| / |b| of the weight of a nearly straight strand, with S by
-// the inverse dynamics, which are linear in a, instead of by any tangent. Without
+// the inverse dynamics, which are linear in a, instead of by any Jacobian. Without
 // rotational inertia S becomes singular in the twists as h -> 0.
 TEST(PlainRecursion, LosesDigitsThatTheJosephFormKeeps) {
   const ModelSettings settings = {{"elements", "20"},
-                                  {"tangent", "stiff"},
+                                  {"jacobian", "elastic"},
                                   {"rotary_inertia", "off"},
                                   {"root_tangent", "x"}};
   const Strand made = strand(parameters_of("super_helix", settings));
@@ -322,7 +322,7 @@ TEST(PlainRecursion, LosesDigitsThatTheJosephFormKeeps) {
   }
 }
 
-// Under less_implicit nothing of a distal segment's stiffness is handed on, so that what
+// Under elastic_local nothing of a distal segment's stiffness is handed on, so that what
 // the root's first unknown meets, 1/x of a load on it alone, holds the step's square
 // once, in its own stiffness: it is linear in w.pos. Hair whose stiffness outweighs its
 // inertia a thousandfold at the longest step tells that from any other.
@@ -331,7 +331,7 @@ TEST(LessImplicit, HandsOnNoStiffnessOfDistalSegments) {
       "hair",
       find_model("super_helix").id,
       {{"modes", "bend_planar"},
-       {"elements", "6"}}}.make({{"tangent", "less_implicit"}});
+       {"elements", "6"}}}.make({{"jacobian", "elastic_local"}});
   std::vector<double> q = zeros(*system), v = zeros(*system), a = zeros(*system);
   system->initial_state(q, v);
   const auto met = [&](double square) {

@@ -28,9 +28,9 @@ double apart(const Frame& f, const Frame& g) {
 class EndFrame : public testing::TestWithParam<std::string_view> {
  protected:
   // A helix of 3/4 turn in 10 cm whose section twists by two more radians.
-  const ModelSettings helix{{"natural_curvature_1_m", "35"},
-                            {"natural_curvature2_1_m", "15"},
-                            {"natural_twist_1_m", "20"}};
+  const ModelSettings helix{{"natural_curvature_per_m", "35"},
+                            {"natural_curvature2_per_m", "15"},
+                            {"natural_twist_per_m", "20"}};
 };
 
 TEST_P(EndFrame, IsARotationWhereverTheStrandIs) {

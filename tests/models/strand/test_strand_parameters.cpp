@@ -83,8 +83,8 @@ TEST(StrandParameters, MaterialComesWithoutGeometry) {
   const Parameters p(material_parameters(), "model tree");
   for (const auto geometry :
        {"elements", "length_m", "grading", "radius_m", "ellipticity",
-        "natural_curvature_1_m", "natural_curvature2_1_m", "natural_twist_1_m", "initial",
-        "initial_curvature_1_m"}) {
+        "natural_curvature_per_m", "natural_curvature2_per_m", "natural_twist_per_m",
+        "initial", "initial_curvature_per_m"}) {
     EXPECT_FALSE(p.knows(geometry)) << geometry;
     EXPECT_TRUE(strand_parameters({}).knows(geometry)) << geometry;
   }
@@ -122,10 +122,10 @@ TEST(StrandParameters, EllipticityKeepsTheArea) {
 
 TEST(StrandParameters, ShapesAreNaturalStraightOrBent) {
   const auto first = [](std::string_view initial) {
-    return strand(strand_parameters({{"natural_twist_1_m", "2"},
-                                     {"natural_curvature_1_m", "30"},
-                                     {"natural_curvature2_1_m", "-4"},
-                                     {"initial_curvature_1_m", "10"},
+    return strand(strand_parameters({{"natural_twist_per_m", "2"},
+                                     {"natural_curvature_per_m", "30"},
+                                     {"natural_curvature2_per_m", "-4"},
+                                     {"initial_curvature_per_m", "10"},
                                      {"initial", initial}}))
         .segments[0];
   };
@@ -222,9 +222,9 @@ Vec load_of(const Settings& settings) {
 TEST(StrandParameters, EffectsAreGravityDragAndMassDamping) {
   expect_near(load_of({}), {0, 0, -2 * 9.81}, 0);
   expect_near(load_of({{"gravity_m_s2", "0"}, {"drag_kg_m_s", "4"}}), {-2, -4, -6}, 0);
-  expect_near(load_of({{"gravity_m_s2", "0"}, {"mass_damping_1_s", "3"}}), {-6, -12, -18},
-              0);
-  expect_near(load_of({{"drag_kg_m_s", "4"}, {"mass_damping_1_s", "3"}}),
+  expect_near(load_of({{"gravity_m_s2", "0"}, {"mass_damping_per_s", "3"}}),
+              {-6, -12, -18}, 0);
+  expect_near(load_of({{"drag_kg_m_s", "4"}, {"mass_damping_per_s", "3"}}),
               {-8, -16, -24 - 2 * 9.81}, 100 * eps);
   EXPECT_TRUE(strand_effects(strand_parameters({{"gravity_m_s2", "0"}})).empty());
 }
@@ -237,7 +237,7 @@ TEST(StrandParameters, RefuseNumbersOutsideTheirMeaning) {
                         {"ellipticity", "-1"},    {"youngs_modulus_pa", "0"},
                         {"poisson_ratio", "0.6"}, {"density_kg_m3", "0"},
                         {"frequency_hz", "0"},    {"time_s", "0"},
-                        {"drag_kg_m_s", "-1"},    {"mass_damping_1_s", "-1"},
+                        {"drag_kg_m_s", "-1"},    {"mass_damping_per_s", "-1"},
                         {"motion", "wobble"},     {"root_tangent", "y"},
                         {"initial", "curly"},     {"internal_friction_kg_m3_s", "-1"}};
   for (const auto& setting : bad) {
@@ -276,7 +276,7 @@ TEST(StrandParameters, ShearModulusAloneResistsTwistInEveryModelThatTwists) {
                                              {"ellipticity", "1.5"},
                                              {"youngs_modulus_pa", youngs_modulus},
                                              {"shear_modulus_pa", "0.4e9"},
-                                             {"natural_twist_1_m", "0.5"},
+                                             {"natural_twist_per_m", "0.5"},
                                              {"initial", "straight"},
                                              {"gravity_m_s2", "0"},
                                              {"modes", "bend_twist"}}) {

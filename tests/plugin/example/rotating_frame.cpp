@@ -60,7 +60,7 @@ class RotatingFrame final : public Effect {
 };
 
 constexpr Parameter frame_parameters[] = {
-    {.name = "rate_1_s",
+    {.name = "rate_per_s",
      .help = "angular velocity about the vertical (rad/s)",
      .number = 10,
      .min = -1e4,
@@ -81,8 +81,8 @@ EffectEntry rotating_frame_entry() {
           .source = "Landau & Lifshitz 1976, section 39",
           .parameters = frame_parameters,
           .make = [](const Parameters& p, const RootMotion&) {
-            return std::unique_ptr<const Effect>(
-                std::make_unique<RotatingFrame>(p.number("rate_1_s"), p.vec("centre_m")));
+            return std::unique_ptr<const Effect>(std::make_unique<RotatingFrame>(
+                p.number("rate_per_s"), p.vec("centre_m")));
           }};
 }
 

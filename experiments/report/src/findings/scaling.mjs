@@ -65,8 +65,8 @@ function tree_sentences(rows) {
     .map(({ structure, elements, recursive, ours }) => {
       const frames = is_positive(recursive.fps)
         ? `, ${format_number(recursive.fps)} frames per second at its largest stable step` +
-          (is_positive(recursive.seed_fps)
-            ? ` (published: ${format_number(recursive.seed_fps)} on hardware of 2008)`
+          (is_positive(recursive.published_fps)
+            ? ` (published: ${format_number(recursive.published_fps)} on hardware of 2008)`
             : '')
         : '';
       return (

@@ -32,11 +32,11 @@ export function limit_pairs(rows, first, second) {
   });
 }
 
-// The exact tangent's run with the largest step, semi-implicit or backward Euler.
+// The exact Jacobian's run with the largest step, linearly implicit or backward Euler.
 const exact_names = (rows) =>
-  distinct(rows.map(run_name)).filter((name) => /exact tangent/.test(name));
+  distinct(rows.map(run_name)).filter((name) => /exact Jacobian/.test(name));
 
-// The case at 20 elements in which the exact tangent gains most over the stiff one.
+// The case at 20 elements in which the exact Jacobian gains most over the stiff one.
 export function tangent_gain(rows) {
   const pairs = exact_names(rows).flatMap((name) => limit_pairs(rows, name, 'recursive'));
   const at_20 = pairs.filter(
@@ -63,7 +63,7 @@ const agreement_words = ({ count, equal, largest }) =>
     : '');
 
 const gain_words = ({ a, b }) =>
-  `${place(a)}, ${a.elements} elements: ${limit(b)} with the stiff tangent, ` +
+  `${place(a)}, ${a.elements} elements: ${limit(b)} with the elastic Jacobian, ` +
   `${limit(a)} with ${run_name(a)}`;
 
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
@@ -78,14 +78,14 @@ export function stability_finding(tables) {
   ].join(' ');
 }
 
-function less_implicit_sentence(rows) {
-  const pairs = limit_pairs(rows, 'less implicit (our reconstruction)', 'recursive');
+function elastic_local_sentence(rows) {
+  const pairs = limit_pairs(rows, 'local elastic Jacobian', 'recursive');
   const at_20 = pairs.filter(({ a }) => a.elements === 20);
   if (at_20.length === 0) return [];
   const ratios = at_20.map(({ ratio }) => 1 / ratio);
   const ends = [Math.min(...ratios), Math.max(...ratios)].map((r) => format_ratio(r));
   return [
-    `Less implicit (our reconstruction) at 20 elements: its largest step is ` +
+    `The local elastic Jacobian (our reconstruction) at 20 elements: its largest step is ` +
       `${distinct(ends).join(' to ')} smaller ` +
       `than recursive over ${at_20.length} cases.`,
   ];
@@ -128,7 +128,7 @@ export function stability_findings(tables) {
     ...(same
       ? [`${capital(agreement_words(same))}: they solve the same equations.`]
       : []),
-    ...less_implicit_sentence(rows),
+    ...elastic_local_sentence(rows),
     ...frame_sentence(rows),
     ...damping_sentences(rows),
     ...failure_sentence(rows),

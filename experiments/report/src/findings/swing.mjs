@@ -1,4 +1,4 @@
-// What the swing's rows of work_precision.csv and peers_swing.csv say, as sentences.
+// What the swing's rows of work_precision.csv and other_simulators_swing.csv say, as sentences.
 import { is_positive, minimum_by, swing_rows } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
 import { fastest_at, swing_levels, swing_runs } from '../strand.mjs';
@@ -9,19 +9,19 @@ const step = (row) =>
     ? `dt ${format_time(row.dt_s)}`
     : is_positive(row.rtol)
       ? `rtol ${format_number(row.rtol)}`
-      : is_positive(row.tolerance)
-        ? `tolerance ${format_number(row.tolerance)}`
+      : is_positive(row.position_tol_rel)
+        ? `tolerance ${format_number(row.position_tol_rel)}`
         : '';
 
-function best_peer(rows, { peer }) {
+function best_peer(rows, { simulator }) {
   return minimum_by(
-    rows.filter((row) => is_positive(row[peer])),
-    (row) => row[peer],
+    rows.filter((row) => is_positive(row[simulator])),
+    (row) => row[simulator],
   );
 }
 
 function level_sentence(tables, level, kind) {
-  const { peers_swing = [] } = tables;
+  const { other_simulators_swing = [] } = tables;
   const runs = swing_runs(swing_rows(tables), kind);
   const best = fastest_at(runs, level.error);
   const what = `${level.name} ${kind} error`;
@@ -32,10 +32,10 @@ function level_sentence(tables, level, kind) {
   if (kind !== 'time') return [`${ours}.`];
   const met = best.wall_s <= level.target_s;
   const target = `, ${met ? 'within' : 'not within'} the target of ${format_time(level.target_s)}`;
-  const peer = best_peer(peers_swing, level);
-  const other = peer
-    ? `; the fastest published simulator (${peer.peer}) ${format_time(peer[level.peer])}, ` +
-      `${format_ratio(peer[level.peer] / best.wall_s)} ours`
+  const simulator = best_peer(other_simulators_swing, level);
+  const other = simulator
+    ? `; the fastest published simulator (${simulator.simulator}) ${format_time(simulator[level.simulator])}, ` +
+      `${format_ratio(simulator[level.simulator] / best.wall_s)} ours`
     : '';
   return [`${ours}${target}${other}.`];
 }

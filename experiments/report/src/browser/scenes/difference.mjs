@@ -1,9 +1,9 @@
-// Two runs beside each other, and the difference between them.
+// Two runs next to each other, and the difference between them.
 import { moment_at, positions_at } from './data.mjs';
 
 const levels = 255;
 
-// Two runs of as many strands can be subtracted; their points need not be as many.
+// Two runs with equal numbers of strands can be subtracted; their numbers of points may differ.
 export const comparable = (one, other) =>
   one.strand_points.length === other.strand_points.length;
 

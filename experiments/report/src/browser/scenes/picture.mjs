@@ -1,4 +1,4 @@
-// The picture of one moment of a scene, or of two beside each other, on a canvas.
+// The picture of one moment of a scene, or of two next to each other, on a canvas.
 import { Camera } from './camera.mjs';
 import { page_theme_colours } from './colours.mjs';
 import { moment_at, time_at } from './data.mjs';

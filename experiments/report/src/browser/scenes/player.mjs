@@ -90,7 +90,7 @@ export class Player {
     return (wanted && this.#painter) || undefined;
   }
 
-  // The scene, alone or with another beside it; `stay`: at the frame and camera of now.
+  // The scene, alone or with another next to it; `stay`: at the frame and camera of now.
   open(name, beside = '', stay = false) {
     this.play(false);
     const before = stay ? this.picture?.camera.text() : undefined;
@@ -125,11 +125,11 @@ export class Player {
     at('caption').textContent = [scene, other]
       .filter((shown) => shown !== undefined)
       .map(caption)
-      .join(' Beside it: ');
+      .join(' Next to it: ');
     at('title').textContent = scene.title;
     at('canvas').dataset.seconds = scene.times_s.at(-1) - scene.times_s[0];
     at('canvas').dataset.start = scene.times_s[0];
-    const beside_text = other === undefined ? '' : `, and ${other.title} beside it`;
+    const beside_text = other === undefined ? '' : `, and ${other.title} next to it`;
     at('canvas').setAttribute('aria-label', `${scene.title}${beside_text}, drawn in 3D`);
     const offered = [...at('colour').options].map(({ value }) => value);
     const compared = scene.channels.findIndex(

@@ -6,7 +6,7 @@ import { describe_picture } from '../described.mjs';
 
 const units = {
   m: 'm', mm: 'mm', s: 's', ms: 'ms', us: 'µs', j: 'J', n: 'N', kg: 'kg', rad: 'rad',
-  rel: 'relative', m_s: 'm/s', rad_s: 'rad/s', '1_m': '1/m', '1_s': '1/s',
+  rel: 'relative', m_s: 'm/s', rad_s: 'rad/s', per_m: '1/m', per_s: '1/s',
 }; // prettier-ignore
 
 // 'tip_x_m' -> 'tip x (m)'; the longest ending that is a unit.

@@ -1,0 +1,113 @@
+"""Gain of remeshing while a strand moves."""
+from .tables import known, records
+from .words import number, percent, span, spaced, table
+
+_WORTHWHILE = 1.5
+
+
+def _rows(tables, part):
+    return tables.ok_rows("adaptive_mesh", {"part": part})
+
+
+def _shown(tables):
+    rows = _rows(tables, "elements")
+    return rows[rows["gain"] > 0]
+
+
+def _ratio(x):
+    return number(x, 3) if x > 0 else ""
+
+
+def gains(tables):
+    measured = [[spaced(row["scene"]), percent(row["target_rel"]), number(row["elements_fixed"], 3), row["fixed_mesh"],
+                 _ratio(row["gain"]), _ratio(row["gain_following"])] for row in records(_shown(tables))]
+    limits = [[spaced(row["scene"]), "many elements", "", "", _ratio(row["gain"]), _ratio(row["gain_following"])]
+              for row in records(_rows(tables, "limit"))]
+    return table(["scene", "distance", "fixed elements", "their mesh", "remeshed", "following"],
+                 sorted(measured + limits, key=lambda line: line[0]))
+
+
+def _reached(gain):
+    return (f"{(gain >= _WORTHWHILE).sum()} of {len(gain)} measured cases reach {_WORTHWHILE}; the largest is "
+            f"{number(gain.max(), 3)}.")
+
+
+def worth_anew(tables):
+    return _reached(_shown(tables)["gain"])
+
+
+def worth_following(tables):
+    return _reached(_shown(tables)["gain_following"])
+
+
+def _between(gain):
+    return span(gain, lambda x: number(x, 3))
+
+
+def always_anew(tables):
+    return _between(_shown(tables)["gain_always"])
+
+
+def always_following(tables):
+    return _between(_shown(tables)["gain_following_always"])
+
+
+def verdict(tables):
+    shown, limits = _shown(tables), _rows(tables, "limit")
+
+    def count(*gains):
+        return sum((gain >= _WORTHWHILE).sum() for gain in gains)
+
+    return (f"Remeshing gains a factor of {_WORTHWHILE} in {count(shown['gain'], limits['gain'])} of "
+            f"{len(shown) + len(limits)} cases, limits included. Numbers of elements that follow the motion gain it in "
+            f"{count(shown['gain_following'])} of {len(shown)} measured cases by the rms error over a run, and in "
+            f"{count(shown['gain_following_always'])} where the worst instant counts")
+
+
+def in_motion(tables):
+    """Returns how many released hairs keep the tolerance, meshed for it and for a tighter one."""
+    rows = _rows(tables, "in_motion")
+    asked = rows["tolerance_rel"].max()
+    full, half = rows[rows["tolerance_rel"] == asked], rows[rows["tolerance_rel"] < asked]
+
+    def within(some):
+        return (some["tip_error_rel"] <= asked).sum()
+
+    return (f"{within(full)} of {len(full)} hairs keep a tolerance of {percent(asked)} of their length. Meshed for a tolerance of "
+            f"{percent(half.iloc[0]['tolerance_rel'])}, {within(half)} of {len(half)} keep the former, and the worst is off by "
+            f"{percent(half['tip_error_rel'].max())}.")
+
+
+def pilot(tables):
+    """Returns how many hairs meshed by pilot runs keep the tolerance."""
+    rows = _rows(tables, "pilot")
+    asked = rows.iloc[0]["tolerance_rel"]
+    return (f"Of {len(rows)} hairs, {(rows['tip_error_rel'] <= asked).sum()} keep {percent(asked)} of their length by the same "
+            f"measure, and {(rows['largest_error_rel'] <= asked).sum()} at every joint and frame, with {span(rows['elements'])} "
+            f"elements. For {(rows['work_rel'] == 3).sum()} of them the elements of rest were enough. The runs of a pilot have "
+            f"{span(rows['work_rel'])} times the elements of the run that they prepare.")
+
+
+def _with_points(tables):
+    rows = _rows(tables, "points")
+    return rows[known(rows["points_error_rel"])]
+
+
+def points(tables):
+    return table(["scene", "elements", "with more points", "from a fine mesh"],
+                 [[spaced(row["scene"]), number(row["elements"]), percent(row["points_error_rel"]), percent(row["tip_error_rel"])]
+                  for row in records(_with_points(tables))])
+
+
+# Contact acts at the points.
+_TOUCHING = ["edge", "fall_on_sphere"]
+
+
+def points_verdict(tables):
+    rows = _with_points(tables)
+    share = rows["points_error_rel"] / rows["tip_error_rel"]
+    touching = rows["scene"].isin(_TOUCHING)
+    return (f"Where nothing touches, more points change at most {percent(share[~touching].max())} of the error of the elements, so "
+            "points that follow the motion are not implemented. Contact acts at the points: there more of them change up to "
+            f"{percent(share[touching].max())}, because they find a small body sooner, not because an element winds. The option "
+            "`quadrature` sets them.")

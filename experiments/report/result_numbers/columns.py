@@ -1,0 +1,161 @@
+"""Meaning of the columns of every table: from the manifests, and from here for tables that no experiment
+writes."""
+import json
+import re
+
+from .tables import REPOSITORY, InputError
+from .words import markdown, table
+
+_IN_EVERY_TABLE = {
+    "status": "ok, or how the row ended",
+    "reason": "reason for a status that is not ok",
+    "run_id": "checksum of the settings of the row",
+}
+
+_OF_CLAIMS = {
+    "study": "question of the family",
+    "claim": "statement that is tested",
+    "family": "hair, or rods of other materials",
+    "model": "catalogue id",
+    "integrator": "method",
+    "range": "gravito-bending numbers of the hairs or rods that are counted",
+    "statement": "the claim in words",
+    "value": "quantity measured for each hair",
+    "hairs": "hairs or rods that give an answer",
+    "no_answer": "hairs or rods without an answer",
+    "reasons": "number of hairs or rods without an answer, by status",
+    "holds_share": "share of the hairs or rods for which the claim is true",
+    "decile_1": "first decile of the value",
+    "median": "median of the value",
+    "decile_9": "ninth decile of the value",
+    "correlated_with": "property of a hair with the largest rank correlation with the value",
+    "rank_correlation": "Spearman's rank correlation with that property",
+    "decided_by": "property that best predicts for which hairs the claim is true",
+    "threshold": "threshold of that property",
+    "share_below": "share of the hairs below the threshold for which the claim is true",
+    "share_above": "share of the hairs above the threshold for which the claim is true",
+    "told_right_share": "share of all hairs that the threshold predicts correctly",
+}
+
+_BY_HAND = {
+    "family_summary": _OF_CLAIMS,
+    "family_tolerance_summary": _OF_CLAIMS,
+    "compare_itself": {
+        "beside": "itself, or a build with a slowed kernel",
+        "rows": "benchmarks compared",
+        "wrong": "verdicts that contradict the build",
+        "verdict": "verdict on the slowed kernel",
+        "ratio": "time of that kernel over its time in the build itself, median of the rounds",
+        "ratio_low": "lower end of the interval of the ratio",
+        "ratio_high": "upper end of the interval of the ratio",
+    },
+    "full_sweeps": {
+        "experiment": "experiment of `./tress run`",
+        "rows": "number of rows of the experiment",
+        "timed_rows": "rows timed, spread over all",
+        "cut_off_rows": "timed rows that reached the timeout: their time is a lower bound",
+        "row_s": "processor time of a timed row, mean (s)",
+        "plan_s": "processor time to plan the rows, in each part (s)",
+        "parts": "number of parts of about a quarter of an hour",
+        "core_hours": "core hours of all rows in these parts",
+        "memory_mb": "memory of the largest process (MB)",
+    },
+    "mutants": {
+        "file": "mutated source file",
+        "line": "number of the mutated line",
+        "before": "original line",
+        "after": "mutated line",
+        "outcome": "killed by a test, or survived",
+    },
+    "player": {
+        "draw": "renderer: the canvas alone, or WebGL computed by a processor",
+        "colour": "one colour a strand, or hair in light",
+        "hairs": "number of hairs drawn",
+        "points": "number of points of each hair",
+        "width": "width of the picture in pixels",
+        "height": "height of the picture in pixels",
+        "picture_ms": "wall time of a picture (ms), median of five times ten",
+    },
+    "other_simulators_published": {
+        "name": "name of the method",
+        "cited_as": "citation in this repository",
+        "source": "publication or program",
+        "address": "address of the source",
+        "simulated": "simulated system",
+        "hardware": "hardware of the run",
+        "figure": "published figure",
+        "unit": "unit of the figure",
+        "measured": "quantity that the figure gives",
+        "not_measured": "questions that the figure leaves open",
+        "checked": "whether the figure was found at its source",
+    },
+    "other_simulators_swing": {
+        "simulator": "simulator and its joints",
+        "stable_dt_n5_s": "largest stable step with 5 links",
+        "stable_dt_n20_s": "largest stable step with 20 links",
+        "stable_dt_n80_s": "largest stable step with 80 links",
+        "us_per_step_n20": "wall time of a step with 20 links (µs)",
+        "wall_1pct_s": "wall time of the run for an error of 1 %",
+        "dt_1pct_s": "step of that run",
+        "wall_0p1pct_s": "wall time of the run for an error of 0.1 %",
+    },
+}
+
+# solve_ivp.csv is rows of work_precision.
+_LIKE = {"solve_ivp": "work_precision"}
+
+# Ends of names that are units: the Python module's own.
+_UNITS = json.loads((REPOSITORY / "python/tress/units.json").read_text(encoding="utf-8"))
+
+
+def unit_of(column):
+    words = column.split("_")
+    ends = ("_".join(words[k:]) for k in range(1, len(words)))
+    return next((_UNITS[end] for end in ends if end in _UNITS), "").replace("^2", "²").replace("^3", "³")
+
+
+def _texts(tables, name):
+    return _BY_HAND.get(name) or tables.manifest(_LIKE.get(name, name))["columns"]
+
+
+def listing(tables):
+    """Returns a table for every CSV file: column, unit, meaning."""
+    parts = []
+    for name in sorted(path.stem for path in (tables.root / "results").glob("*.csv")):
+        texts = _texts(tables, name)
+        header = tables.text(f"results/{name}.csv").split("\n", 1)[0].strip().split(",")
+        lines = []
+        for column in header:
+            if column in _IN_EVERY_TABLE:
+                continue
+            if not texts.get(column):
+                raise InputError(f"results/{name}.csv: column '{column}' has no text; give it one in the experiment or columns.py")
+            lines.append([f"`{column}`", unit_of(column), texts[column]])
+        parts.append(f"## {name}.csv\n\n{markdown(table(['column', 'unit', ''], lines))}")
+    return "\n\n".join(parts)
+
+
+def _found(tables, file, pattern):
+    found = re.findall(pattern, tables.text(file))
+    if len(found) < 8:
+        raise InputError(f"{file}: no columns are found there; correct the pattern in columns.py")
+    # A number that the scene says may follow.
+    return [(column, what.removesuffix(", of ")) for column, what in found]
+
+
+def series(tables):
+    """Returns the columns of time series, as the sources that write them describe them."""
+    strands = [
+        *_found(tables, "simulation/run/readout.cpp", r'\badd\("(\w+)",\s*"([^"]+)"'),
+        ("tip_x_m, tip_y_m, tip_z_m", "tip, mean over the strands"),
+        ("<effect>_j", "the effect's potential energy"),
+    ]
+    there = {column for columns, _ in strands for column in columns.split(", ")}
+    heads = _found(tables, "experiments/simulate/head_series.cpp", r'\{"(\w+)",\s*"([^"]+)"\}')
+    lines = [*strands, *((column, f"{what} (batches of strands)") for column, what in heads if column not in there)]
+    return table(["column", "unit", ""],
+                 [[f"`{columns}`", unit_of(columns.split(", ")[0]), what] for columns, what in lines])
+
+
+def everywhere(tables):
+    return table(["column", ""], [[f"`{column}`", what] for column, what in _IN_EVERY_TABLE.items()])

@@ -1,0 +1,269 @@
+"""Statements about one hair, tested on a family of hairs."""
+import math
+
+from .tables import first, groups, records
+from .words import is_number, number, percent, plain, spaced, table
+
+_PARAMETERS = {
+    "gravito_bending": "the gravito-bending number ρ A g L³/(E I)",
+    "winding_rad": "the winding of the natural shape (rad)",
+    "damping_time_s": "the damping time (s)",
+    "drag_kg_m_s": "the drag of air (kg/(m s))",
+    "ellipticity": "the ellipticity of the section",
+    "length_m": "the length (m)",
+    "radius_m": "the radius (m)",
+    "youngs_modulus_pa": "Young's modulus (Pa)",
+    "drive_level": "the strength of the drive",
+    "frequency_hz": "the frequency of the drive (Hz)",
+    "natural_curvature_per_m": "natural curvature (1/m)",
+}
+_RANGES = ["below 10", "10 to 100", "100 to 1000", "above 1000"]
+_MEMBERS = {"hair": "hairs", "rods": "rods"}
+
+
+def _named(parameter):
+    return _PARAMETERS.get(parameter, spaced(parameter))
+
+
+def claim(tables, name, family="hair", range_="all"):
+    """Returns the row of a claim, over all gravito-bending numbers by default."""
+    return tables.row("family_summary", {"claim": name, "family": family, "range": range_})
+
+
+def hairs(tables, family="hair"):
+    """Returns the number of hairs, or of rods, in the family."""
+    return tables.rows("family", {"family": family})["hair"].nunique()
+
+
+def _share(row):
+    return percent(row["holds_share"]) if row["hairs"] > 0 else "none"
+
+
+def _held(row):
+    return f"{_share(row)} of {row['hairs']} {_MEMBERS[row['family']]}"
+
+
+def _change(x):
+    """Returns a share in per cent; the least that is printed is 0.001 %."""
+    return "less than 0.001 %" if x < 1e-5 else percent(x)
+
+
+def _spread(row, text=number):
+    silent = f"; {row['no_answer']} gave no answer" if row["no_answer"] > 0 else ""
+    return f"median {text(row['median'])}, deciles {text(row['decile_1'])} and {text(row['decile_9'])}{silent}"
+
+
+def _deciles(row):
+    return ", ".join(map(number, (row["decile_1"], row["median"], row["decile_9"])))
+
+
+def _rule(row):
+    """Returns the property that predicts best for which hairs the statement is true; "": none does."""
+    if not row["decided_by"]:
+        return ""
+    low, high, of = percent(row["share_below"]), percent(row["share_above"]), _MEMBERS[row["family"]]
+    if row["decided_by"].startswith("drive is "):
+        drive = spaced(row["decided_by"].removeprefix("drive is "))
+        return f"the drive: the statement is true for {high} of the {of} with {drive} and for {low} of the others"
+    sides = [(low, "below"), (high, "above")]
+    (more, here), (less, there) = reversed(sides) if row["share_above"] > row["share_below"] else sides
+    return (f"{_named(row['decided_by'])}: the statement is true for {more} of the {of} {here} {number(row['threshold'])} "
+            f"and for {less} {there}")
+
+
+def _sentence(tables, text, row):
+    """Returns the statement for hair, its best predictor, and the share of the other rods."""
+    rule = _rule(row)
+    predictor = f". The best predictor is {rule}" if rule else ""
+    return f"{text}{predictor}. It is true for {_held(claim(tables, row['claim'], 'rods'))} of other materials"
+
+
+def _statements(tables, family):
+    rows = tables.rows("family_summary", {"family": family, "range": "all"})
+    return records(rows[rows["study"] != "tolerance"])
+
+
+def summary(tables, family="hair"):
+    """Returns one row per claim."""
+    return table(
+        ["statement", "true for", "decile, median, decile", "value", "strongest rank correlation"],
+        [[row["statement"], f"{_held(row)}{f'; no answer: ' + row['reasons'] if row['no_answer'] > 0 else ''}",
+          _deciles(row) if row["hairs"] > 0 else "", row["value"],
+          f"{_named(row['correlated_with'])} ({number(row['rank_correlation'])})" if is_number(row["rank_correlation"]) else ""]
+         for row in _statements(tables, family)])
+
+
+def ranges(tables, family="hair"):
+    """Returns one row per claim, one column per range of the gravito-bending number."""
+    def cell(row):
+        if row["hairs"] == 0:
+            return f"no answer from {row['no_answer']}" if row["no_answer"] > 0 else ""
+        missing = f"; {row['no_answer']} without answer" if row["no_answer"] > 0 else ""
+        return f"{_share(row)} of {row['hairs']}{missing}"
+
+    return table(["statement", *_RANGES],
+                 [[row["statement"], *(cell(claim(tables, row["claim"], family, of)) for of in _RANGES)]
+                  for row in _statements(tables, family)])
+
+
+def exact_step(tables):
+    twisted, bent = claim(tables, "exact_step_100ms"), claim(tables, "exact_step_100ms_bend")
+
+    def ms(x):
+        return f"{number(1e3 * x)} ms"
+
+    return _sentence(
+        tables, f"stable at every step tried up to 100 ms for {_held(twisted)} ({_spread(twisted, ms)}), and without twist for "
+        f"{_share(bent)} (median {ms(bent['median'])})", twisted)
+
+
+def model_steps(tables):
+    row = claim(tables, "super_helix_step_longer")
+    return _sentence(tables, f"`super_helix` is stable at steps at least as long as `der` for {_held(row)} (ratio of the "
+                     f"largest steps: {_spread(row)})", row)
+
+
+def twist_straight(tables):
+    row = claim(tables, "twist_straight_negligible")
+    return _sentence(tables, f"moves the tip of a straight hair by less than 1 % of its length for {_held(row)} "
+                     f"({_spread(row, _change)})", row)
+
+
+def twist_curly(tables):
+    row = claim(tables, "twist_curly_matters")
+    return f"with its curls, by more than that for {_held(row)} ({_spread(row, _change)})"
+
+
+def bdf(tables):
+    rows = [claim(tables, name) for name in ("bdf_order2_at_1e-2", "bdf_order2_at_1e-3", "bdf_order2_at_1e-4")]
+    two, three, four = map(_share, rows)
+    return (f"order 2 at most needs no more work than order 5 for {two}, {three} and {four} of {hairs(tables)} hairs at tip "
+            "errors of 1e-2, 1e-3 and 1e-4 of the length (work of order 5 over that of order 2: median "
+            f"{', '.join(number(row['median']) for row in rows)})")
+
+
+def esdirk(tables):
+    return (f"ESDIRK takes no more steps than BDF for {_share(claim(tables, 'esdirk_steps_at_1e-3'))} of the hairs at 1e-3, and "
+            f"no more calls of the model for {_share(claim(tables, 'esdirk_work_at_1e-3'))}")
+
+
+def equal(tables):
+    row = claim(tables, "reduced_cheaper")
+    return _sentence(tables, f"`super_helix` needs less time for 1 % than `der` for {_held(row)} (time of `der` over that of "
+                     f"`super_helix`: {_spread(row)}; 100 and 0.01 where one of them never gets there)", row)
+
+
+def equal_curly_wind(tables):
+    """Returns "Of the 4 coily hairs in the wind it is true for 1"."""
+    rows = tables.ok_rows("family", {"claim": "reduced_cheaper", "family": "hair", "kind": "coily", "drive": "wind"})
+    return f"Of the {len(rows)} coily hairs in the wind it is true for {(rows['holds'] == 'true').sum()}"
+
+
+def gravito_bending(tables):
+    """Returns percentiles of the gravito-bending number over the hairs."""
+    values = sorted(tables.rows("family", {"family": "hair", "claim": "exact_step_100ms"})["gravito_bending"])
+
+    def at(part):
+        return number(values[math.floor(part * (len(values) - 1) + 0.5)])
+
+    return f"{at(0.05)} (5 %), {at(0.5)} (50 %) and {at(0.95)} (95 %)"
+
+
+# Claims about runs by tolerance are made of every model and integrator; the whole family
+# has tables of its own, which --quick does not make.
+_NOT_STORED = "The stored tables hold no runs by tolerance yet"
+
+
+def _met(tables):
+    return tables.rows("family_tolerance_summary", {"claim": "tolerance_met", "range": "all"})
+
+
+def solved(tables, model, integrator):
+    """Returns the number of hairs of a model and integrator: all, within the tolerance, unsolved, sensitive,
+    without an answer."""
+    rows = tables.rows("family_tolerance", {"claim": "tolerance_met", "model": model, "integrator": integrator})
+    return {
+        "all": len(rows),
+        "within": (rows["holds"] == "true").sum(),
+        "unsolved": _failed(rows).sum(),
+        "sensitive": (rows["status"] == "sensitive").sum(),
+        "silent": (~rows["status"].isin(["ok", "sensitive"])).sum(),
+    }
+
+
+def _failed(rows):
+    return (rows["holds"] == "false") & (rows["failure"] != "")
+
+
+def tolerance_table(tables):
+    met = _met(tables)
+    if met.empty:
+        return f"{_NOT_STORED}."
+    summaries = tables["family_tolerance_summary"]
+
+    def spread_of(name, row):
+        found = first(summaries[(summaries["claim"] == name) & (summaries["range"] == "all")
+                                & (summaries["model"] == row["model"]) & (summaries["integrator"] == row["integrator"])])
+        return _deciles(found) if found is not None and found["hairs"] > 0 else ""
+
+    lines = []
+    for row in records(met):
+        count = solved(tables, row["model"], row["integrator"])
+        lines.append([
+            f"{row['model']}, {row['integrator']}",
+            f"{count['within']} of {count['all']}{f', {count_of} sensitive' if (count_of := count['sensitive']) > 0 else ''}"
+            f"{f', {count_of} unknown' if (count_of := count['silent']) > 0 else ''}",
+            f"{count['unsolved']} of {count['all']}", _deciles(row), spread_of("tolerance_cheaper_at_error", row),
+            spread_of("tolerance_cheaper_as_asked", row), _rule(row)])
+    return table(["model, method", "within the tolerance", "no solution", "error: decile, median, decile", "work, as accurate",
+                  "work, as asked", "best predictor"], lines)
+
+
+def tolerances(tables):
+    """Returns how the errors at one tolerance compare with those at ten times it."""
+    rows = tables.rows("family_tolerances", {"study": "tolerances"})
+    if rows.empty:
+        return f"{_NOT_STORED}."
+    warned = rows["warned"] == "true"
+    return (f"{(rows['holds'] == 'true').sum()} of {len(rows)} pairs of runs hold ({rows['hair'].nunique()} hairs, "
+            f"{rows['model'].nunique()} models, {rows['integrator'].nunique()} methods, {rows['position_tol_rel'].nunique()} "
+            f"tolerances), {warned.sum()} by a warning. The largest ratio without a warning is "
+            f"{number(rows['value'][~warned].max())}.")
+
+
+def sensitive(tables):
+    """Returns the hairs whose motion is sensitive, with growth and error."""
+    rows = tables.rows("family_tolerance", {"claim": "tolerance_met", "status": "sensitive"})
+    if rows.empty:
+        return "None is among the stored hairs."
+    named = (f"hair {row['hair']} by `{row['model']}`, `{row['integrator']}` (growth {number(row['growth'])}, error "
+             f"{number(row['value'] / row['position_tol_rel'])} of the tolerance)" for row in records(rows))
+    return f"Sensitive: {'; '.join(named)}."
+
+
+def unsolved(tables):
+    """Returns the hairs that neither method solves, by model."""
+    rows = tables.rows("family_tolerance", {"claim": "tolerance_met"})
+    if rows.empty:
+        return _NOT_STORED
+    words = []
+    for model, failed in groups(_failed(rows), rows["model"]):
+        by_hair = failed.groupby(rows["hair"]).all()
+        lost = ", ".join(map(plain, by_hair.index[by_hair]))
+        words.append(f"{by_hair.sum()}{f' ({lost})' if lost else ''} of {len(by_hair)} with `{model}`")
+    return f"Hairs that neither method solves: {', '.join(words)}"
+
+
+def tolerance(tables):
+    """Returns the number of hairs that `tr_bdf2` keeps within its tolerance, by model."""
+    met = _met(tables)
+    met = met[met["integrator"] == "tr_bdf2"]
+    if met.empty:
+        return _NOT_STORED
+    asked = tables.rows("family_tolerance", {"claim": "tolerance_met"})["position_tol_rel"].unique()
+    words = []
+    for row in records(met):
+        count = solved(tables, row["model"], row["integrator"])
+        words.append(f"{count['within']} of {count['all']} hairs with `{row['model']}` ({count['unsolved']} without a solution, "
+                     f"{count['silent']} without an answer)")
+    return (f"`tr_bdf2`, asked for {', '.join(map(percent, asked))} of the length, stays within that for {', '.join(words)}")

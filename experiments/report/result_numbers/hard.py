@@ -1,0 +1,169 @@
+"""Hard cases that each model and integrator survives."""
+import re
+
+from . import report
+from .tables import groups, records
+from .words import duration, percent, table
+
+
+def judged(tables):
+    """Returns a row for each case, model, integrator and step or tolerance: the best variant counts."""
+    return report.rows(tables, "hard_judged")
+
+
+def counted(tables):
+    """Returns every run with the outcome that its error supports. `cut` is the number of steps after which a
+    quick run stopped, or 0."""
+    return report.rows(tables, "hard_rows")
+
+
+def cases(tables):
+    return tables["hard_cases"]["case"].nunique()
+
+
+def pairs(tables):
+    return len(judged(tables)[["case", "model"]].drop_duplicates())
+
+
+def _pace(row):
+    return row["pace"] if row["by_tolerance"] else duration(row["dt_s"])
+
+
+def outcomes_table(tables):
+    rows = judged(tables).assign(position_tol_rel=lambda all_rows: all_rows["position_tol_rel"].fillna(0))
+    rows = rows.sort_values(["by_tolerance", "position_tol_rel", "dt_s"], kind="stable")
+    lines = []
+    for _, members in groups(rows, ["pace", "integrator"]):
+        count = members["outcome"].value_counts()
+        lines.append([_pace(members.iloc[0]), members.iloc[0]["integrator"], len(members) - count.get("refused", 0),
+                      *(count.get(outcome, 0) for outcome in
+                        ("stable and accurate", "stable", "stable, not compared", "unstable", "not finished"))])
+    return table(["step or tolerance", "integrator", "pairs that can run", "stable and accurate", "stable, inaccurate",
+                  "stable, no reference", "unstable", "not finished"], lines)
+
+
+def million_steps(tables):
+    """Returns the steps at which `million_steps` counts: those that were run to the end."""
+    rows = counted(tables)
+    rows = rows[rows["case"] == "million_steps"]
+    cut = rows[rows["cut"] > 0]
+    if cut.empty:
+        return "`million_steps` was run whole"
+    whole = [duration(dt) for dt in rows[rows["cut"] == 0]["dt_s"].unique()]
+    where = f"at {' and '.join(whole)} only, where all of its steps were run" if whole else "nowhere"
+    return f"`million_steps` counts {where}: the other runs stop after {cut.iloc[0]['cut']} steps"
+
+
+def super_helix(tables):
+    """Returns the cases that `super_helix` with `backward_euler` survives at each step."""
+    rows = judged(tables)
+    rows = rows[(rows["model"] == "super_helix") & (rows["integrator"] == "backward_euler") & (rows["outcome"] != "refused")]
+    words = []
+    for dt, members in sorted(groups(rows, "dt_s"), reverse=True):
+        lost = [f"`{case}`" for case in members["case"][~members["survives"]]]
+        words.append(f"{len(members) - len(lost)} of {len(members)} cases at steps of {duration(dt)}"
+                     + (f" (not: {', '.join(lost)})" if lost else ""))
+    return "; ".join(words)
+
+
+# Cases of contact by a regularised law, and the same by the exact one: within the step of
+# the strand, and by impulses after it.
+_CONTACT = {"grazing_contact": ["grazing_exact", "grazing_impulse"],
+            "cone": ["cone_exact", "cone_impulse"],
+            "coil_contact": ["coil_impulse"]}
+
+
+def friction_table(tables):
+    """Returns outcomes of `backward_euler` at its longest step, with the number of Newton iterations."""
+    rows = judged(tables)
+    rows = rows[(rows["integrator"] == "backward_euler") & ~rows["by_tolerance"]]
+    longest = rows["dt_s"].max()
+    names = [name for regularised, exact in _CONTACT.items() for name in (regularised, *exact)]
+    rows = rows[rows["case"].isin(names)]
+    models = rows["model"].unique()
+    rows = rows[(rows["dt_s"] == longest) & (rows["outcome"] != "refused")]
+    shown = {(row["model"], row["case"]): f"{row['outcome']} ({row['newton_iterations']:.0f})" if row["survives"] else row["outcome"]
+             for row in reversed(records(rows))}
+    lines = [[model, *(shown.get((model, name), "") for name in names)] for model in models]
+    return table(["model", *(f"`{name}`" for name in names)], [line for line in lines if any(line[1:])])
+
+
+def _fallen(tables):
+    """Yields the runs that fail with a regularised law, each with the same run by the exact laws."""
+    rows = records(judged(tables))
+    by_run = {(row["case"], row["model"], row["integrator"], row["pace"]): row for row in reversed(rows)}
+    for regularised, exact in _CONTACT.items():
+        for row in rows:
+            if row["case"] == regularised and row["outcome"] in ("unstable", "not finished"):
+                others = [by_run.get((name, row["model"], row["integrator"], row["pace"])) for name in exact]
+                yield row, [other for other in others if other is not None]
+
+
+def _tried(exact):
+    return [row for row in exact if row["outcome"] != "refused"]
+
+
+def _rises(exact):
+    return any(row["survives"] for row in exact)
+
+
+def rising_count(tables):
+    """Returns how many of these survive by an exact law, of those that an exact law can run."""
+    able = [exact for _, exact in _fallen(tables) if _tried(exact)]
+    return f"{sum(map(_rises, able))} of {len(able)}"
+
+
+_WHY_NOT = {
+    "its work was done": "not finished within its work",
+    "speed": "faster than its root can make it",
+    "reach": "farther from its root than it is long",
+    "energy": "gains energy at the impact",
+    "penetration_over_bound": "deeper than allowed",
+    "overlap_over_radius": "parts pass through each other",
+}
+
+
+def _ending(row, exact):
+    """Returns whether an exact law survives, or why the best of them does not."""
+    if _rises(exact):
+        return "**survives**"
+    if not _tried(exact):
+        return f"{row['integrator']} does not support exact contact"
+    best = min(_tried(exact), key=lambda one: one["rank"])
+    what = re.split(r" at t = |: | = ", best["why"])[0]
+    return f"{best['case']}: {_WHY_NOT.get(what, what)}"
+
+
+def rising_table(tables):
+    """Returns the models that survive by an exact law, and the reasons of the others, by case, method and
+    step."""
+    models = {}
+    for row, exact in _fallen(tables):
+        line = (f"`{row['case']}`", row["integrator"], _pace(row), _ending(row, exact))
+        models.setdefault(line, {})[row["model"]] = None
+    return table(["fails by a regularised law", "integrator", "step or tolerance", "by the exact law", "models"],
+                 [[*line, ", ".join(names)] for line, names in models.items()])
+
+
+def _broken_at_shorter(tables):
+    """Returns the cases that break at a shorter step but hold at a longer one, one for each combination of
+    case, model and integrator, and the number of combinations with two steps or more."""
+    rows = judged(tables)
+    rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
+    compared = [(case, members.sort_values("dt_s")) for (case, _, _), members in groups(rows, ["case", "model", "integrator"])
+                if len(members) > 1]
+    broken = []
+    for case, members in compared:
+        unstable = members["outcome"] == "unstable"
+        if unstable.any() and members["survives"][unstable.argmax():].any():
+            broken.append(case)
+    return broken, len(compared)
+
+
+def broken_at_shorter_count(tables):
+    broken, compared = _broken_at_shorter(tables)
+    return f"{len(broken)} of {compared} ({percent(len(broken) / compared)})"
+
+
+def broken_at_shorter(tables):
+    return ", ".join(f"`{case}`" for case in dict.fromkeys(_broken_at_shorter(tables)[0]))

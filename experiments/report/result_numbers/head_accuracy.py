@@ -1,0 +1,76 @@
+"""Share of a groom that must be simulated."""
+from .tables import first, known, records
+from .words import must, number, percent, span, spaced, table
+
+
+def answers(tables):
+    """Returns the cheapest way to each target error. Where the status is not ok, there is none."""
+    return tables.rows("head_accuracy", {"kind": "cheapest"})
+
+
+def _met(tables):
+    rows = answers(tables)
+    return rows[rows["status"] == "ok"]
+
+
+def _every(row):
+    return row["guides"] == row["strands"]
+
+
+def _words(row):
+    hairs = f"each of {row['strands']} hairs" if _every(row) else f"{row['guides']:.0f} guides for {row['strands']} hairs"
+    return (f"{hairs}, {row['elements']:.0f} elements, steps of {number(1e3 * row['dt_s'])} ms, "
+            f"{row['precision']:.0f}-bit precision")
+
+
+def answer(tables):
+    """Returns the answer for the shipped groom and the smallest target error."""
+    rows = _met(tables)
+    row = first(rows[rows["scene"] == "full_head"].sort_values("target_error_rel", kind="stable"))
+    must(row is not None, "the shipped head has an answer")
+    following = (f"; hairs that follow {row['best_guides']:.0f} guides are off by {percent(row['best_interpolation_rel'])}."
+                 if _every(row) and row["best_guides"] > 0 else ".")
+    return (f"> {spaced(row['scene'])}, {percent(row['target_error_rel'])}: take {_words(row)}: of {row['looked_at']} sampled "
+            f"hairs, 95 % are within {percent(row['error_p95_rel'])} of their length (mean {percent(row['error_mean_rel'])}, "
+            f"largest {percent(row['error_max_rel'])}) in {number(row['ms_per_frame'])} ms a frame{following}")
+
+
+def over(tables):
+    return {
+        "p95": "The target is the error that 95 % of the sampled hairs do not exceed.",
+        "mean": "The target is the mean over the sampled hairs.",
+        "largest": "The target is the largest error of the sampled hairs.",
+    }[answers(tables).iloc[0]["over"]]
+
+
+def answers_table(tables):
+    def line(row):
+        head = [spaced(row["scene"]), percent(row["target_error_rel"]), row["looked_at"]]
+        if row["status"] != "ok":
+            return [*head, row["reason"], "", "", "", "", ""]
+        return [
+            *head, f"all {row['strands']}" if _every(row) else f"{row['guides']:.0f} of {row['strands']}",
+            f"{row['elements']:.0f}, {number(1e3 * row['dt_s'])} ms, {row['precision']:.0f}",
+            f"{percent(row['error_mean_rel'])}, {percent(row['error_p95_rel'])}, {percent(row['error_max_rel'])}",
+            f"none; following {row['best_guides']:.0f}: {percent(row['best_interpolation_rel'])}" if _every(row) else
+            percent(row["interpolation_p95_rel"]),
+            percent(row["simulated_p95_rel"]), f"{number(row['step_ms_per_frame'])}, {number(row['follow_ms_per_frame'])}"]
+
+    return table(
+        ["groom", "target", "sampled hairs", "simulated", "elements, step, bits", "error: mean, 95 %, largest",
+         "of interpolation", "of elements and step", "ms a frame: simulated, following"],
+        map(line, records(answers(tables))))
+
+
+def findings(tables):
+    """Returns how the variation between hairs decides."""
+    rows = _met(tables)
+    alike, varied = (rows[rows["scene"].str.contains(kind)] for kind in ("alike", "varied"))
+    few = alike[~_every(alike)]
+    must(len(few) > 0 and len(few) > len(alike) / 2, "most grooms of equal hairs need few guides")
+    must(len(varied) > 0 and _every(varied).all(), "varied hairs must all be simulated")
+    off = varied["best_interpolation_rel"]
+    return (f"In {len(few)} of {len(alike)} answers for grooms of equal hairs, {span(few['guides'] / few['strands'], percent)} of "
+            "the hairs are enough as guides. Hairs that differ in length, curl and phase must all be simulated "
+            f"({len(varied)} of {len(varied)} answers): hairs that follow the best guides are off by "
+            f"{span(off[known(off)], percent)}. Grooms: {', '.join(map(spaced, answers(tables)['scene'].unique()))}.")

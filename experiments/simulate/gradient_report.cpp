@@ -1,0 +1,109 @@
+#include "experiments/simulate/gradient_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "experiments/run/message.h"
+#include "simulation/files/files.h"
+#include "simulation/gradient/scene_gradient.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::experiments::scene_runs {
+namespace {
+
+constexpr std::size_t most_named = 8;
+
+/// Of both runs of a strand that have this frame.
+std::size_t frames(const StrandGradient& one, const StrandGradient& finer) {
+  return std::min(one.points.size(), finer.points.size());
+}
+
+std::string table_of(const Scene& scene, const SceneGradient& gradient,
+                     const SceneGradient& finer) {
+  const bool tips = scene.tables->gradient->values().word("of") == "tip";
+  std::string text =
+      "strand,point,time_s,component,by,unit,derivative,relative,time_error,status\n";
+  const auto out = std::back_inserter(text);
+  for (std::size_t k = 0; k < gradient.strands.size(); ++k) {
+    const StrandGradient& strand = gradient.strands[k];
+    const StrandGradient& other = finer.strands[k];
+    const char* const status = strand.not_smooth.empty() ? "ok" : "not_smooth";
+    const double length = scene.strands[k].length();
+    for (std::size_t f = 0; f < frames(strand, other); ++f) {
+      const std::size_t numbers = strand.points[f].size();
+      for (std::size_t i = tips ? numbers - 3 : 0; i < numbers; ++i) {
+        for (std::size_t j = 0; j < gradient.parameters.size(); ++j) {
+          const SceneParameter& by = gradient.parameters[j];
+          const double derivative = strand.by[j][f][i];
+          const std::string relative =
+              by.value == 0 ? "" : fmt::format("{:.6g}", derivative * by.value / length);
+          fmt::format_to(out, "{},{},{:.9g},{},{},{},{:.9g},{},{:.3g},{}\n", k, i / 3,
+                         scene.time_of(f), "xyz"[i % 3], by.name, "m/(" + by.unit + ")",
+                         derivative, relative, std::abs(derivative - other.by[j][f][i]),
+                         status);
+        }
+      }
+    }
+  }
+  return text;
+}
+
+double size_of_tip(const std::vector<double>& x) {
+  return std::hypot(x[x.size() - 3], x[x.size() - 2], x[x.size() - 1]);
+}
+
+/// "1 % of youngs_modulus_pa moves it by 0.12 mm", of the last tip.
+void tell_parameter(const Scene& scene, const SceneGradient& gradient,
+                    const SceneGradient& finer, std::size_t j) {
+  const SceneParameter& by = gradient.parameters[j];
+  const StrandGradient& strand = gradient.strands.front();
+  const StrandGradient& other = finer.strands.front();
+  const std::size_t f = frames(strand, other) - 1;
+  std::vector<double> apart = strand.by[j][f];
+  for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= other.by[j][f][i];
+  constexpr double percent = 0.01, mm = 1e3;
+  const double size = size_of_tip(strand.by[j][f]);
+  const double change = by.value != 0 ? percent * std::abs(by.value) : 1;
+  const std::string of =
+      by.value != 0 ? "1 % of " + by.name : fmt::format("1 {} of {}", by.unit, by.name);
+  tell(
+      "simulate: {}: gradient: {} moves the tip by {:.3g} mm at {:g} s; half the step "
+      "changes that by {:.2g} %\n",
+      scene.name, of, mm * change * size, scene.time_of(f),
+      size > 0 ? size_of_tip(apart) / size / percent : 0.0);
+}
+
+}  // namespace
+
+bool report_gradient(const Scene& scene, const std::string& file) {
+  const SceneGradient gradient = scene_gradient(scene), finer = scene_gradient(scene, 2);
+  replace_file(file, table_of(scene, gradient, finer));
+  bool finished = true;
+  for (const SceneGradient* one : {&gradient, &finer}) {
+    for (std::size_t k = 0; k < one->strands.size(); ++k) {
+      const StrandGradient& strand = one->strands[k];
+      if (strand.unfinished.empty()) continue;
+      finished = false;
+      tell("simulate: {}: gradient of strand {} not finished: {}\n", scene.name, k,
+           strand.unfinished);
+    }
+  }
+  if (frames(gradient.strands.front(), finer.strands.front()) > 0) {
+    const std::size_t named = std::min(most_named, gradient.parameters.size());
+    for (std::size_t j = 0; j < named; ++j) tell_parameter(scene, gradient, finer, j);
+  }
+  if (scene.options.tolerance > 0) {
+    tell(
+        "simulate: {}: gradient: of the run with its accepted steps frozen, whose points "
+        "are within {:.2g} of the length of the run's\n",
+        scene.name, std::ranges::max(gradient.strands, {}, &StrandGradient::moved).moved);
+  }
+  tell("simulate: {}: gradient: {} parameters{} -> {}\n", scene.name,
+       gradient.parameters.size(), gradient.damped ? ", damped start" : "", file);
+  return finished;
+}
+
+}  // namespace tress::experiments::scene_runs

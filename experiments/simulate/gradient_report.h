@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "simulation/scene/scene.h"
+
+namespace tress::experiments::scene_runs {
+
+using namespace simulation;
+
+/// Writes the derivatives that the scene's [gradient] asks for to a table, with the
+/// change of each by half the steps, and prints those of the last tip in words. False: a
+/// run did not come to its end.
+bool report_gradient(const Scene& scene, const std::string& file);
+
+}  // namespace tress::experiments::scene_runs

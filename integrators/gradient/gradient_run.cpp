@@ -1,0 +1,179 @@
+#include "integrators/gradient/gradient_run.h"
+
+#include <algorithm>
+
+#include "contract/forms/material_points.h"
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "linear/vector_ops.h"
+
+namespace tress::integrators {
+namespace {
+
+constexpr std::string_view damping_method = "backward_euler";
+constexpr double damping_part = 1.0 / 16;  // of a step
+constexpr int damping_steps = 2;
+
+std::vector<VariedSystem> varied_systems(System& system,
+                                         std::span<const RunParameter> parameters) {
+  std::vector<VariedSystem> all;
+  for (const RunParameter& parameter : parameters) {
+    all.push_back(varied_system(system, parameter));
+  }
+  return all;
+}
+
+/// Of the variational equations: linear, so that the first correction is the solution;
+/// and one step at a time, those of the run.
+Options of_columns(Options options) {
+  constexpr double any = 1e200, one_step = 1e30;
+  options.newton_tolerance = any;
+  options.refresh = Refresh::every_iteration;
+  options.formulation = Formulation::parametric;
+  options.step = one_step;
+  options.max_work = 0;
+  return options;
+}
+
+System& checked(System& system, const GradientRun::Method& method) {
+  std::string reason = no_gradient(method.id, system, method.options);
+  if (method.options.tolerance > 0) {
+    reason = "steps that a tolerance chooses are not smooth in the parameters";
+  }
+  if (reason.empty()) return system;
+  throw InputError("no gradient of a run by " + std::string(method.id), reason,
+                   "change the method or the model");
+}
+
+}  // namespace
+
+std::string no_gradient(std::string_view method, System& system, const Options& options) {
+  if (find_integrator(method).stages == 0) {
+    std::string able;
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
+      if (entry.stages > 0) able += (able.empty() ? "" : ", ") + std::string(entry.id);
+    }
+    return std::string(method) +
+           " does not solve the equations of implicit stages, at whose solutions "
+           "derivatives are taken: use " +
+           able;
+  }
+  if (system.contact_form() != nullptr) {
+    return "the forces of exact contact have no derivative yet: use regularised contact "
+           "(normal = compliant, friction_law = regularised)";
+  }
+  if (system.layout().constraints == 0) {
+    if (system.traits().regular_mass) return {};
+    return "the mass matrix is singular, so that accelerations have no derivative: use "
+           "rotary_inertia = true";
+  }
+  if (options.formulation == Formulation::index3) return {};
+  return "constraints as " + std::string(name(options.formulation)) +
+         " have no exact derivative of their bias: use formulation = index3";
+}
+
+GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
+                         std::span<const RunParameter> parameters, const Method& method)
+    : method_(method),
+      system_(checked(system, method)),
+      exact_(std::move(exact)),
+      varied_(varied_systems(system, parameters)),
+      watched_(system),
+      variational_(watched_, *exact_, varied_, method.options, method.sparse),
+      q_(size(system.layout().coordinates)),
+      v_(q_),
+      dq_(parameters.size() * q_.size()),
+      dv_(dq_) {}
+
+Status GradientRun::start() {
+  for (System* system : {&system_, exact_.get()}) system->reset();
+  for (const VariedSystem& one : varied_) {
+    for (const auto& system : one.systems) system->reset();
+  }
+  t_ = 0;
+  failure_.clear();
+  stats_ = {};
+  system_.initial_state(q_, v_);
+  variational_.initial_state(dq_, dv_);
+  if (watched_.history() != nullptr) {
+    static_cast<void>(static_cast<System&>(watched_).accept(t_, q_, v_));
+    static_cast<void>(static_cast<System&>(variational_).accept(t_, dq_, dv_));
+  }
+  damping_ = method_.start == GradientStart::damped;
+  if (!damping_) return begin(method_.id, method_.options);
+  Options options = method_.options;
+  options.step *= damping_part;
+  options.own.clear();
+  return begin(damping_method, options);
+}
+
+/// Both methods from the present state.
+Status GradientRun::begin(std::string_view method, const Options& options) {
+  run_ = make_integrator(method, watched_, options);
+  columns_ = make_integrator(method, variational_, of_columns(options));
+  watched_.forget();
+  const Status s = run_->start(t_, q_, v_);
+  if (s != Status::ok) return fail(s, run_->failure());
+  variational_.follow(q_, v_);
+  const Status c = columns_->start(t_, dq_, dv_);
+  return c == Status::ok ? c : fail(c, "derivatives: " + columns_->failure());
+}
+
+Status GradientRun::advance(double t_end) {
+  if (damping_) {
+    const double h = std::min(method_.options.step, t_end - t_);
+    Status s = advance_by(*run_, *columns_, t_ + damping_steps * damping_part * h);
+    damping_ = false;
+    if (s == Status::ok) s = begin(method_.id, method_.options);
+    if (s != Status::ok) return s;
+  }
+  return advance_by(*run_, *columns_, t_end);
+}
+
+Status GradientRun::advance_by(Integrator& run, Integrator& columns, double t_end) {
+  Status of_columns = Status::ok;
+  const Status s = run.advance(t_end, [&](double t, In q, In v) {
+    variational_.follow(q, v);
+    of_columns = columns.advance(t);
+    watched_.forget();
+    return of_columns == Status::ok && variational_.failure().empty();
+  });
+  keep(run, columns);
+  if (!variational_.failure().empty()) return fail(Status::fatal, variational_.failure());
+  if (of_columns != Status::ok) {
+    return fail(of_columns, "derivatives: " + columns.failure());
+  }
+  return s == Status::ok ? s : fail(s, run.failure());
+}
+
+void GradientRun::keep(const Integrator& run, const Integrator& columns) {
+  t_ = run.time();
+  q_.assign(run.q().begin(), run.q().end());
+  v_.assign(run.v().begin(), run.v().end());
+  dq_.assign(columns.q().begin(), columns.q().end());
+  dv_.assign(columns.v().begin(), columns.v().end());
+  stats_ = run.stats();
+}
+
+Status GradientRun::fail(Status s, std::string why) {
+  failure_ = std::move(why);
+  return s;
+}
+
+/// dx = J dq + dx/ds at fixed q, with J dq as the velocity of dq less that of rest.
+void GradientRun::points_by(std::size_t k, Out dx) {
+  MaterialPoints& points = *exact_->material_points();
+  std::vector<double> part(dx.size());
+  points.velocities(t_, q_, dq(k), dx);
+  points.velocities(t_, q_, std::vector<double>(q_.size()), part);
+  add(dx, -1, part);
+  const Stencil& stencil = varied_[k].stencil;
+  points.positions(t_, q_, part);
+  add(dx, stencil.base, part);
+  for (std::size_t i = 0; i < stencil.at.size(); ++i) {
+    varied_[k].systems[i]->material_points()->positions(t_, q_, part);
+    add(dx, stencil.weight[i], part);
+  }
+}
+
+}  // namespace tress::integrators

@@ -1,0 +1,181 @@
+#include "integrators/gradient/variational_system.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "linear/vector_ops.h"
+
+namespace tress::integrators {
+namespace {
+
+/// Options under which constraints give accelerations.
+Options of_accelerations(Options options) {
+  options.formulation = Formulation::acceleration;
+  return options;
+}
+
+}  // namespace
+
+VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
+                                     std::span<const VariedSystem> varied,
+                                     const Options& options, bool sparse)
+    : run_(run),
+      system_(system),
+      varied_(varied),
+      n_(size(system.layout().coordinates)),
+      stages_(system, varied, options, sparse),
+      c_(columns() * size(stages_.constraints())) {
+  if (stages_.constraints() > 0) {
+    starts_.emplace(system, varied, of_accelerations(options), sparse);
+  }
+  for (auto* x : {&start_.q, &start_.v, &start_.a}) x->resize(n_);
+  start_.lambda.resize(size(stages_.constraints()));
+}
+
+void VariationalSystem::initial_state(Out dq, Out dv) const {
+  std::ranges::fill(dq, 0.0);
+  std::ranges::fill(dv, 0.0);
+  std::vector<double> q(n_), v(n_);
+  for (std::size_t k = 0; k < columns(); ++k) {
+    const Stencil& stencil = varied_[k].stencil;
+    system_.initial_state(q, v);
+    add(column(dq, k), stencil.base, q);
+    add(column(dv, k), stencil.base, v);
+    for (std::size_t i = 0; i < stencil.at.size(); ++i) {
+      varied_[k].systems[i]->initial_state(q, v);
+      add(column(dq, k), stencil.weight[i], q);
+      add(column(dv, k), stencil.weight[i], v);
+    }
+  }
+}
+
+void VariationalSystem::follow(In q, In v) {
+  std::ranges::copy(q, start_.q.begin());
+  std::ranges::copy(v, start_.v.begin());
+  looked_ = false;
+  carried_ = 0;
+}
+
+void VariationalSystem::scale(Out q_typ, Out v_typ) const {
+  for (std::size_t k = 0; k < columns(); ++k) {
+    system_.scale(column(q_typ, k), column(v_typ, k));
+  }
+}
+
+/// The record of a stage: times of the run and of this one differ by rounding.
+Status VariationalSystem::look_at(double t) noexcept {
+  const auto stages = run_.stages();
+  if (stages.empty()) return Status::fatal;
+  const auto nearest = std::ranges::min_element(
+      stages, {}, [t](const auto& stage) { return std::abs(stage.t - t); });
+  if (looked_ && nearest->t == looked_at_) return Status::ok;
+  looked_ = true;
+  looked_at_ = nearest->t;
+  return stages_.move(*nearest);
+}
+
+Status VariationalSystem::linearize(double t, In, In, In, Weights w) noexcept {
+  const Status s = look_at(t);
+  return s == Status::ok ? stages_.factor(w) : s;
+}
+
+Status VariationalSystem::residual(double t, In dq, In dv, In da, Out r) noexcept {
+  if (const Status s = look_at(t); s != Status::ok) return s;
+  const std::size_t m = size(stages_.constraints());
+  for (std::size_t k = 0; k < columns(); ++k) {
+    const Status s = stages_.along(k, column(dq, k), column(dv, k), column(da, k),
+                                   column(r, k), Out(c_).subspan(k * m, m));
+    if (s != Status::ok) return s;
+  }
+  return Status::ok;
+}
+
+Status VariationalSystem::solve(In b, Out x) noexcept {
+  if (b.data() != x.data()) std::ranges::copy(b, x.begin());
+  const std::size_t m = size(stages_.constraints());
+  for (std::size_t k = 0; k < columns(); ++k) {
+    const Status s = stages_.solve(column(x, k), Out(c_).subspan(k * m, m));
+    if (s != Status::ok) return s;
+  }
+  return Status::ok;
+}
+
+Status VariationalSystem::acceleration(double t, In dq, In dv, Out da) noexcept {
+  Linearized& equations = at_start();
+  Dynamics& dynamics = equations.dynamics();
+  start_.t = t;
+  Status s = dynamics.accelerate(t, start_.q, start_.v, start_.a, start_.lambda);
+  if (s == Status::ok) s = equations.move(start_);
+  if (s == Status::ok) s = equations.factor({1, 0, 0});
+  looked_ = false;
+  const std::vector<double> none(n_);
+  const std::size_t m = size(equations.constraints());
+  for (std::size_t k = 0; k < columns() && s == Status::ok; ++k) {
+    const Out x = column(da, k), c = Out(c_).subspan(k * m, m);
+    s = equations.along(k, column(dq, k), column(dv, k), none, x, c);
+    if (s == Status::ok) s = equations.solve(x, c);
+    for (double& entry : x) entry = -entry;
+  }
+  return s;
+}
+
+/// Where nothing moves, the systems only follow the run. Else the change of what each
+/// stencil's state becomes is differentiated: coordinates that do not move add nothing.
+bool VariationalSystem::accept(double t, InOut dq, InOut dv) {
+  const WatchedSystem::Motion& before = run_.accepted();
+  std::vector<double> q = before.q, v = before.v;
+  system_.accept(t, q, v);
+  const bool moved = run_.moved();
+  const std::vector<double> old_dq(dq.begin(), dq.end()), old_dv(dv.begin(), dv.end());
+  for (std::size_t k = 0; k < columns(); ++k) {
+    const Stencil& stencil = varied_[k].stencil;
+    for (std::size_t i = 0; i < stencil.at.size(); ++i) {
+      const double s = stencil.at[i];
+      shifted(q, before.q, s, column(In(old_dq), k));
+      shifted(v, before.v, s, column(In(old_dv), k));
+      const std::vector<double> old_q = q, old_v = v;
+      if (varied_[k].systems[i]->accept(t, q, v) != moved) {
+        failure_ = "a change of parameter " + std::to_string(k + 1) + " by " +
+                   std::to_string(s) + " moves a reference frame to another step";
+        std::ranges::fill(dq, std::nan(""));
+        return moved;
+      }
+      if (!moved) continue;
+      add(q, -1, old_q);
+      add(v, -1, old_v);
+      add(column(dq, k), stencil.weight[i], q);
+      add(column(dv, k), stencil.weight[i], v);
+    }
+  }
+  return moved;
+}
+
+bool VariationalSystem::carry(double t, InOut dq, InOut dv, InOut da) const {
+  if (carried_ == run_.carried().size()) return false;
+  const WatchedSystem::Motion& before = run_.carried()[carried_++];
+  using Vectors = std::array<std::vector<double>, 3>;
+  const std::array<InOut, 3> all{dq, dv, da};
+  const std::array<In, 3> of_run{before.q, before.v, before.a};
+  Vectors old;
+  for (std::size_t j = 0; j < 3; ++j) old[j].assign(all[j].begin(), all[j].end());
+  for (std::size_t k = 0; k < columns(); ++k) {
+    const Stencil& stencil = varied_[k].stencil;
+    for (std::size_t i = 0; i < stencil.at.size(); ++i) {
+      Vectors from, to;
+      for (std::size_t j = 0; j < 3; ++j) {
+        from[j].resize(n_);
+        shifted(from[j], of_run[j], stencil.at[i], column(In(old[j]), k));
+      }
+      to = from;
+      if (!tress::carry(*varied_[k].systems[i], t, to[0], to[1], to[2])) return false;
+      for (std::size_t j = 0; j < 3; ++j) {
+        add(to[j], -1, from[j]);
+        add(column(all[j], k), stencil.weight[i], to[j]);
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace tress::integrators

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contract/forms/explicit_form.h"
+#include "contract/forms/moving_history.h"
+#include "integrators/gradient/linearized.h"
+
+namespace tress::integrators {
+
+/// The variational equations of a run: the derivatives (dq, dv) of its state by P
+/// parameters as P columns of n coordinates, one behind the other, with
+///
+///     r_q dq + r_v dv + r_a da + dr/ds = 0
+///
+/// at the solutions of the run's stages. A Runge-Kutta, multistep or generalized-alpha
+/// method is linear algebra around the solution of its stages. The same method with the
+/// same steps on these equations therefore gives the exact derivative of its own run
+/// [Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed., VI.4.1, for
+/// Runge-Kutta methods; Bock 1981 for multistep methods].
+///
+/// Constraints g(q) = 0 (index 3) enter inside solve(): seen from outside the columns are
+/// not constrained. The equations are linear, and solve() gives their solution in one
+/// correction from any guess, which Newton's method must not repeat: it needs a tolerance
+/// that any correction meets.
+///
+/// Accelerations at a start are those of M da = -(r_q dq + r_v dv + dr/ds). The maps of
+/// History::accept() and MovingHistory::carry() are differentiated by the stencils.
+///
+/// A stage costs one linearization, however many the columns are. Each column costs its
+/// product with the derivative (two residuals without SparseForm), the residuals of its
+/// stencil (one or four) and a solution.
+class VariationalSystem final : public System,
+                                private ExplicitForm,
+                                private MovingHistory {
+ public:
+  /// `system`: the one of the run, with the exact Jacobian; it follows the run. `run`
+  /// records it. All must outlive this.
+  VariationalSystem(const WatchedSystem& run, System& system,
+                    std::span<const VariedSystem> varied, const Options& options,
+                    bool sparse);
+
+  /// Writes the columns of initial_state().
+  void initial_state(Out dq, Out dv) const override;
+  /// The run has come to this state by the step that its record holds, or starts there.
+  void follow(In q, In v);
+  /// Why a step failed beyond its equations; empty: nothing did.
+  const std::string& failure() const { return failure_; }
+
+  Layout layout() const override { return {static_cast<int>(columns() * n_), 0}; }
+  Traits traits() const override { return {}; }
+  void scale(Out q_typ, Out v_typ) const override;
+  Status residual(double t, In dq, In dv, In da, Out r) noexcept override;
+  Status linearize(double t, In dq, In dv, In da, Weights w) noexcept override;
+  Status solve(In b, Out x) noexcept override;
+  ExplicitForm* explicit_form() override { return this; }
+  History* history() override { return system_.history() == nullptr ? nullptr : this; }
+
+ private:
+  Status acceleration(double t, In dq, In dv, Out da) noexcept override;
+  bool accept(double t, InOut dq, InOut dv) override;
+  bool carry(double t, InOut dq, InOut dv, InOut da) const override;
+  std::string not_smooth() const override { return {}; }
+  void reset() override {}
+  std::vector<double> memory() const override { return {}; }
+  void recall(In /*memory*/) override {}
+
+  std::size_t columns() const { return varied_.size(); }
+  In column(In x, std::size_t k) const { return x.subspan(k * n_, n_); }
+  Out column(Out x, std::size_t k) const { return x.subspan(k * n_, n_); }
+  Linearized& at_start() { return starts_ ? *starts_ : stages_; }
+  Status look_at(double t) noexcept;
+
+  const WatchedSystem& run_;
+  System& system_;
+  std::span<const VariedSystem> varied_;
+  std::size_t n_;
+  Linearized stages_;
+  std::optional<Linearized> starts_;  // with g'' = 0, where there are constraints
+  WatchedSystem::Motion start_;
+  double looked_at_ = 0;  // of the record
+  bool looked_ = false;
+  std::vector<double> c_;  // of all columns
+  mutable std::size_t carried_ = 0;
+  std::string failure_;
+};
+
+}  // namespace tress::integrators

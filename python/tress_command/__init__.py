@@ -1,0 +1,1 @@
+"""The command ./tress. It needs the standard library only: it runs before anything is built."""

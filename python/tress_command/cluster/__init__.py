@@ -1,0 +1,1 @@
+"""./tress cluster."""

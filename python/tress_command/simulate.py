@@ -1,0 +1,43 @@
+"""./tress simulate."""
+
+import os
+import shutil
+import subprocess
+
+from .command import Command
+from .counting import must
+from .messages import refuse, say
+from .scene_folder import scene_folder
+from .scripts import REPORT
+from .tree import PROGRAMS, Stopwatch, build_programs
+
+PROGRAM = f"{PROGRAMS}/simulate"
+
+
+def _run(words, machine):
+    folder = scene_folder("simulate", words)
+    scene, *options = words
+    if options and not options[0].startswith("-"):
+        refuse(f"simulate: '{options[0]}' after the scene file; give one scene, then options")
+    if any(word.partition("=")[0] == "--out" for word in options):
+        refuse(f"simulate: --out is {folder} here; {PROGRAM} takes another")
+    build_programs(machine, "simulate")
+    shutil.rmtree(folder, ignore_errors=True)
+    watch = Stopwatch()
+    must(PROGRAM, scene, "--out", f"{folder}/scenes", *options)
+    watch.say("simulation")
+    watch = Stopwatch()
+    must(*REPORT, folder, stdout=subprocess.DEVNULL)
+    watch.say("page")
+    say(f"open in a browser: file://{os.getcwd()}/{folder}/report.html#tab-scenes")
+
+
+COMMAND = Command(
+    "simulate", "SCENE.toml [OPTIONS]",
+    "simulates one scene and writes its time series and a page with its motion. They are in "
+    "results/simulate/<scene>-<checksum of its path>/. Builds the program first.",
+    _run,
+    example="./tress simulate scenes/cantilever.toml --error-bars",
+    time="seconds for most shipped scenes; the first build takes about 30 processor minutes.",
+    options=(("--help", "this text; OPTIONS are those of the program, without --out"),),
+    program=(PROGRAM,))

@@ -1,0 +1,82 @@
+"""Build trees: build/<preset>, configured and compiled with their output in a log."""
+
+import os
+import re
+import time
+from pathlib import Path
+
+from . import sundials
+from .messages import INTERNAL_ERROR, Ended, echo, say
+from .processes import quietly
+
+RELEASE = "release"
+PROGRAMS = "build/release/experiments"
+COMPLAINT = re.compile("FAILED:|error:|CMake Error")
+AFTER, MOST = 8, 60  # lines shown of a log
+
+
+class Stopwatch:
+    """Prints how long a part took."""
+
+    def __init__(self):
+        self.began = time.monotonic()
+
+    def say(self, what):
+        say(f"{what}: {int(time.monotonic() - self.began)} s")
+
+
+def names_in(file):
+    """Returns the lines of a list that the build writes."""
+    return Path(file).read_text(encoding="utf-8").splitlines()
+
+
+def _complaints(log):
+    """Returns the lines of a log that begin with a complaint, and some after each."""
+    shown, left = [], 0
+    for line in Path(log).read_text(errors="replace").splitlines():
+        left = AFTER + 1 if COMPLAINT.search(line) else left - 1
+        if left > 0:
+            shown.append(line)
+    return shown[:MOST]
+
+
+def working(preset, *command):
+    """Runs a command of a build; ends with the complaints of its log if it fails."""
+    log = f"build/{preset}/build.log"
+    if quietly(log, *command) != 0:
+        for line in _complaints(log):
+            echo(line)
+        raise Ended(INTERNAL_ERROR, f"the build failed; full log: {log}")
+
+
+def configure(preset, *options):
+    """Configures a tree. One that was copied or moved here is begun again."""
+    tree = Path(f"build/{preset}")
+    tree.mkdir(parents=True, exist_ok=True)
+    cached = tree / "CMakeCache.txt"
+    home = f"CMAKE_HOME_DIRECTORY:INTERNAL={os.getcwd()}"
+    fresh = () if cached.exists() and home in names_in(cached) else ("--fresh",)
+    say(f"building {tree} (log: {tree}/build.log)")
+    (tree / "build.log").write_bytes(b"")
+    working(preset, "cmake", "--preset", preset,
+            f"-DTRESS_SUNDIALS_ROOT={sundials.root() or ''}", *options, *fresh)
+
+
+def compile_targets(preset, *targets):
+    """Compiles targets of a configured tree; all if none is named."""
+    working(preset, "cmake", "--build", "--preset", preset,
+            *(("--target", *targets) if targets else ()))
+
+
+def build(preset, *targets):
+    """Configures a tree and compiles targets."""
+    configure(preset)
+    compile_targets(preset, *targets)
+
+
+def build_programs(machine, *names):
+    """Builds programs of the experiments, all or those named, and prints how long that took."""
+    watch = Stopwatch()
+    machine.ensure()
+    build(RELEASE, *(names or ("experiments",)))
+    watch.say("build")

@@ -1,0 +1,225 @@
+#include "simulation/gradient/scene_gradient.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "contract/forms/material_points.h"
+#include "contract/forms/moving_history.h"
+#include "contract/input_error.h"
+#include "contract/jacobian_choice.h"
+#include "integrators/catalogue.h"
+#include "integrators/gradient/gradient_run.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::simulation {
+namespace {
+
+using integrators::GradientRun;
+using integrators::GradientStart;
+using integrators::RunParameter;
+
+/// The model's options with the exact Jacobian.
+Parameters exact_options(const Scene& scene) {
+  Parameters options = scene.model_options;
+  for (const Parameter& p : scene.model->parameters) {
+    if (p.name == jacobian_parameter.name) {
+      options.set(p.name, words_of(jacobian_parameter.choices).front());
+    }
+  }
+  return options;
+}
+
+std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand,
+                                  const Parameters& options) {
+  return scene.model->on_strand(scene.strands[strand], options, make_effects(scene));
+}
+
+std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
+                                         std::span<const SceneParameter> parameters) {
+  std::vector<RunParameter> all;
+  for (const SceneParameter& parameter : parameters) {
+    all.emplace_back([&scene, strand, &parameter](double s) {
+      Scene changed = scene;
+      parameter.change(changed, s);
+      return system_of(changed, strand, exact_options(changed));
+    });
+  }
+  return all;
+}
+
+bool damped(const Scene& scene, std::span<const SceneParameter> parameters) {
+  const std::string_view start = scene.tables->gradient->values().word("start");
+  if (start != "auto") return start == "damped";
+  return std::ranges::any_of(parameters, &SceneParameter::moves_rest);
+}
+
+/// Ends of steps: those at which frames are, with their number.
+struct Stop {
+  double t;
+  bool frame;
+};
+
+/// Of a fixed step: the frames.
+std::vector<Stop> stops_at_frames(const Scene& scene) {
+  std::vector<Stop> stops;
+  for (std::size_t f = 1; f <= scene.last_frame(); ++f) {
+    stops.push_back({scene.time_of(f), true});
+  }
+  return stops;
+}
+
+std::vector<double> points_at(System& system, double t, In q) {
+  MaterialPoints& points = *system.material_points();
+  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
+  points.positions(t, q, x);
+  return x;
+}
+
+/// A run with a tolerance: its accepted steps, which are cut at frames, and its points
+/// there.
+struct Accepted {
+  std::vector<Stop> stops;
+  std::vector<std::vector<double>> points;
+  std::string unfinished;
+};
+
+Accepted accepted_steps(const Scene& scene, std::size_t strand) {
+  const auto system = system_of(scene, strand, scene.model_options);
+  std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q);
+  system->initial_state(q, v);
+  system->accept(0, q, v);
+  const auto run = integrators::make_integrator(scene.integrator, *system, scene.options);
+  Accepted accepted;
+  Status s = run->start(0, q, v);
+  for (const Stop& frame : stops_at_frames(scene)) {
+    if (s == Status::ok) {
+      s = run->advance(frame.t, [&](double t, In, In) {
+        accepted.stops.push_back({t, t == frame.t});
+        return true;
+      });
+    }
+    if (s != Status::ok) {
+      accepted.unfinished = run->failure();
+      return accepted;
+    }
+    accepted.points.push_back(points_at(*system, frame.t, run->q()));
+  }
+  return accepted;
+}
+
+/// Every step divided into `parts`.
+std::vector<Stop> divided(const std::vector<Stop>& stops, int parts) {
+  std::vector<Stop> all;
+  double from = 0;
+  for (const Stop& stop : stops) {
+    for (int k = 1; k < parts; ++k) {
+      all.push_back({from + (stop.t - from) * k / parts, false});
+    }
+    all.push_back(stop);
+    from = stop.t;
+  }
+  return all;
+}
+
+double farthest(const std::vector<double>& x, const std::vector<double>& y) {
+  double most = 0;
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
+    most =
+        std::max(most, std::hypot(x[i] - y[i], x[i + 1] - y[i + 1], x[i + 2] - y[i + 2]));
+  }
+  return most;
+}
+
+GradientRun::Method method_of(const Scene& scene, bool with_damping, int parts) {
+  GradientRun::Method method{.id = scene.integrator, .options = scene.options};
+  method.start = with_damping ? GradientStart::damped : GradientStart::as_run;
+  method.sparse = !needs(make_effects(scene)).couplings;
+  if (scene.options.tolerance == 0) {
+    method.options.step /= parts;
+    return method;
+  }
+  constexpr double one_step = 1e30;  // to the next stop
+  method.options.tolerance = 0;
+  method.options.step = one_step;
+  return method;
+}
+
+StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
+                               const SceneGradient& whole, int parts) {
+  StrandGradient found;
+  found.by.resize(whole.parameters.size());
+  const bool chosen = scene.options.tolerance > 0;
+  Accepted accepted;
+  if (chosen) accepted = accepted_steps(scene, strand);
+  found.unfinished = accepted.unfinished;
+  const std::vector<Stop> stops =
+      chosen ? divided(accepted.stops, parts) : stops_at_frames(scene);
+  const auto system = system_of(scene, strand, scene.model_options);
+  GradientRun run(*system, system_of(scene, strand, exact_options(scene)),
+                  run_parameters(scene, strand, whole.parameters),
+                  method_of(scene, whole.damped, parts));
+  const auto add_frame = [&] {
+    found.points.push_back(points_at(*system, run.time(), run.q()));
+    for (std::size_t k = 0; k < found.by.size(); ++k) {
+      std::vector<double> dx(found.points.back().size());
+      run.points_by(k, dx);
+      for (double& entry : dx) entry /= whole.parameters[k].measure;
+      found.by[k].push_back(std::move(dx));
+    }
+  };
+  Status s = run.start();
+  if (s == Status::ok) add_frame();
+  for (const Stop& stop : stops) {
+    if (s == Status::ok) s = run.advance(stop.t);
+    if (s != Status::ok) break;
+    if (stop.frame) add_frame();
+  }
+  if (s != Status::ok) found.unfinished = run.failure();
+  found.not_smooth = not_smooth(*system);
+  for (std::size_t f = 1; f < found.points.size() && chosen; ++f) {
+    found.moved =
+        std::max(found.moved, farthest(found.points[f], accepted.points[f - 1]) /
+                                  scene.strands[strand].length());
+  }
+  return found;
+}
+
+}  // namespace
+
+void check_gradient(const Scene& scene) {
+  const std::string where = "--gradient";
+  refuse_if(scene.model->on_strand == nullptr,
+            fmt::format("gradients are of strands, and {} brings its own shape",
+                        scene.model->id),
+            where, "use a scene with [strand] or [groom]");
+  refuse_if(!scene.tables->gradient,
+            fmt::format("scene {} has no [gradient]", scene.name), where,
+            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
+  const std::string& place = scene.tables->gradient->place();
+  refuse_if(scene.strands_touch(),
+            "no gradient of strands that touch: each is differentiated by itself", place,
+            "leave out effects between strands");
+  refuse_if(scene.rest == RestStrains::inverse,
+            "no gradient with rest = \"inverse\", whose natural strains follow from the "
+            "parameters",
+            place, "leave out rest");
+  const auto system = system_of(scene, 0, exact_options(scene));
+  const std::string reason =
+      integrators::no_gradient(scene.integrator, *system, scene.options);
+  refuse_if(!reason.empty(), "no gradient: " + reason, place, "change the scene");
+}
+
+SceneGradient scene_gradient(const Scene& scene, int parts) {
+  SceneGradient all;
+  all.parameters = gradient_parameters(scene);
+  all.damped = damped(scene, all.parameters);
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    all.strands.push_back(strand_gradient(scene, k, all, parts));
+  }
+  return all;
+}
+
+}  // namespace tress::simulation

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contract/parameters.h"
+#include "simulation/scene/scene.h"
+#include "simulation/scene/table.h"
+
+namespace tress::simulation {
+
+/// A number of a table, or a component of one, by which [gradient] differentiates.
+struct GradientNumber {
+  std::string key;
+  std::optional<std::size_t> component = {};  // of three
+  double value = 0;
+  double measure = 1;  // a change by s is one by s times this
+  std::string unit = {};
+
+  /// The text of the key for Parameters::set, changed by s.
+  std::string text(const Parameters& values, double s) const;
+};
+
+/// The number `key`, "drag_kg_m_s" or "velocity_m_s.x", among `declared`. Throws
+/// InputError with `place` and the whole `name` unless it is a number that can change a
+/// little to both sides.
+GradientNumber gradient_number(std::string_view name, std::string_view key,
+                               std::span<const Parameter> declared,
+                               const Parameters& values, const std::string& place);
+
+/// "name.x" becomes "name", 0; empty without such an end.
+std::optional<std::size_t> take_component(std::string_view& name);
+/// Unit vector of the world's axis k.
+Vec axis_of(std::size_t k);
+
+[[noreturn]] void refuse_gradient(std::string_view name, std::string_view reason,
+                                  const std::string& place, std::string_view remedy);
+
+/// [gradient]: by which numbers of a scene its motion is differentiated.
+std::span<const Parameter> gradient_table_parameters();
+
+/// One such number. Where strands have several values, all change in the same proportion.
+struct SceneParameter {
+  std::string name, unit;
+  double value = 0;    // of the first strand, in the unit
+  double measure = 1;  // s = 1 changes the value by so much
+  /// Whether it moves the shape at rest, the start or the roots: the run then needs a
+  /// damped start.
+  bool moves_rest = false;
+  std::function<void(Scene& scene, double s)> change;
+};
+
+/// Returns the parameters that the scene's [gradient] names. Throws InputError with its
+/// location on a name that is no number of the scene, or by which nothing can be
+/// differentiated.
+std::vector<SceneParameter> gradient_parameters(const Scene& scene);
+/// Returns the parameters with these names; messages name `place`.
+std::vector<SceneParameter> gradient_parameters(const Scene& scene,
+                                                std::span<const std::string> names,
+                                                const std::string& place);
+
+/// The words of a list as text: "a,b".
+std::vector<std::string> names_of(std::string_view list);
+
+}  // namespace tress::simulation

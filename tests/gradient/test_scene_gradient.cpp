@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "simulation/gradient/scene_gradient.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/write_scene.h"
+#include "tests/harness/toy_process.h"
+#include "tests/support/refusal.h"
+
+namespace tress::test_scene_gradient {
+
+using namespace simulation;
+using testing_support::refusal;
+
+/// A curled hair in wind over a plane that it does not reach.
+std::string scene_text(
+    const std::string& gradient,
+    const std::string& integrator = "dt_s = 0.002\nnewton_tolerance = 1e-13") {
+  return "title = \"t\"\nduration_s = 0.1\nframes_per_s = 20\n[integrator]\nid = "
+         "\"tr_bdf2\"\n" +
+         integrator +
+         "\n[material]\ninternal_friction_kg_m3_s = 1e-10\n"
+         "[strand]\nelements = 5\nshape = \"helix\"\ninitial = \"straight\"\n"
+         "[root]\nmotion = \"swing\"\namplitude_m = 0.01\nfrequency_hz = 3\n"
+         "[effects.gravity]\n[effects.linear_drag]\ndrag_kg_m_s = 1e-4\n"
+         "[effects.wind]\nvelocity_m_s = [1, 0.5, 0]\n" +
+         gradient;
+}
+
+/// By central differences of order 4 of the scene's own gradient runs, whose start is
+/// that of the gradient.
+std::vector<double> difference(const Scene& scene, const SceneParameter& by) {
+  constexpr double e = 1e-3;
+  const auto at = [&](double s) {
+    Scene changed = scene;
+    by.change(changed, s);
+    return scene_gradient(changed).strands.front().points.back();
+  };
+  const auto p1 = at(e), m1 = at(-e), p2 = at(2 * e), m2 = at(-2 * e);
+  std::vector<double> d(p1.size());
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    d[i] = (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12 * e * by.measure);
+  }
+  return d;
+}
+
+void expect_differences(const std::string& text) {
+  const Scene scene = parse_scene(text, "s.toml");
+  const SceneGradient found = scene_gradient(scene);
+  const StrandGradient& strand = found.strands.front();
+  ASSERT_EQ(strand.unfinished, "");
+  ASSERT_EQ(strand.points.size(), scene.last_frame() + 1);
+  for (std::size_t k = 0; k < found.parameters.size(); ++k) {
+    const std::vector<double> by_runs = difference(scene, found.parameters[k]);
+    double worst = 0, most = 0;
+    for (std::size_t i = 0; i < by_runs.size(); ++i) {
+      worst = std::max(worst, std::abs(strand.by[k].back()[i] - by_runs[i]));
+      most = std::max(most, std::abs(by_runs[i]));
+    }
+    EXPECT_GT(most * found.parameters[k].measure, 1e-8) << found.parameters[k].name;
+    // Differences see Newton's tolerance, 1e-10 of the typical sizes, over e.
+    EXPECT_LT(worst, 1e-6 * most) << found.parameters[k].name;
+  }
+}
+
+TEST(SceneGradient, IsThatOfDifferencesForEveryKindOfParameter) {
+  expect_differences(scene_text(
+      "[gradient]\nby = [\"youngs_modulus_pa\", \"shear_modulus_pa\", \"density_kg_m3\", "
+      "\"radius_m\", \"internal_friction_kg_m3_s\", \"natural_curvature_per_m\", "
+      "\"natural_twist_per_m.2\", \"initial_curvature2_per_m\", \"root_angle_rad.y\", "
+      "\"root_position_m.z\", \"root.amplitude_m\", \"linear_drag.drag_kg_m_s\", "
+      "\"wind.velocity_m_s.y\", \"gravity.gravity_m_s2.z\"]\n"));
+}
+
+TEST(SceneGradient, OfAFreeStrandIsThatOfDifferencesByItsFirstVelocity) {
+  std::string text = scene_text(
+      "[gradient]\nby = [\"root.velocity_m_s.x\", \"root.spin_rad_s.y\", "
+      "\"linear_drag.drag_kg_m_s\"]\n");
+  // In its natural shape: from a straight one it whips.
+  const std::string straight = "initial = \"straight\"\n";
+  text.replace(text.find(straight), straight.size(), "");
+  const std::string swing = "motion = \"swing\"\namplitude_m = 0.01\nfrequency_hz = 3\n";
+  text.replace(
+      text.find(swing), swing.size(),
+      "motion = \"free\"\nvelocity_m_s = [0.2, 0, 0.1]\nspin_rad_s = [0, 3, 1]\n");
+  expect_differences(text);
+}
+
+TEST(SceneGradient, OfAStrandOfEachElementIsThatOfAll) {
+  const Scene scene =
+      parse_scene(scene_text("[gradient]\nby = [\"natural_curvature_per_m\", "
+                             "\"natural_curvature_per_m.each\"]\n"),
+                  "s.toml");
+  const SceneGradient found = scene_gradient(scene);
+  ASSERT_EQ(found.parameters.size(), 6u);
+  EXPECT_EQ(found.parameters[3].name, "natural_curvature_per_m.2");
+  EXPECT_TRUE(found.damped);
+  const auto& by = found.strands.front().by;
+  double worst = 0, most = 0;
+  for (std::size_t i = 0; i < by[0].back().size(); ++i) {
+    double sum = 0;
+    for (std::size_t k = 1; k < by.size(); ++k) sum += by[k].back()[i];
+    worst = std::max(worst, std::abs(sum - by[0].back()[i]));
+    most = std::max(most, std::abs(sum));
+  }
+  EXPECT_LT(worst, 1e-8 * most);
+}
+
+// J of the frozen run is within 3 tolerances of that of a run with a hundredth of the
+// tolerance, and its points within a tenth of one from those of the run with control.
+TEST(SceneGradient, WithAToleranceIsOfTheRunWithItsStepsFrozen) {
+  const auto at = [](double tolerance) {
+    return scene_gradient(
+        parse_scene(scene_text("[gradient]\nby = [\"youngs_modulus_pa\", "
+                               "\"linear_drag.drag_kg_m_s\"]\nstart = \"as_run\"\n",
+                               "position_tol_rel = " + number_text(tolerance)),
+                    "s.toml"));
+  };
+  const SceneGradient exact = at(1e-6);
+  for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+    const SceneGradient found = at(tolerance);
+    const StrandGradient &strand = found.strands.front(), &other = exact.strands.front();
+    EXPECT_GT(strand.moved, 0) << tolerance;
+    EXPECT_LT(strand.moved, 0.1 * tolerance) << tolerance;
+    for (std::size_t k = 0; k < strand.by.size(); ++k) {
+      double worst = 0, most = 0;
+      for (std::size_t i = 0; i < strand.by[k].back().size(); ++i) {
+        const double expected = other.by[k].back()[i];
+        worst = std::max(worst, std::abs(strand.by[k].back()[i] - expected));
+        most = std::max(most, std::abs(expected));
+      }
+      EXPECT_LT(worst, 3 * tolerance * most) << tolerance;
+    }
+  }
+}
+
+std::string refused(const std::string& by) {
+  return refusal([&] { parse_scene(scene_text("[gradient]\n" + by), "s.toml"); });
+}
+
+TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
+  EXPECT_EQ(refused("by = [\"youngs_moduls_pa\"]\n").substr(0, 67),
+            "unknown parameter 'youngs_moduls_pa' in [gradient] by (s.toml:24:6)");
+  EXPECT_NE(refused("by = [\"youngs_moduls_pa\"]\n").find("youngs_modulus_pa'?"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"poisson_ratio\"]\n").find("give shear_modulus_pa"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"initial_velocity_m_s\"]\n").find("starts at rest"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"natural_twist_per_m.5\"]\n").find("elements 0 to 4"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"root_angle_rad\"]\n").find("give root_angle_rad.x"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"root.speed_m_s\"]\n").find("does not use it"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"wind.velocity_m_s\"]\n").find(".x, .y or .z"),
+            std::string::npos);
+  EXPECT_NE(refused("by = []\n").find("names nothing"), std::string::npos);
+  EXPECT_NE(refused("by = [\"radius_m\", \"radius_m\"]\n").find("twice"),
+            std::string::npos);
+  EXPECT_NE(refused("by = \"radius_m\"\n").find("expected a list of strings"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [1]\n").find("expected a list of strings"), std::string::npos);
+  EXPECT_NE(refused("off = \"tip\"\n").find("unknown key 'off'"), std::string::npos);
+}
+
+TEST(SceneGradient, IsRefusedWhereARunHasNone) {
+  const auto checked = [](std::string text) {
+    return refusal([&] { check_gradient(parse_scene(text, "s.toml")); });
+  };
+  const std::string by = "[gradient]\nby = [\"radius_m\"]\n";
+  EXPECT_EQ(checked(scene_text(by)), "");
+  EXPECT_NE(checked(scene_text("")).find("has no [gradient]"), std::string::npos);
+  std::string other = scene_text(by);
+  other.replace(other.find("tr_bdf2"), 7, "linearly_implicit_euler");
+  EXPECT_NE(checked(other).find("use backward_euler"), std::string::npos)
+      << checked(other);
+  EXPECT_NE(checked("rest = \"inverse\"\n" + scene_text(by)).find("leave out rest"),
+            std::string::npos);
+}
+
+TEST(SceneGradient, IsKeptByASceneThatIsWritten) {
+  const Scene scene = parse_scene(
+      scene_text(
+          "[gradient]\nby = [\"radius_m\", \"root_angle_rad.z\"]\nof = \"points\"\n"),
+      "s.toml");
+  const Scene again = parse_scene(simulation::scene_text(scene), "again.toml");
+  EXPECT_EQ(gradient_parameters(again)[1].name, "root_angle_rad.z");
+  EXPECT_EQ(simulation::scene_text(again), simulation::scene_text(scene));
+}
+
+TEST(SimulateGradient, WritesTheTableAndSaysWhatAPercentDoes) {
+  Toy simulate;
+  simulate.write("s.toml", scene_text("[gradient]\nby = [\"youngs_modulus_pa\", "
+                                      "\"natural_twist_per_m\"]\n"));
+  const Toy::Result run = simulate.run("s.toml --gradient --out out --progress none");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("1 % of youngs_modulus_pa moves the tip by"), std::string::npos)
+      << run.err;
+  std::istringstream table(simulate.read("out/s.gradient.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(
+      line,
+      "strand,point,time_s,component,by,unit,derivative,relative,time_error,status");
+  int rows = 0;
+  while (std::getline(table, line)) {
+    ++rows;
+    EXPECT_EQ(std::ranges::count(line, ','), 9) << line;
+    EXPECT_TRUE(line.ends_with(",ok")) << line;
+  }
+  EXPECT_EQ(rows, 3 * 3 * 2);  // frames, components, parameters
+  const Toy::Result refused = simulate.run("s.toml --gradient --as batch --out other");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("--gradient cannot be combined with --as batch"),
+            std::string::npos)
+      << refused.err;
+}
+
+}  // namespace tress::test_scene_gradient

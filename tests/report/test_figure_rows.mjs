@@ -1,0 +1,242 @@
+// What figures draw and findings state, without drawing: `node --test tests/report/test_figure_rows.mjs`.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { paper_theme, spread } from '../../experiments/report/figures/common.mjs';
+import { model_steps } from '../../experiments/report/figures/model_steps.mjs';
+import { nodal_steps } from '../../experiments/report/figures/nodal_steps.mjs';
+import {
+  limit_headline,
+  limit_spec,
+  stability_limit,
+} from '../../experiments/report/figures/stability_limit.mjs';
+import { validation_cells } from '../../experiments/report/figures/validation.mjs';
+import {
+  orders_of,
+  validation_orders,
+} from '../../experiments/report/figures/validation_orders.mjs';
+import { drift_findings } from '../../experiments/report/src/findings/drift.mjs';
+import { control_findings } from '../../experiments/report/src/findings/tolerance.mjs';
+import { hard_cases, hard_findings } from '../../experiments/report/figures/hard_cases.mjs';
+import { divided_heads } from '../../experiments/report/figures/divided_heads.mjs';
+import { damping } from '../../experiments/report/figures/damping.mjs';
+import { hard_rows, judged, not_compared } from '../../experiments/report/src/hard.mjs';
+import { work_findings } from '../../experiments/report/src/findings/work.mjs';
+import { outcome_text } from '../../experiments/report/src/outcome.mjs';
+import { stability_findings } from '../../experiments/report/src/findings/stability.mjs';
+
+const by_tolerance = (integrator, tolerance, error_over_tolerance, more = {}) => ({
+  scene: 'swing',
+  model: 'super_helix',
+  error_kind: 'time',
+  status: 'ok',
+  integrator,
+  position_tol_rel: tolerance,
+  error_over_tolerance,
+  ...more,
+});
+
+test('ControlFindings_CountTheRunsWithinTheBoundsAndNameTheWorst', () => {
+  const work_precision = [
+    by_tolerance('tr_bdf2', 1e-2, 0.04),
+    by_tolerance('tr_bdf2', 1e-3, 0.5),
+    by_tolerance('tr_bdf2', 1e-4, 2),
+    by_tolerance('tr_bdf2', 1e-5, 90, { below_reference: 'true' }),
+    by_tolerance('esdirk43', 1e-2, 0.1),
+    by_tolerance('esdirk43', 1e-3, null, { status: 'solver_error' }),
+  ];
+  assert.deepEqual(control_findings({ work_precision }), [
+    'tr_bdf2: error over tolerance 0.04 to 2, between 0.05 and 1 in 1 of 3 runs; above the ' +
+      'tolerance in 1, most on super helix (swing, 1e-4: 2).',
+    'esdirk43: error over tolerance 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
+  ]);
+  assert.deepEqual(control_findings({}), []);
+});
+
+test('Outcome_SaysErrorsWithTheirHorizonOrWhyThereAreNone', () => {
+  assert.equal(outcome_text({}), '');
+  assert.equal(outcome_text(undefined), '');
+  const text = outcome_text({
+    steps: 50,
+    rejected_steps: 3,
+    time_error_max_rel: 0.02,
+    time_error_rms_rel: 0.01,
+    time_horizon_s: 0.5,
+    space_error_missing: 'the model brings its own elements',
+  });
+  assert.equal(
+    text,
+    '50 steps, 3 rejected. Estimated error in time, over the length: at most 0.02, root mean ' +
+      'square 0.01, until 0.5 s, from where the run and a finer one are different motions. ' +
+      'No error in space: the model brings its own elements.',
+  );
+});
+
+test('Spread_KeepsTheOrderAndTheGap', () => {
+  assert.deepEqual(spread([50, 10, 52], 13, 330), [50, 10, 63]);
+  assert.deepEqual(spread([329, 330, 5], 10, 330), [320, 330, 5]);
+});
+
+test('OrdersOfTwoPoints_AreMarked', () => {
+  const rows = [10, 20, 40].map((elements) => ({
+    test: 'cantilever',
+    model: 'der',
+    elements,
+    parameter: 1,
+    error_rel: 1 / elements ** 2,
+  }));
+  const two = rows.slice(0, 2).map((row) => ({ ...row, model: 'corde' }));
+  const drawn = validation_orders.rows({ validation: [...rows, ...two] });
+  assert.deepEqual(
+    drawn.map(({ points }) => points),
+    [3, 3, 3, 2, 2],
+  );
+  assert.deepEqual(
+    orders_of({ validation: [...rows, ...two] }).map(({ order, fit }) => [Math.round(order), fit]),
+    [
+      [2, 'three or more'],
+      [2, 'two numbers of elements'],
+    ],
+  );
+});
+
+test('Studies_OfOneTableAreDrawnApart', () => {
+  const row = {
+    scene: 'release',
+    model: 'super_helix',
+    integrator: 'linearly_implicit_euler',
+    solver: 'recursive',
+    jacobian: 'elastic',
+    modes: 'bend_twist',
+    damping: 'none',
+    elements: 20,
+    dt_max_s: 1e-3,
+    status: 'ok',
+  };
+  const drawn = (study, figure) => figure.rows({ stability_limit: [{ ...row, study }] }).length;
+  assert.deepEqual(
+    [stability_limit, model_steps, nodal_steps].map((figure) => drawn('grid', figure)),
+    [1, 1, 0],
+  );
+  assert.deepEqual(
+    [stability_limit, model_steps, nodal_steps].map((figure) => drawn('nodal', figure)),
+    [0, 0, 1],
+  );
+  const nodal = { ...row, study: 'nodal', status: 'gave_up' };
+  assert.deepEqual(stability_findings({ stability_limit: [nodal] }), []);
+  const limit = { study: 'limit', status: 'unstable' };
+  assert.deepEqual(drift_findings({ constraint_drift: [limit] }), []);
+});
+
+test('FreeFlight_IsNoTestOfAModel', () => {
+  const row = { model: 'der', elements: 10, status: 'ok' };
+  const cells = validation_cells({
+    validation: [
+      { ...row, test: 'cantilever', error_rel: 0.001, accepted_error_rel: 0.01, judged: 'true', passed: 'true' },
+      { ...row, test: 'free_flight', integrator: 'rk4', status: 'diverged' },
+    ],
+  });
+  assert.deepEqual(
+    cells.map(({ test: name }) => name),
+    ['cantilever'],
+  );
+});
+
+test('LowerBounds_AreNoLimits', () => {
+  const row = (elements, dt_max_s, limited_by) => ({
+    scene: 'shake',
+    model: 'der',
+    integrator: 'linearly_implicit_euler',
+    damping: 'none',
+    method: 'der',
+    elements,
+    dt_max_s,
+    limited_by,
+    status: 'ok',
+  });
+  const rows = [row(5, 0.01, 'energy'), row(10, 0.1, 'cap'), row(20, 0.02, 'energy')];
+  const { concat } = limit_spec(rows, { width: 1000, theme: paper_theme });
+  const [limits, bounds] = concat[0].layer.map(({ data }) => data.values);
+  assert.deepEqual(limits.map(({ elements }) => elements), [5, 20]);
+  assert.deepEqual(bounds.map(({ elements, dt_ms }) => [elements, dt_ms]), [[10, 100]]);
+  assert.match(limit_headline(rows), /“der” is stable up to the longest step tried in 0 of 1 cases/);
+});
+
+const hard_run = (more) => ({
+  case: 'cone',
+  model: 'der',
+  variant: '',
+  integrator: 'backward_euler',
+  dt_s: 1e-3,
+  outcome: 'stable',
+  error_rel: null,
+  ...more,
+});
+
+test('StableWithoutAReference_HasAMarkOfItsOwn', () => {
+  const tables = {
+    hard_cases: [
+      hard_run({ model: 'der' }),
+      hard_run({ model: 'corde', error_rel: 0.2 }),
+      hard_run({ model: 'xpbd', error_rel: 0.01, outcome: 'stable and accurate' }),
+    ],
+  };
+  assert.deepEqual(
+    hard_rows(tables).map((row) => row.outcome),
+    [not_compared, 'stable', 'stable and accurate'],
+  );
+  assert.deepEqual(hard_cases.rows(tables).map((row) => row.letter), ['N', 'S', 'A']);
+});
+
+test('AShortenedCase_CountsOnlyWhereItWasRunWhole', () => {
+  const long = (more) => hard_run({ case: 'million_steps', steps: 5000, error_rel: 0.2, ...more });
+  const tables = {
+    hard_cases: [long(), long({ dt_s: 1 / 30 }), hard_run({ error_rel: 0.1 }), hard_run({ dt_s: 1 / 30, error_rel: 0.1 })],
+    hard_cases_million_steps: [long({ steps: 1e6, outcome: 'unstable' })],
+  };
+  assert.deepEqual(
+    judged(tables).map((row) => [row.case, row.dt_s, row.outcome]),
+    [['cone', 1e-3, 'stable'], ['cone', 1 / 30, 'stable'], ['million_steps', 1e-3, 'unstable']],
+  );
+  assert.match(hard_findings(tables)[0], /survives 1 of the 1 cases/);
+  assert.ok(hard_cases.rows(tables).some((row) => row.situation === 'million steps, cut to 5000'));
+  const whole = { hard_cases: [long({ steps: 1e6 })] };
+  assert.equal(judged(whole).length, 1, 'a table that was run whole is not cut');
+});
+
+test('HardCases_StateWhichHalfIsWhichStep', () => {
+  const rows = [1e-3, 1 / 30].map((dt_s) => hard_run({ dt_s }));
+  assert.match(
+    hard_cases.reading({ hard_cases: rows }),
+    /^In each cell, from left to right: 1 ms, 33\.3 ms\./,
+  );
+});
+
+test('DividedHeads_DrawWhatWasMeasured', () => {
+  const row = { effects: 'drag', status: 'ok', beside: 1, strands: 1000, ranks: 2 };
+  const tables = {
+    divided_heads: [
+      { ...row, kind: 'measured', cost_per_step_s: 2e-3, model_cost_per_step_s: 1.9e-3 },
+      { ...row, kind: 'measured', beside: 2, cost_per_step_s: 3e-3 },
+      { ...row, kind: 'predicted', beside: null, ranks: 64, strands: 1e6, model_cost_per_step_s: 1e-3 },
+    ],
+  };
+  const { concat } = divided_heads.spec(tables, { width: 1000, theme: paper_theme });
+  const points = concat[0].layer.find(({ mark }) => mark.type === 'point');
+  assert.deepEqual(points.data.values.map((one) => one.cost_ms), [2]);
+});
+
+test('Damping_KeepsTheSign', () => {
+  const row = { model: 'der', integrator: 'bdf2', dt_s: 1e-3, status: 'ok' };
+  const tables = { damping: [{ ...row, energy_lost_rel: 0.1 }, { ...row, energy_lost_rel: -0.2 }] };
+  assert.deepEqual(damping.rows(tables).map(({ sign }) => sign), ['lost', 'gained']);
+  const { concat } = damping.spec(tables, { width: 1000, theme: paper_theme });
+  assert.deepEqual(concat.map(({ title }) => title), ['der: energy lost', 'der: energy gained']);
+});
+
+test('Cheapest_NamesItsField', () => {
+  const row = { scene: 'beam', error_kind: 'time', status: 'ok', wall_s_per_sim_s: 1, error_rel: 1e-3 };
+  const say = (...integrators) =>
+    work_findings({ work_precision: integrators.map((integrator) => ({ ...row, integrator })) })[0];
+  assert.match(say('rk4'), /\(the only integrator run\): error 0.01 with rk4/);
+  assert.match(say('rk4', 'bdf2'), /\(of 2 integrators\)/);
+});
