@@ -134,7 +134,7 @@ class FormerNames(unittest.TestCase):
         self.assertGreater(len(files), 60)
         for path in files:
             copy = self.write(path.name, path.read_text(encoding="utf-8"))
-            done = run("python3", ROOT / "cmake/rename.py", copy)
+            done = run(ROOT / "tress", "rename", copy)
             with self.subTest(path.name):
                 self.assertIn("no former names", done.stdout, done.stderr)
 
