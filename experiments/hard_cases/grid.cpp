@@ -154,9 +154,9 @@ bool selected(const Parameters& own, const Pace& pace) {
          (tolerance == 0 || tolerance == pace.tolerance);
 }
 
-std::vector<std::string_view> tried_tangents(const CommandLine& line,
-                                             const ModelEntry& model,
-                                             std::string_view integrator) {
+std::vector<std::string_view> tried_jacobians(const CommandLine& line,
+                                              const ModelEntry& model,
+                                              std::string_view integrator) {
   const std::string_view whole = first_word(model, "jacobian");
   const std::string_view seed = usual_tangent(model);
   if (whole == seed) return {whole};
@@ -187,7 +187,7 @@ Grid hard_grid(const CommandLine& line, const Settings& settings) {
       const std::size_t reference = grid.references++;
       for (const std::string_view integrator : tried_integrators(line)) {
         for (const std::string_view jacobian :
-             tried_tangents(line, *subject.model, integrator)) {
+             tried_jacobians(line, *subject.model, integrator)) {
           Subject own = subject;
           if (!jacobian.empty()) {
             own.settings.emplace_back("jacobian", jacobian);

@@ -43,9 +43,9 @@ inline constexpr double longest_step = 1.0 / 30;
 bool selected(const Parameters& own, const Pace& pace);
 /// Returns the Jacobians tried for this model and integrator; one empty string: the
 /// model has no such option.
-std::vector<std::string_view> tried_tangents(const CommandLine& line,
-                                             const ModelEntry& model,
-                                             std::string_view integrator);
+std::vector<std::string_view> tried_jacobians(const CommandLine& line,
+                                              const ModelEntry& model,
+                                              std::string_view integrator);
 
 /// Returns every case on every strand model, and the particle systems that it names, by
 /// every integrator and at every step that the command line selects. Impossible
@@ -55,7 +55,7 @@ std::vector<std::string_view> tried_tangents(const CommandLine& line,
 /// 1/30 s, bdf2 at 1 ms and tr_bdf2 at a tolerance of 1e-3, models with default options.
 /// Otherwise more integrators, models with every way of keeping lengths, all three steps,
 /// and tolerances of 1e-2 and 1e-4 too. --full: every fixed-step integrator, those with
-/// error control by step too, and both Jacobians. linearly_implicit_euler has the stiff
+/// error control by step too, and both Jacobians. linearly_implicit_euler has the elastic
 /// Jacobian where available.
 Grid hard_grid(const CommandLine& line, const Settings& settings);
 

@@ -18,7 +18,7 @@ namespace {
 std::vector<std::string_view> jacobians(const CommandLine& line, const Scene& scene,
                                         const ModelEntry& model,
                                         std::string_view integrator) {
-  if (&model != scene.model) return tried_tangents(line, model, integrator);
+  if (&model != scene.model) return tried_jacobians(line, model, integrator);
   const std::set<std::string_view> all = scene_jacobians(scene, integrator);
   return {all.begin(), all.end()};
 }

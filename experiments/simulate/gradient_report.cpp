@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <string>
+#include <vector>
 
 #include "experiments/run/message.h"
+#include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/strand_tables.h"
@@ -24,9 +26,9 @@ std::size_t frames(const StrandGradient& one, const StrandGradient& finer) {
 std::string table_of(const Scene& scene, const SceneGradient& gradient,
                      const SceneGradient& finer) {
   const bool tips = scene.tables->gradient->values().word("of") == "tip";
-  std::string text =
-      "strand,point,time_s,component,by,unit,derivative,relative,time_error,status\n";
-  const auto out = std::back_inserter(text);
+  std::string text = csv_line(
+      std::vector<std::string>{"strand", "point", "time_s", "component", "by", "unit",
+                               "derivative", "relative", "time_error", "status"});
   for (std::size_t k = 0; k < gradient.strands.size(); ++k) {
     const StrandGradient& strand = gradient.strands[k];
     const StrandGradient& other = finer.strands[k];
@@ -40,10 +42,11 @@ std::string table_of(const Scene& scene, const SceneGradient& gradient,
           const double derivative = strand.by[j][f][i];
           const std::string relative =
               by.value == 0 ? "" : fmt::format("{:.6g}", derivative * by.value / length);
-          fmt::format_to(out, "{},{},{:.9g},{},{},{},{:.9g},{},{:.3g},{}\n", k, i / 3,
-                         scene.time_of(f), "xyz"[i % 3], by.name, "m/(" + by.unit + ")",
-                         derivative, relative, std::abs(derivative - other.by[j][f][i]),
-                         status);
+          text += csv_line(std::vector<std::string>{
+              std::to_string(k), std::to_string(i / 3),
+              fmt::format("{:.9g}", scene.time_of(f)), std::string(1, "xyz"[i % 3]),
+              by.name, "m/(" + by.unit + ")", fmt::format("{:.9g}", derivative), relative,
+              fmt::format("{:.3g}", std::abs(derivative - other.by[j][f][i])), status});
         }
       }
     }
