@@ -196,8 +196,13 @@ std::optional<Trial> Finalists::half_the_step(const Trial& winner, double target
 }
 
 std::optional<BestRuns> Finalists::of(double target, bool choices) {
-  const auto winner = settled(target, {});
+  auto winner = settled(target, {});
   if (!winner) return {};
+  for (std::size_t before = 0; before != search_.runs().size();) {
+    before = search_.runs().size();
+    search_.comb(*winner);
+    winner = settled(target, {});
+  }
   BestRuns best{*winner, {}, {}};
   if (choices) replace_choices(*winner, target, best);
   const Method& won = methods_[winner->method];

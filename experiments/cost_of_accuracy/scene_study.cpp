@@ -27,7 +27,7 @@ constexpr double slow_run = 1.15;
 constexpr double never_ended_s = 0.05;
 
 /// Fraction of a search's work; the rest refines the best runs found.
-constexpr double coarse_share = 0.6;
+constexpr double coarse_share = 0.8;
 /// As much again may be spent on replacing each choice of the winners.
 constexpr double last_share = 2;
 
@@ -99,6 +99,13 @@ std::size_t kind_of(const std::vector<Method>& methods, std::size_t index) {
   return static_cast<std::size_t>(first - methods.begin());
 }
 
+SearchPlan::Orders orders_of(const Method& method) {
+  const int time =
+      find_integrator(method.integrator).order(method.formulation).value_or(1);
+  return {.space = static_cast<double>(method.model->order),
+          .time = static_cast<double>(std::max(1, time))};
+}
+
 /// Repeats all answers until none changes: a replaced choice of a winner must not turn
 /// out cheaper than the winner. Every round but the last tries or times a new run, so
 /// there are few.
@@ -167,6 +174,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
       .substeps = plan.substeps,
       .longest_run = plan.longest_run,
       .unit = [&study](std::size_t method) { return steps_unit(study.methods[method]); },
+      .orders = [&study](std::size_t method) { return orders_of(study.methods[method]); },
       .kind = [&study](std::size_t method) { return kind_of(study.methods, method); },
       .slack = 0};
   for (const double target : plan.targets) {

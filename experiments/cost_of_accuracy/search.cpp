@@ -2,18 +2,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Ratio of errors on halving the step above which the remaining error is not temporal.
-constexpr double little_gain = 0.8;
+/// Ratios of errors above which the remaining error is not temporal: on halving the step,
+/// and on two thirds of it.
+constexpr double little_gain = 0.8, hardly_any_gain = 0.95;
+
+/// Counts the runs in a row that reduced the error by less than a ratio.
+class Gain {
+ public:
+  explicit Gain(double ratio) : ratio_(ratio) {}
+  void add(double error) {
+    const bool gains = error <= ratio_ * last_;
+    idle_ = gains ? 0 : idle_ + 1;
+    gaining_ = gains ? gaining_ + 1 : 0;
+    before_ = std::exchange(last_, error);
+  }
+  int idle() const { return idle_; }
+  double last() const { return last_; }
+  /// The error that is at least left in the steps, which the last runs halved; 0: errors
+  /// do not say.
+  double of_steps(double order) const {
+    return gaining_ > 2 ? (before_ - last_) / (std::exp2(order) - 1) : 0;
+  }
+
+ private:
+  double ratio_, before_ = never, last_ = never;
+  int idle_ = 0, gaining_ = 0;
+};
 
 /// A method of the same kind may need this many times the substeps.
 constexpr int alike = 2;
 
 /// Apparent cost ratio that may be due to noise in a single run.
 constexpr double noise = 1.2;
+
+/// A comb tries numbers of elements within a quarter, and runs down to three quarters of
+/// the work, a tenth apart.
+constexpr int comb_width = 4, comb_teeth = 10;
+constexpr double comb_depth = 0.75;
 
 /// Numbers of elements from two thirds to three halves of this, a tenth apart, nearest
 /// first.
@@ -152,10 +182,10 @@ void Search::climb(std::size_t method) {
   int met = 0;  // the next rung after the first success may allow longer steps
   for (const int elements : plan_.elements) {
     if (met > 1) return;
-    double last = never;
-    int idle = 0;
+    Gain gain(little_gain);
+    enum { none, gaining, spatial, enough } end = none;
     std::size_t at = begin;
-    for (; at < ladder.size(); ++at) {
+    for (; at < ladder.size() && end != spatial && end != enough; ++at) {
       const int substeps = ladder[at] * unit(method);
       if (substeps > most_substeps(method, elements)) break;
       // Longer than any run that could still keep the method.
@@ -165,17 +195,28 @@ void Search::climb(std::size_t method) {
       const Trial* found = run(method, elements, substeps);
       if (cut_) return;
       if (found == nullptr) continue;  // too long a step
-      if (holds(*found, tightest)) {
-        ++met;
-        break;
+      // The neighbours of a run that cannot win decide nothing.
+      const bool dearer = best != nullptr && found->wall_s > best->wall_s;
+      if (found->judged() <= tightest && (dearer || holds(*found, tightest))) {
+        end = enough;
+      } else {
+        gain.add(found->judged());
+        // A motion that is fully damped also gains little, for a while.
+        const int most_idle = found->judged() < loosest ? 0 : 2;
+        end = gain.idle() > most_idle ? spatial : gaining;
       }
       if (cut_) return;
-      // A motion that is fully damped also gains little, for a while.
-      idle = found->judged() > little_gain * last ? idle + 1 : 0;
-      if (idle > 0 && (found->judged() < loosest || idle > 2)) break;
-      last = found->judged();
     }
-    begin = std::max(begin, at < 3 ? 0 : at - 3);
+    if (end == enough) ++met;
+    // More elements help where a target is above the error of the steps, of which they
+    // allow no more, and not met.
+    const double of_steps = gain.of_steps(orders(method).time);
+    if (end == gaining && std::ranges::none_of(plan_.targets, [&](double target) {
+          return of_steps < target && target < gain.last();
+        })) {
+      return;
+    }
+    if (end != none) begin = std::max(begin, at < 4 ? 0 : at - 4);
   }
 }
 
@@ -196,17 +237,22 @@ bool Search::follow(std::size_t method) {
   return true;
 }
 
-/// By cost to a factor of 2, then in the order of the catalogue: the same order under any
-/// load of the machine.
+/// By expected cost to a factor of 2, then in the order of the catalogue: the same order
+/// under any load of the machine. An error above the target needs more elements and more
+/// substeps, each by its order.
 std::vector<std::size_t> Search::promising_first() {
   const int elements = plan_.elements[plan_.elements.size() / 2];
   const int substeps = plan_.substeps[plan_.substeps.size() / 3];
+  const double tightest = plan_.targets.back();
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t method = 0; method < methods_; ++method) {
     const Trial* probe = run(method, elements, substeps * unit(method));
-    order.emplace_back(
-        probe == nullptr ? never : std::round(std::log2(probe->error * probe->wall_s)),
-        method);
+    const auto [space, time] = orders(method);
+    const auto price = [&](const Trial& of) {
+      return std::log2(of.wall_s) +
+             (1 / space + 1 / time) * std::log2(of.error / tightest);
+    };
+    order.emplace_back(probe == nullptr ? never : std::round(price(*probe)), method);
   }
   std::ranges::sort(order);
   std::vector<std::size_t> methods;
@@ -234,8 +280,10 @@ const Trial* Search::fewest_substeps(std::size_t method, int elements, double ta
   if (most < least) return nullptr;
   int few = least - 1, enough = std::clamp(guess, least, most);
   const Trial* best = run(method, elements, enough);
+  Gain gain(hardly_any_gain);
   while (!meets(best)) {
-    if (cut_ || enough == most) return nullptr;
+    if (best != nullptr) gain.add(best->judged());
+    if (cut_ || enough == most || gain.idle() > 1) return nullptr;
     few = enough;
     enough = std::min(most, enough + std::max(1, enough / 2));
     best = run(method, elements, enough);
@@ -267,8 +315,8 @@ const Trial* Search::fewest_that_hold(std::size_t method, int elements, double t
   return nullptr;
 }
 
-void Search::refine(std::size_t method, double target) {
-  if (!refined_.emplace(method, target).second) return;
+void Search::refine(std::size_t method, double target, Bound bound) {
+  if (!refined_.emplace(method, target, bound).second) return;
   const auto own = [method](const Trial& run) { return run.method == method; };
   for (const Trial* before = nullptr; !stopped();) {
     const Trial* start = robust(target, own);
@@ -277,7 +325,7 @@ void Search::refine(std::size_t method, double target) {
     for (const int elements : around(start->elements)) {
       if (stopped()) return;
       // More substeps than make it dearer than the best so far are useless.
-      const Trial* best = robust(target, own);
+      const Trial* best = bound == Bound::own ? robust(target, own) : robust(target);
       if (best == nullptr) return;
       const double one_s =
           expected_s(method, elements, start->substeps) / start->substeps;
@@ -289,15 +337,33 @@ void Search::refine(std::size_t method, double target) {
   }
 }
 
+void Search::comb(const Trial& best) {
+  const auto [method, n, k] = Place{best.method, best.elements, best.substeps};
+  for (int elements = std::max(1, n - n / comb_width); elements <= n + n / comb_width;
+       ++elements) {
+    const double as_dear = 1.0 * n * k / elements;
+    for (int substeps = std::max(unit(method), static_cast<int>(comb_depth * as_dear));
+         substeps < as_dear; substeps += std::max(1, substeps / comb_teeth)) {
+      if (stopped()) return;
+      run(method, elements, substeps);
+    }
+  }
+}
+
+/// From the cheapest on: what is found bounds how many more are refined, and how far.
 void Search::refine() {
   for (const double target : plan_.targets) {
-    const Trial* best = robust(target);
-    if (best == nullptr) continue;
-    const double most_s = plan_.slack * best->wall_s;
+    std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t method = 0; method < methods_; ++method) {
       const auto own = [method](const Trial& run) { return run.method == method; };
       const Trial* mine = cheapest(runs_, target, own);
-      if (mine != nullptr && mine->wall_s <= most_s) refine(method, target);
+      if (mine != nullptr) order.emplace_back(mine->wall_s, method);
+    }
+    std::ranges::sort(order);
+    for (const auto& [wall_s, method] : order) {
+      const Trial* best = robust(target);
+      if (best == nullptr || wall_s > plan_.slack * best->wall_s) break;
+      refine(method, target, Bound::all);
     }
   }
 }

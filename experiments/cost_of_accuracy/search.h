@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct SearchPlan {
   long longest_run;  // elements x substeps; longer runs are not tried
   /// "Substeps" of a method that its ladder counts as one, its fewest; without it 1.
   std::function<int(std::size_t method)> unit = {};
+  /// Orders of a method in elements and in substeps, from which probes are extrapolated
+  /// to the tightest target.
+  struct Orders {
+    double space = 2, time = 2;
+  };
+  std::function<Orders(std::size_t method)> orders = {};
   /// Methods of one kind need similar elements and substeps: once one of a kind has
   /// climbed to the tightest target the others begin near its answer. Without it each
   /// method is a kind of its own.
@@ -37,8 +44,9 @@ double ladder_slack(const SearchPlan& plan, double noise);
 
 /// Search for the cheapest run for each target error, in stages:
 ///
-///   probe    every method once in the middle of the ladders; those with the smallest
-///            error x time go first, so that later ones can be compared with them
+///   probe    every method once in the middle of the ladders; those that would meet the
+///            tightest target soonest, by their orders, go first, so that later ones can
+///            be compared with them
 ///   coarse   every method climbs from few elements and long steps: more substeps until
 ///            they gain little (the remaining error is spatial), then more elements,
 ///            from a step or two longer than where the last climb ended; a method of a
@@ -66,8 +74,13 @@ class Search {
 
   void coarse();  // with the probe
   void refine();
-  /// One method for one target, from its cheapest run so far.
-  void refine(std::size_t method, double target);
+  /// One method for one target, from its cheapest run so far. Runs are not tried if they
+  /// would be dearer than the best of the method itself, or of all methods.
+  enum class Bound { own, all };
+  void refine(std::size_t method, double target, Bound bound = Bound::own);
+  /// All runs of its method that are somewhat cheaper than `best` and near it. Errors are
+  /// not monotonic, so that bisections end a little beside the cheapest.
+  void comb(const Trial& best);
   /// The fewest substeps with which the method meets `target` on this many elements,
   /// starting near `guess`. Null where `most`, or the longest run, do not.
   const Trial* fewest_substeps(std::size_t method, int elements, double target, int guess,
@@ -103,6 +116,9 @@ class Search {
     int elements, substeps;
     auto operator<=>(const Place&) const = default;
   };
+  SearchPlan::Orders orders(std::size_t method) const {
+    return plan_.orders ? plan_.orders(method) : SearchPlan::Orders{};
+  }
   int most_substeps(std::size_t method, int elements) const;
   double expected_s(std::size_t method, int elements, int substeps) const;
   double neighbour_error(const Trial& run, Neighbour which);
@@ -118,8 +134,8 @@ class Search {
   Changed changed_;
   std::function<bool()> stop_;
   std::vector<Trial> runs_;
-  std::map<Place, std::optional<std::size_t>> seen_;  // of runs_; none: failed
-  std::set<std::pair<std::size_t, double>> refined_;  // methods and targets
+  std::map<Place, std::optional<std::size_t>> seen_;          // of runs_; none: failed
+  std::set<std::tuple<std::size_t, double, Bound>> refined_;  // methods and targets
   std::size_t tried_ = 0, passed_over_ = 0;
   bool cut_ = false;
 };

@@ -258,7 +258,10 @@ int run_rows(const Experiment& experiment, const CommandLine& line) {
     Progress progress(line.progress, experiment.name, cases.size());
     const auto keep = [&](std::vector<Row> of, double seconds) {
       progress.finished(of.front(), seconds);
-      if (loads) loads->finished(std::string(of.front().text("run_id")));
+      if (loads) {
+        const double load = loads->finished(std::string(of.front().text("run_id")));
+        for (Row& row : of) row.set(others_load.name, load);
+      }
       // A case's first row is stored last: if it is present, all of them are.
       for (std::size_t i = of.size(); i-- > 0;) {
         static_cast<void>(in_order(of[i], columns));  // an undeclared column: a
@@ -339,7 +342,11 @@ int answer(const Experiment& experiment, int argc, char** argv) {
 }  // namespace
 
 int run_experiment(const Experiment& experiment, int argc, char** argv) {
-  return exit_code(experiment.name, [&] { return answer(experiment, argc, argv); });
+  Experiment own = experiment;
+  std::vector<Column> columns(own.columns.begin(), own.columns.end());
+  if (own.timed) columns.push_back(others_load);
+  own.columns = columns;
+  return exit_code(own.name, [&] { return answer(own, argc, argv); });
 }
 
 }  // namespace tress::experiments

@@ -53,7 +53,8 @@ struct Experiment {
   std::string_view name, question;
   std::string_view example;  // arguments only: "--models bead_on_wire --quick"
   /// False: no time in the table is a primary result, and one row per processor runs at
-  /// once unless --jobs sets another number. True: one row at a time.
+  /// once unless --jobs sets another number. True: one row at a time, and the table gets
+  /// the column others_load.
   bool timed = true;
   /// s, per row with --quick unless --timeout overrides it. Only against hangs: no result
   /// may depend on the machine's load. Options::max_work bounds the work of a row.

@@ -11,9 +11,10 @@ constexpr double shortest_measurement = 0.5;
 
 }  // namespace
 
-void RowLoads::finished(std::string run_id) {
+double RowLoads::finished(std::string run_id) {
   pending_.push_back(std::move(run_id));
   if (others_.seconds() >= shortest_measurement) measure();
+  return last_;
 }
 
 std::set<std::string> RowLoads::above() {
@@ -22,7 +23,7 @@ std::set<std::string> RowLoads::above() {
 }
 
 void RowLoads::measure() {
-  const double load = others_.processors();
+  const double load = last_ = others_.processors();
   largest_ = std::max(largest_, load);
   for (const std::string& row : std::exchange(pending_, {})) {
     if (load > most_load) {

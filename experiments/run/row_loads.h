@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/run/machine.h"
+#include "simulation/files/row.h"
 
 namespace tress::experiments {
 
@@ -12,11 +13,18 @@ namespace tress::experiments {
 /// marked.
 inline constexpr double most_load = 0.5;
 
+inline constexpr simulation::Column others_load{
+    "others_load",
+    "processors that other programs used while the row was timed, on average; of a row "
+    "below half a second: over the last such time; empty: rows ran side by side",
+    true};
+
 /// Load of the processors by other programs while rows ran, one row at a time.
 class RowLoads {
  public:
-  /// The row that ran since the last call, or since this was made, has ended.
-  void finished(std::string run_id);
+  /// The row that ran since the last call, or since this was made, has ended. Returns
+  /// the load meanwhile; of short rows, that of the last measurement.
+  double finished(std::string run_id);
   /// Rows that ran above most_load, and did not run again below it.
   std::set<std::string> above();
   /// Processors that others used, at most.
@@ -28,7 +36,7 @@ class RowLoads {
   OtherLoad others_;
   std::vector<std::string> pending_;  // that ran since others_ was asked
   std::set<std::string> above_;
-  double largest_ = 0;
+  double last_ = 0, largest_ = 0;
 };
 
 }  // namespace tress::experiments

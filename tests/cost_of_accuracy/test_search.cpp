@@ -165,6 +165,58 @@ TEST(Search, PruningNeverDropsTheWinner) {
   }
 }
 
+// By the probe alone, a small error soon, the method of order 1 would go first.
+TEST(Search, OrdersSayWhatMeetsATightTargetSoonest) {
+  const Known low{0.3, 2, 0.1, 1, 1e-6}, high{0.3, 2, 1, 4, 3e-6};
+  Counted counted{{low, high}};
+  SearchPlan made = plan({0.001});
+  made.orders = [](std::size_t method) {
+    return SearchPlan::Orders{2, method == 0 ? 1.0 : 4.0};
+  };
+  Search search(made, 2, counted.measure(), steady, no_end);
+  search.coarse();
+  search.refine();
+  const Trial* found = cheapest(search.runs(), 0.001);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->method, 1u);
+  // After the two probes it alone was tried until it met the target.
+  const auto& runs = search.runs();
+  const auto met = std::ranges::find_if(
+      runs, [](const Trial& run) { return run.error <= 0.001; });
+  EXPECT_TRUE(std::all_of(runs.begin() + 2, met,
+                          [](const Trial& run) { return run.method == 1; }));
+}
+
+// Errors of adaptive runs are not monotonic in their tolerance.
+TEST(Search, CombFindsWhatBisectionMisses) {
+  const Known known{0.3, 2, 0.1, 2, 1e-5};
+  const auto uneven = [&](std::size_t method, int elements, int substeps) {
+    Trial run = known.run(method, elements, substeps);
+    if ((elements + substeps) % 3 != 0) run.error *= 1.5;
+    return std::optional<Trial>(run);
+  };
+  const double target = 0.001;
+  SearchPlan made = plan({target});
+  Search search(made, 1, uneven, [](const Trial&, Neighbour) { return 0.0; }, no_end);
+  search.coarse();
+  search.refine();
+  const Trial* found = search.robust(target);
+  for (std::size_t before = 0; found != nullptr && before != search.runs().size();) {
+    before = search.runs().size();
+    search.comb(*found);
+    found = search.robust(target);
+  }
+  ASSERT_NE(found, nullptr);
+  double least = INFINITY;
+  for (int n = 1; n <= most_elements; ++n) {
+    for (int k = 1; k <= most_substeps; ++k) {
+      const auto run = uneven(0, n, k);
+      if (run->error <= target) least = std::min(least, run->wall_s);
+    }
+  }
+  EXPECT_LE(found->wall_s, 1.1 * least);
+}
+
 TEST(Search, FindsNothingWhereNothingIs) {
   Counted counted{{{100, 1, 0, 1, 1}}};  // never below 100/63
   Search search(plan({0.1}), 1, counted.measure(), steady, no_end);

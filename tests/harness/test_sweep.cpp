@@ -35,11 +35,20 @@ TEST(Sweep, WritesEveryRowInOrderWithManifestAndRemovesTheJournal) {
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(toy.files(), ElementsAre("toy.csv", "toy.meta.json"));
   const CsvTable rows = table(toy, "toy.csv");
-  EXPECT_THAT(rows.header, ElementsAre("index", "dt_s", "square", "wall_s", "status",
-                                       "reason", "run_id"));
+  EXPECT_THAT(rows.header, ElementsAre("index", "dt_s", "square", "wall_s", "others_load",
+                                       "status", "reason", "run_id"));
+  EXPECT_THAT(cells(rows, "others_load"), ElementsAre("", "", "", ""));
   EXPECT_THAT(cells(rows, "index"), ElementsAre("0", "1", "2", "3"));
   EXPECT_THAT(cells(rows, "square"), ElementsAre("0", "1", "4", "9"));
   EXPECT_THAT(cells(rows, "status"), ElementsAre("ok", "ok", "ok", "ok"));
+}
+
+TEST(Sweep, RowsThatRunAloneHaveTheLoadOfOthers) {
+  Toy toy;
+  ASSERT_EQ(toy.run("--out toy.csv --jobs 1").code, 0);
+  for (const std::string& load : cells(table(toy, "toy.csv"), "others_load")) {
+    EXPECT_GE(std::stod(load), 0);
+  }
 }
 
 TEST(Sweep, DefaultOutputIsResultsSlashName) {
