@@ -7,8 +7,8 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
-/// Ratios of errors above which the remaining error is not temporal: on halving the step,
-/// and on two thirds of it.
+/// Ratios of errors above which the remaining error is not temporal, for half the step
+/// and for two thirds of the step.
 constexpr double little_gain = 0.8, hardly_any_gain = 0.95;
 
 /// Counts the runs in a row that reduced the error by less than a ratio.

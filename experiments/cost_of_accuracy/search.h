@@ -75,11 +75,11 @@ class Search {
   void coarse();  // with the probe
   void refine();
   /// One method for one target, from its cheapest run so far. Runs are not tried if they
-  /// would be dearer than the best of the method itself, or of all methods.
+  /// would take longer than the best of the method itself, or of all methods.
   enum class Bound { own, all };
   void refine(std::size_t method, double target, Bound bound = Bound::own);
   /// All runs of its method that are somewhat cheaper than `best` and near it. Errors are
-  /// not monotonic, so that bisections end a little beside the cheapest.
+  /// not monotonic, so that bisections end next to the cheapest.
   void comb(const Trial& best);
   /// The fewest substeps with which the method meets `target` on this many elements,
   /// starting near `guess`. Null where `most`, or the longest run, do not.
