@@ -10,7 +10,7 @@ from prose import literals
 from prose.account import account
 from prose.pages import (STUDIES, environment, fill, is_manual, queries_of, results_in_manual, untraced_literals,
                          written_pages)
-from prose.untraced import SLOT, untraced_numbers
+from prose.untraced import SLOT, untraced_numbers, without_marks
 from result_numbers import catalogue
 from result_numbers.tables import InputError, Tables
 
@@ -89,6 +89,10 @@ class Untraced(unittest.TestCase):
         self.assertEqual(self.found("the default of the third argument in double precision"), [])
         self.assertEqual(self.found("<!-- inputs: the scene -->\n3 m, half\n<!-- end of inputs -->\nthen 4 m"), ["4"])
         self.assertEqual(self.found("<!-- inputs: -->\n3 m\n<!-- end of inputs -->"), ["3"], "a region has a reason")
+
+    def test_marks_of_inputs_go_and_marks_in_code_stay(self):
+        self.assertEqual(without_marks("a\n<!-- inputs: b -->\n3 m\n<!-- end of inputs -->\n`<!-- inputs: c -->`\n"),
+                         "a\n3 m\n`<!-- inputs: c -->`\n")
 
     def test_a_number_that_nobody_computed_is_found_with_its_line(self):
         self.assertEqual(untraced_numbers("one step\nholds 19 of 22 cases\n"), [(2, "19"), (2, "22")])

@@ -211,6 +211,36 @@ class Queries(Made):
         self.assertIn("loses 9 % at 4 ms and 13 % at 1 ms, and is unstable at 16 ms", self.say("damping.not_monotone", damping=[
             lost(1e-3, 0.13), lost(4e-3, 0.09), lost(0.016, "", "unstable")]))
 
+    def test_settings_of_a_kind_of_hair_keep_the_target_for_every_motion(self):
+        def row(scene, **more):
+            return {"scene": scene, "kind": "cheapest", "target_error_rel": 0.01, "strands": 100, "guides": 20,
+                    "elements": 8, "dt_s": 0.004, "status": "ok", **more}
+
+        said = self.say("head_accuracy.by_hair", head_accuracy=[
+            row("full_head"), row("wavy_alike_released"), row("wavy_alike_shaken", guides=30, elements=9, dt_s=0.002),
+            row("curly_varied_released"), row("curly_varied_shaken", status="gave_up")])
+        self.assertEqual(said.split("\n")[2:], [
+            "| wavy | equal | 1 % | 20 % to 30 % | 9 | 2 ms |",
+            "| curly | different | 1 % | no tried run keeps it |  |  |"])
+
+    def test_a_bound_of_tolerances_is_stated_where_the_table_keeps_it(self):
+        def said(tolerance):
+            return self.say("cost.step_rule", cost_of_accuracy=[
+                {"kind": "winner", "target_error_rel": 0.01, "wall_s_per_sim_s": 1, "position_tol_rel": tolerance}])
+
+        self.assertIn("No tolerance is looser than a tenth of the length", said(0.1))
+        self.assertNotIn("No tolerance", said(0.5))
+
+    def test_a_time_per_element_is_that_of_the_largest_groom(self):
+        def row(precision, threads, cost, strands=1000):
+            return {"model": "super_helix", "integrator": "linearly_implicit_euler", "effects": "drag", "elements": 10,
+                    "strands": strands, "precision": precision, "threads": threads, "cost_per_step_s": cost, "status": "ok"}
+
+        self.write("results/heads.meta.json", json.dumps({"machine": {"cpus": 2}}))
+        self.assertEqual(
+            self.say("heads.per_element", heads=[row(64, 2, 4e-4), row(64, 3, 1e-4), row(32, 2, 2e-4), row(32, 2, 1e-9, 10)]),
+            "40 ns in double precision, 20 ns in single precision")
+
     def test_a_claim_about_hairs_names_its_best_predictor(self):
         row = {"claim": "super_helix_step_longer", "range": "all", "family": "hair", "hairs": 48, "no_answer": 2,
                "holds_share": 0.88, "decile_1": 0.5, "median": 1, "decile_9": 4, "decided_by": "gravito_bending",

@@ -70,6 +70,6 @@ def counted(template):
 
 
 def without_marks(text):
-    """A page without the marks of its regions of inputs."""
-    mark = r"<!-- (?:inputs: [^>]*|end of inputs) -->"
+    """A page without the marks of its regions of inputs. Marks in code stay."""
+    mark = r"(?<!`)<!-- (?:inputs: [^>]*|end of inputs) -->"
     return re.sub(rf" ?{mark}", "", re.sub(rf"^{mark}\n", "", text, flags=re.M))

@@ -5,6 +5,7 @@ from .tables import first, groups, known, positive, records
 from .words import duration, is_number, is_set, must, number, percent, span, spaced, step, table
 
 _TARGET = 0.01
+_LOOSEST = 0.1  # tolerance that the search tries
 
 
 def _way(row):
@@ -130,9 +131,11 @@ def step_rule(tables):
     adaptive = rows["position_tol_rel"][positive(rows["position_tol_rel"])]
     if adaptive.empty:
         return "All of these winners take equal steps"
-    return (f"{len(adaptive)} of these {len(rows)} winners adapt their steps, at tolerances of {span(adaptive)} of the length. "
-            "The search varies the tolerance as it varies the number of elements. It is no bound of the error: the column of "
-            "errors has what it leaves")
+    bound = (" No tolerance is looser than a tenth of the length: a looser one does not control the error."
+             if adaptive.max() <= _LOOSEST else "")
+    return (f"{len(adaptive)} of these {len(rows)} winners adapt their steps, at tolerances of {span(adaptive)} of the length."
+            f"{bound} The search varies the tolerance as it varies the number of elements. It is no bound of the error: the "
+            "column of errors has what it leaves")
 
 
 _CHOICES = {

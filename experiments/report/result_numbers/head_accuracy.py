@@ -1,5 +1,5 @@
 """Share of a groom that must be simulated."""
-from .tables import first, known, records
+from .tables import first, groups, known, records
 from .words import must, number, percent, span, spaced, table
 
 
@@ -60,6 +60,22 @@ def answers_table(tables):
         ["groom", "target", "sampled hairs", "simulated", "elements, step, bits", "error: mean, 95 %, largest",
          "of interpolation", "of elements and step", "ms a frame: simulated, following"],
         map(line, records(answers(tables))))
+
+
+def by_hair(tables):
+    """Returns the settings that keep each target error for every motion of a kind of hair."""
+    rows = answers(tables)
+    named = rows["scene"].str.extract(r"^(?P<shape>\w+)_(?P<variation>alike|varied)_\w+$")
+    lines = []
+    of_hair = groups(rows.join(named).dropna(subset="shape"), ["shape", "variation", "target_error_rel"])
+    for (shape, variation, target), all_of in of_hair:
+        head = [shape, {"alike": "equal", "varied": "different"}[variation], percent(target)]
+        if (all_of["status"] != "ok").any():
+            lines.append([*head, "no tried run keeps it", "", ""])
+            continue
+        share = "all" if all_of.apply(_every, axis=1).any() else span(all_of["guides"] / all_of["strands"], percent)
+        lines.append([*head, share, f"{all_of['elements'].max():.0f}", f"{number(1e3 * all_of['dt_s'].min())} ms"])
+    return table(["hair", "lengths and curls", "target", "simulated", "elements", "step"], lines)
 
 
 def findings(tables):

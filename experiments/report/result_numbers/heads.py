@@ -70,6 +70,16 @@ def fastest(tables):
     return f"{', '.join(words)} on {cpus} processors"
 
 
+def per_element(tables):
+    """Returns the time per hair, element and step of the fastest runs of the largest groom."""
+    rows = _largest(tables)
+    rows = rows[rows["threads"] <= _processors(tables)]
+    cells = ((least(rows[rows["precision"] == bits], "cost_per_step_s"), precision)
+             for bits, precision in ((64, "double"), (32, "single")))
+    return ", ".join(f"{number(1e9 * row['cost_per_step_s'] / (row['strands'] * row['elements']))} ns in {precision} precision"
+                     for row, precision in cells)
+
+
 def oversubscribed(tables):
     """Returns the number of runs with more threads than processors, and the runs whose times are
     unreliable."""
