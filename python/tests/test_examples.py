@@ -1,3 +1,4 @@
+import math
 import os
 import subprocess
 import sys
@@ -19,6 +20,16 @@ class Examples(unittest.TestCase):
         )  # fmt: skip
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
+
+    def test_first_run(self):
+        # From 10 to 20 elements the tip moves less than from 5 to 10.
+        tips = [
+            (float(words[4]), float(words[8]))
+            for words in map(str.split, self.run_example("first_run").splitlines())
+        ]
+        self.assertEqual(len(tips), 3)
+        first, second = (math.dist(*pair) for pair in zip(tips, tips[1:]))
+        self.assertLess(second, first)
 
     def test_curl_frequencies(self):
         lines = self.run_example("curl_frequencies").splitlines()

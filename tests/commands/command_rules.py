@@ -95,6 +95,7 @@ RULES = (
          more="--size 160,120 --from 0 --to 0"),
     Rule("docs/plugins.md", "", left_out="its own test", by="tests/plugin/test_plugin.sh"),
     Rule("docs/python.md", "./tress python", left_out="builds, and runs its own tests"),
+    Rule("docs/python.md", "PYTHONPATH=", left_out="its own test", by="python/tests/test_examples.py"),
     Rule("docs/python.md", "/usr/bin/python3 -m venv", left_out="for the next line"),
     Rule("docs/python.md", "my_environment", left_out="compiles for minutes"),
     Rule("experiments/calibrate/data/README.md", f"{experiment('calibrate')} --set data=measured.csv", exits=(3,),

@@ -55,6 +55,11 @@ def _one_line(text):
     return re.sub(r"\s+", " ", text).replace("``", "`")
 
 
+def example(tables, name):
+    """Returns a script of python/examples as a block of code."""
+    return f"```python\n{tables.text(f'python/examples/{name}.py').strip()}\n```"
+
+
 def api(tables):
     """Returns a section for each name of __all__: its docstring, and a table of the methods of a class."""
     files = sorted(path.name for path in (tables.root / _FOLDER).glob("*.py"))
