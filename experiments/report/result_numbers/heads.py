@@ -80,6 +80,12 @@ def per_element(tables):
                      for row, precision in cells)
 
 
+def bytes_per_element(tables):
+    """Returns the memory per hair and element in double precision."""
+    row = _largest(tables)[lambda rows: rows["precision"] == 64].iloc[0]
+    return number(row["bytes_per_strand"] / row["elements"])
+
+
 def oversubscribed(tables):
     """Returns the number of runs with more threads than processors, and the runs whose times are
     unreliable."""
