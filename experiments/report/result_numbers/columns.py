@@ -67,6 +67,12 @@ _BY_HAND = {
         "after": "mutated line",
         "outcome": "killed by a test, or survived",
     },
+    "question_times": {
+        "question": "question of the README, by the program that answers it",
+        "options": "options of the program",
+        "processor_s": "processor time of one run",
+        "wall_s": "wall time of one run",
+    },
     "player": {
         "draw": "renderer: the canvas alone, or WebGL computed by a processor",
         "colour": "one colour a strand, or hair in light",
