@@ -4,6 +4,7 @@
 
 #include "contract/forms/energetics.h"
 #include "models/effects/constant_force.h"
+#include "tests/models/head/arrangements.h"
 #include "tests/models/head/mixed_hairs.h"
 #include "tests/models/head/spring_strands.h"
 
@@ -171,17 +172,12 @@ TEST_P(QuaternionHead, StrandsMoveAsTheyDoAlone) {
 TEST_P(QuaternionHead, LanesRefillsAndInstructionsGiveTheSameBits) {
   const double step = step_of(method());
   std::size_t want = 0;
-  for (const HeadPack& pack : packs) {
-    for (const std::size_t together : {1, 100}) {
-      for (const Instructions set : {Instructions::base, Instructions::avx512}) {
-        if (!available(set)) continue;
-        const auto all =
-            head(rods(), acted(), method(), {pack.number, pack.lanes, set}, 19);
-        advance_springs(*all, 10, step, together);
-        if (want == 0) want = all->hash();
-        EXPECT_EQ(all->hash(), want) << pack.lanes << " " << together << " " << name(set);
-      }
-    }
+  for (const auto& [pack, together] : arrangements()) {
+    const auto all = head(rods(), acted(), method(), pack, 19);
+    advance_springs(*all, 10, step, together);
+    if (want == 0) want = all->hash();
+    EXPECT_EQ(all->hash(), want)
+        << pack.lanes << " " << together << " " << name(*pack.instructions);
   }
 }
 

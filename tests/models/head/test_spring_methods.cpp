@@ -3,6 +3,7 @@
 #include <optional>
 #include <tuple>
 
+#include "tests/models/head/arrangements.h"
 #include "tests/models/head/mixed_hairs.h"
 #include "tests/models/head/spring_strands.h"
 #include "tests/support/bare_system.h"
@@ -87,17 +88,12 @@ TEST_P(SpringMethods, StrandsMoveAsTheyDoAlone) {
 TEST_P(SpringMethods, LanesRefillsAndInstructionsGiveTheSameBits) {
   const double h = step_of(method(), 1.0 / 120);
   std::size_t want = 0;
-  for (const HeadPack& pack : spring_packs) {
-    for (const std::size_t together : {1, 2, 100}) {
-      for (const Instructions set : {Instructions::base, Instructions::avx512}) {
-        if (!available(set)) continue;
-        const auto all =
-            springs(c(), method(), {pack.number, pack.lanes, set}, 27, effects());
-        advance_springs(*all, 10, h, together);
-        if (want == 0) want = all->hash();
-        EXPECT_EQ(all->hash(), want) << pack.lanes << " " << together << " " << name(set);
-      }
-    }
+  for (const auto& [pack, together] : arrangements()) {
+    const auto all = springs(c(), method(), pack, 27, effects());
+    advance_springs(*all, 10, h, together);
+    if (want == 0) want = all->hash();
+    EXPECT_EQ(all->hash(), want)
+        << pack.lanes << " " << together << " " << name(*pack.instructions);
   }
 }
 
