@@ -233,7 +233,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   } else {
     verdicts.not_judged(bits);
   }
-  verdicts.check("no hair is lost, but by linearly_implicit_midpoint", lost == 0, lost);
+  verdicts.check("no hair fails, but by linearly_implicit_midpoint", lost == 0, lost);
   verdicts.check(
       "in 32 bits no point is off by more than 1e-5 of the length, by Euler's methods "
       "up to steps of 1/120 s",

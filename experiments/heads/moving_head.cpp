@@ -152,7 +152,7 @@ void run_head(const Work& work, Row& row) {
   row.set("failed", lost);
   if (const auto losses = all.losses(); !losses.empty()) {
     const models::HeadLoss& first = losses.front();
-    fmt::print(stderr, "hair {} is lost in step {}, at {} s: {}\n", first.strand,
+    fmt::print(stderr, "hair {} fails in step {}, at {} s: {}\n", first.strand,
                first.step, first.time, first.reason);
   }
   // Few hairs alone lack the neighbours that the others have.

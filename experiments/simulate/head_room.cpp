@@ -35,7 +35,7 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
                memory = each * ranks.on_this_machine() + first, free = free_memory(),
                frames = static_cast<double>(scene.last_frame() + 1);
   if (memory > free) {
-    throw InputError(fmt::format("a head of {} strands of {} elements needs about {:.2g} "
+    throw InputError(fmt::format("a batch of {} strands of {} elements needs about {:.2g} "
                                  "GB of memory, {:.2g} GB are free",
                                  strands, elements, memory / 1e9, free / 1e9),
                      scene.name,
@@ -62,7 +62,7 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
               : fmt::format("{} bits, {} SIMD lanes", bits_of(options.pack),
                             options.pack.lanes);
   tell(
-      "simulate: {}: a head of {} strands of {} elements: about {:.0f} MB of memory, "
+      "simulate: {}: a batch of {} strands of {} elements: about {:.0f} MB of memory, "
       "{:.0f} frames of {:.3g} MB before compression; {}\n",
       scene.name, strands, elements, memory / 1e6, frames, frame / 1e6, engine);
 }

@@ -114,7 +114,7 @@ class HeadSceneRun {
     const FailedStrand& first = lost.front();
     const bool unsolved = first.reason.starts_with("no solution");
     return fmt::format(
-        "{}{} of {} strands were lost, the first at t = {:.9g} s, strand {}: {} "
+        "{}{} of {} strands failed, the first at t = {:.9g} s, strand {}: {} "
         "({}.failed.csv): {}{}",
         unsolved ? "" : "unstable: ", lost.size(), run_->strands(), first.t, first.strand,
         first.reason, options_.stem, remedy(scene_.integrator, scene_.options),

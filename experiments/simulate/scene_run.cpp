@@ -116,7 +116,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     const FailedStrand& first = world->lost().front();
     run.end = SceneRun::End::failed;
     run.reason = fmt::format(
-        "{} of {} strands were lost, the first at t = {:.9g} s, strand {}: {} "
+        "{} of {} strands failed, the first at t = {:.9g} s, strand {}: {} "
         "({}.failed.csv): {}",
         run.lost, world->strands(), first.t, first.strand, first.reason, options.stem,
         remedy(scene.integrator, scene.options));

@@ -17,7 +17,7 @@ struct HeadOptions : models::LaneOptions {
   /// tr_bdf2 every strand takes its own steps with this error control. Newton's tolerance
   /// follows from it. See integrators/block/controlled_blocks.h.
   double tolerance = 0;
-  double min_step = 0;  // s, with a tolerance: strands that need less are lost
+  double min_step = 0;  // s, with a tolerance: strands that need less fail
 };
 
 /// Whether numbers are long enough for strands that choose their steps by this tolerance.

@@ -570,7 +570,7 @@ TEST(HeadOfHair, IsTakenFromAThousandStrandsOnWhereTheSceneCanBeOne) {
   Toy toy;
   toy.write("head.toml", text({.count = 1000, .elements = 1}));
   const std::string automatic = "head.toml --out out --progress none";
-  EXPECT_THAT(toy.run(automatic).err, HasSubstr("a head of 1000 strands of 1 elements"));
+  EXPECT_THAT(toy.run(automatic).err, HasSubstr("a batch of 1000 strands of 1 elements"));
   EXPECT_TRUE(toy.exists("out/head.h5"));
   toy.write("head.toml", text({.count = 999, .elements = 1}));
   EXPECT_THAT(toy.run(automatic).err, testing::Not(HasSubstr("a head of")));
@@ -754,7 +754,7 @@ TEST(HeadOfHair, FailedStrandsAreNamedAndTheOthersGoOn) {
                                "[[strand]]\nlength_m = 0.1\nelements = 6\n"
                                "[strand.material]\nyoungs_modulus_pa = 1e15\n");
     EXPECT_THAT(run(toy, guard ? "--frames 64" : "--frames 64 --no-guard", 3).err,
-                HasSubstr("of 9 strands were lost"));
+                HasSubstr("of 9 strands failed"));
     const CsvTable lost = parse_csv(toy.read("out/head.failed.csv"), "csv");
     const CsvTable series = parse_csv(toy.read("out/head.csv"), "csv");
     ASSERT_EQ(series.rows.size(), 61U);
@@ -801,7 +801,7 @@ TEST(HeadGuard, FindsHairsThatGainEnergyOnAFixedBody) {
               "shape = \"sphere\"\nradius_m = 0.115\n");
     const std::string said = run(toy, "--precision " + bits, 3).err;
     EXPECT_THAT(said, HasSubstr("unstable: "));
-    EXPECT_THAT(said, HasSubstr("of 300 strands were lost, the first at t = 0.0"));
+    EXPECT_THAT(said, HasSubstr("of 300 strands failed, the first at t = 0.0"));
     EXPECT_THAT(said, HasSubstr("try a step of 0.0005 s"));
     EXPECT_THAT(toy.read("out/head.failed.csv"), HasSubstr("energy"));
     // m g L = 2e-5 J for each of those that are left.

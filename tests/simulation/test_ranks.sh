@@ -142,7 +142,7 @@ alone 2 '^simulate: error: cannot (open|read).*head.toml' 0 no 'cd elsewhere'
 # A rank without room for its strands, beside MPI's own memory.
 sed 's/^count = .*/count = 1000000/; /strand_interaction/,$d' head.toml >many.toml
 mv head.toml kept.toml && mv many.toml head.toml
-alone 2 "^simulate: rank 1 of 2, on $(hostname): error: a head of 1000000 strands .*needs" 1 no 'ulimit -v 800000'
+alone 2 "^simulate: rank 1 of 2, on $(hostname): error: a batch of 1000000 strands .*needs" 1 no 'ulimit -v 800000'
 mv kept.toml head.toml
 
 # A full disk: the first rank, which writes, says so; the run goes on where there is room.
