@@ -18,8 +18,8 @@ using Lanes = std::uint32_t;
 
 /// A strand's block and lane.
 struct LanePlace {
-  std::size_t block;
-  int lane;
+  std::size_t block;  // index of the block
+  int lane;           // index of the lane, below Block::lanes()
 };
 
 /// Data of a model's strands, in blocks, other than coordinates and rates: material, rest
@@ -29,26 +29,34 @@ class StrandMemory {
  public:
   virtual ~StrandMemory() = default;
 
+  /// Returns the number of blocks.
   virtual std::size_t blocks() const = 0;
+  /// Allocates memory for a number of blocks, so that resize() up to there does not.
   virtual void reserve(std::size_t blocks) = 0;
+  /// Changes the number of blocks.
   virtual void resize(std::size_t blocks) = 0;
+  /// Returns the size of all data, bytes.
   virtual std::size_t bytes() const = 0;
 
+  /// Copies all data of one strand.
   virtual void copy(const StrandMemory& from, LanePlace of, LanePlace to) = 0;
+  /// Copies all data of a block, lane by lane.
   virtual void copy_block(const StrandMemory& from, std::size_t of, std::size_t to) = 0;
   /// Copies only the data that steps change.
   virtual void copy_changed(const StrandMemory& from, LanePlace of, LanePlace to) = 0;
 
   /// Returns how many numbers keep() writes and recall() reads for one strand.
   virtual std::size_t kept() const = 0;
+  /// Writes the data of a strand that steps change, kept() numbers.
   virtual void keep(LanePlace of, double* to) const = 0;
+  /// Restores the data that keep() wrote.
   virtual void recall(LanePlace of, const double* from) = 0;
 
   /// Length of a strand along its elements.
   virtual double length(LanePlace of) const = 0;
 };
 
-/// Times at which roots have a position: start of a step, one of its stages, and its end.
+/// Times at which roots have a position: `start` of a step, a `stage`, and its `end`.
 enum class Instant { start, stage, end };
 
 /// The equations of a block of strands, r(t, q, v, a) = 0, with working memory of one
@@ -64,12 +72,14 @@ class Block {
   virtual double time_unit() const = 0;      // s
   /// Newton's tolerance over that of a step's error.
   virtual double newton_part() const = 0;
+  /// Returns an empty memory for strands of this model.
   virtual std::unique_ptr<StrandMemory> memory() const = 0;
 
   /// The block that the calls below are about; the memory must outlive them.
   virtual void work_on(StrandMemory& of, std::size_t block) = 0;
   /// Times (s) of the ends of a step, and of a stage.
   virtual void set_step(double from, double to) = 0;
+  /// Sets the time (s) of the stage that the next calls are about.
   virtual void set_stage(double t) = 0;
 
   /// Reference frames for a step from there: returns the lanes with new ones, whose
@@ -97,6 +107,7 @@ class Block {
   virtual void coordinate_size(const N* dq, N* size) const = 0;
   /// Points as seen from the head's position and their velocities, 3 entries each.
   virtual void positions(Instant at, const N* q, N* x) const = 0;
+  /// Computes the velocities of the points, 3 entries each.
   virtual void velocities(Instant at, const N* q, const N* v, N* u) const = 0;
 };
 

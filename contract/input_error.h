@@ -12,6 +12,7 @@ namespace tress {
 /// The line is printable(); a long quotation of the input loses its middle.
 class InputError : public std::runtime_error {
  public:
+  /// Makes the line "`problem` (`where`): `remedy`".
   InputError(const std::string& problem, const std::string& where,
              const std::string& remedy)
       : std::runtime_error(shortened(problem, 400) + " (" +
@@ -22,6 +23,7 @@ class InputError : public std::runtime_error {
   static constexpr std::size_t longest_path = 4200;
 };
 
+/// Throws InputError if `refused`.
 inline void refuse_if(bool refused, const std::string& problem, const std::string& where,
                       const std::string& remedy) {
   if (refused) throw InputError(problem, where, remedy);

@@ -12,8 +12,10 @@ struct NewtonWork {
   long in_parts = 0;                           // of the last, iterations of shorter steps
   long shortened = 0;                          // steps of strands taken in shorter ones
   // With a tolerance, steps of strands that were tried again with shorter ones.
-  long rejected_by_error = 0, rejected_by_newton = 0;
+  long rejected_by_error = 0;   // steps whose estimated error was too large
+  long rejected_by_newton = 0;  // steps without a solution
 
+  /// Adds the counts of other steps.
   NewtonWork& operator+=(const NewtonWork& more) {
     steps += more.steps;
     iterations += more.iterations;

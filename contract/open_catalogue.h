@@ -16,6 +16,7 @@ namespace tress {
 template <class Entry>
 class OpenCatalogue {
  public:
+  /// Starts with the built-in entries; `kind` is what messages call an entry.
   OpenCatalogue(std::string_view kind, std::vector<Entry> built_in)
       : kind_(kind), entries_(std::move(built_in)), built_in_(entries_.size()) {}
 
@@ -32,11 +33,14 @@ class OpenCatalogue {
     entries_.push_back(entry);
   }
 
+  /// Ends additions and returns all entries.
   std::span<const Entry> close() {
     closed_ = true;
     return entries_;
   }
+  /// Returns the entries so far, built-in ones first.
   std::span<const Entry> entries() const { return entries_; }
+  /// Returns the entries that plug-ins have added.
   std::span<const Entry> added() const { return entries().subspan(built_in_); }
 
  private:

@@ -18,16 +18,18 @@ namespace tress {
 ///     rows               any number of such tuples, "x,y,z;x,y,z"; may be empty
 ///     text               any text: a file, a name
 struct Parameter {
-  std::string_view name;
+  std::string_view name;  // key in scenes and options
   std::string_view help;  // with unit
   double number = 0;      // default
+  /// Least number.
   double min = -std::numeric_limits<double>::infinity();
+  /// Largest number.
   double max = std::numeric_limits<double>::infinity();
-  bool whole = false;
-  std::string_view choices = {};  // first one is the default
-  int components = 1;
-  bool rows = false;
-  bool text = false;
+  bool whole = false;              // whether the number is whole
+  std::string_view choices = {};   // first one is the default
+  int components = 1;              // numbers of a tuple
+  bool rows = false;               // whether the value is a list of tuples
+  bool text = false;               // whether the value is any text
   std::string_view fallback = {};  // the default of components, rows and text
 
   /// The default as text that set() accepts.
@@ -46,9 +48,12 @@ class Parameters {
   /// Sets a value as set(key, value) does; messages name `where` (file:line:column)
   /// instead of the owner.
   void set(std::string_view key, std::string_view value, const std::string& where);
+  /// Returns true if a parameter of this key is declared.
   bool knows(std::string_view key) const;
 
+  /// Returns the value of a parameter of one number.
   double number(std::string_view key) const;
+  /// Returns the value of a parameter that is whole.
   int whole(std::string_view key) const;
   std::string_view word(std::string_view key) const;  // of choices, or text
   /// Returns the value of a parameter with three components.

@@ -7,8 +7,9 @@ namespace tress {
 /// Former name of a key, value, column, id, option or program, and its present name.
 /// `./tress rename FILE...` reads this list and converts scenes and tables.
 struct Renamed {
-  std::string_view before, now;
+  std::string_view before, now;  // former and present name
 };
+/// All former names.
 inline constexpr Renamed renamed_names[] = {
     // ids
     {"semi_implicit_euler", "linearly_implicit_euler"},

@@ -29,6 +29,7 @@ class MaterialPoints;
 class History;
 class ContactForm;
 
+/// Sizes of a system.
 struct Layout {
   int coordinates = 0;  // n
   int constraints = 0;  // m
@@ -75,21 +76,35 @@ class System {
   virtual std::string not_finite(double /*t*/, In /*q*/, In /*v*/) { return {}; }
 
   // Optional forms (contract/forms/), null when absent; queried once.
+  /// Returns S(w) as a sparse matrix; required with constraints.
   virtual SparseForm* sparse_form() { return nullptr; }
+  /// Returns the accelerations as an explicit function of the state.
   virtual ExplicitForm* explicit_form() { return nullptr; }
+  /// Returns the constraints; required if Layout::constraints > 0.
   virtual ConstraintForm* constraint_form() { return nullptr; }
+  /// Returns the forces as compliant constraints, for position-based methods.
   virtual ComplianceForm* compliance_form() { return nullptr; }
+  /// Returns the choice of stresses in the matrix.
   virtual StressForm* stress_form() { return nullptr; }
+  /// Returns energies and momentum.
   virtual Energetics* energetics() { return nullptr; }
+  /// Returns the points of the body in space.
   virtual MaterialPoints* material_points() { return nullptr; }
+  /// Returns the state that depends on past steps.
   virtual History* history() { return nullptr; }
+  /// Returns contact forces that obey the exact laws.
   virtual ContactForm* contact_form() { return nullptr; }
 
   // All that is remembered: by the history, and the multipliers of contacts. Defined in
   // contract/forms/memory.cpp.
+  /// Tells the history and the contacts that a step was accepted. True: the equations
+  /// changed, so that multistep methods must restart.
   bool accept(double t, InOut q, InOut v);
+  /// Discards all that is remembered.
   void reset();
+  /// Returns all that is remembered, for recall().
   std::vector<double> memory();
+  /// Restores what memory() returned.
   void recall(In memory);
 };
 

@@ -9,8 +9,9 @@ namespace tress::integrators {
 /// with w = h/h_previous: b = (1 + w)/(1 + 2w), c0 = (1 + w)^2/(1 + 2w), c1 = w^2/(1 +
 /// 2w). w = 0 is backward Euler. [Hairer, Norsett, Wanner I, III.5]
 struct Bdf2Formula {
-  double c0, c1, bh;
+  double c0, c1, bh;  // coefficients of the formula; bh in s
 
+  /// Computes the coefficients for a step of h (s), w times as long as the one before.
   Bdf2Formula(double h, double w)
       : c0((1 + w) * (1 + w) / (1 + 2 * w)),
         c1(w * w / (1 + 2 * w)),

@@ -17,14 +17,14 @@ namespace tress::integrators {
 /// A supported formulation and the method's order in it: errors O(h^order) at a fixed
 /// time; for adaptive methods the highest order used by default.
 struct Treatment {
-  Formulation formulation;
-  int order;
+  Formulation formulation;  // form of the constraints
+  int order;                // order of the method
 };
 
 /// An unsupported formulation and the method's own reason, if it has one.
 struct Gap {
-  Formulation formulation;
-  std::string_view reason;
+  Formulation formulation;  // form of the constraints
+  std::string_view reason;  // reason for messages, may be empty
 };
 
 /// The contact forces that a method can drive.
@@ -39,22 +39,23 @@ std::string any_system(System& system, Formulation formulation);
 
 /// One line of the list of integrators.
 struct IntegratorEntry {
-  std::string_view id;
-  std::string_view summary;  // damping, cost; lists print the order before it
-  std::string_view source;
+  std::string_view id;            // id in scenes, tables and the command line
+  std::string_view summary;       // damping, cost; lists print the order before it
+  std::string_view source;        // paper and year
   bool adaptive = false;          // driven by rtol/atol instead of step
   bool error_controlled = false;  // takes Options::tolerance as well as step
   bool impulsive = false;         // goes on after impulses at ends of steps (Impulsive)
   bool tangent = false;           // solves with the model's tangent
   int stages = 0;                 // solutions by Newton's method in a step (Stage)
-  Contact contact = Contact::regular;
-  std::vector<Treatment> formulations;
-  std::vector<Gap> gaps = {};
+  Contact contact = Contact::regular;   // contact forces that it can drive
+  std::vector<Treatment> formulations;  // supported formulations
+  std::vector<Gap> gaps = {};           // unsupported formulations with a reason
   /// Options of its own, read by own_options(); methods of a family share their list.
   std::span<const Parameter> parameters = {};
-  /// Empty when the method can drive `system` under `formulation`, otherwise the reason
-  /// (beyond the general rules that `refusal` checks).
+  /// Returns empty text when the method can drive `system` under `formulation`,
+  /// otherwise the reason (beyond the general rules that `refusal` checks).
   std::string (*objection)(System& system, Formulation formulation) = any_system;
+  /// Makes an integrator of the system, which must outlive it.
   std::unique_ptr<Integrator> (*make)(System& system, const Options& options);
 
   /// Order under `formulation`; empty if unsupported.
@@ -65,6 +66,7 @@ struct IntegratorEntry {
   std::string_view gap(Formulation formulation) const;
 };
 
+/// Makes an integrator of a type, as IntegratorEntry::make.
 template <class Method>
 std::unique_ptr<Integrator> make_method(System& system, const Options& options) {
   return std::make_unique<Method>(system, options);

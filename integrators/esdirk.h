@@ -13,18 +13,20 @@ namespace tress::integrators {
 /// last stage is the new state (b = the last row of a), so that the first stage is the
 /// last one of the step before.
 struct EsdirkTable {
-  static constexpr std::size_t most_stages = 6;
-  std::size_t stages = 0;
-  int order = 0;
-  int embedded_order = 0;
+  static constexpr std::size_t most_stages = 6;  // bound of the stages
+  std::size_t stages = 0;                        // number of stages
+  int order = 0;                                 // order of the method
+  int embedded_order = 0;                        // order of the comparison solution
+  /// Coefficients a_ij, by rows.
   std::array<std::array<double, most_stages>, most_stages> a{};
   std::array<double, most_stages> embedded{};  // weights of the comparison solution
   /// The estimate allowed in one step is share tolerance^power. In the limit of short
   /// steps the error of a whole run is proportional to the tolerance with power =
   /// k/order, where the estimate falls as h^k [Soederlind, Wang 2006, J. Comput. Appl.
   /// Math. 185, 244].
-  double share = 1, power = 1;
+  double share = 1, power = 1;  // factor and power of the tolerance
 
+  /// Returns the diagonal coefficient.
   double gamma() const { return a[1][1]; }
   /// Time of stage i over the step: the sum of its row.
   double c(std::size_t i) const;
@@ -47,6 +49,7 @@ struct EsdirkTable {
 /// difference does not fall.
 class EsdirkStages {
  public:
+  /// Works on `dynamics`, which must outlive it, as must `table`.
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
                Stage::Ending ending);
 
@@ -60,9 +63,13 @@ class EsdirkStages {
   void forget() { h_ = 0; }
 
   // The end of the last step.
+  /// Returns the coordinates at the end of the last step.
   In q() const { return stage_.q(); }
+  /// Returns the rates at the end of the last step.
   In v() const { return v_[last()]; }
+  /// Returns the accelerations at the end of the last step.
   In a() const { return a_[last()]; }
+  /// Returns the multipliers at the end of the last step.
   In lambda() const { return lambda_; }
 
   /// The method minus its embedded comparison over the last step, of length h.

@@ -15,6 +15,7 @@ namespace tress::integrators {
 /// observer. A method writes step() and, when it has history, reset().
 class FixedStep : public Integrator {
  public:
+  /// Binds the method to a system, which must outlive it.
   FixedStep(System& system, const Options& options);
 
   Status start(double t, In q, In v) final;

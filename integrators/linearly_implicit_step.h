@@ -15,12 +15,14 @@ namespace tress::integrators {
 /// stiffness.
 class LinearlyImplicitStep {
  public:
+  /// Works on `dynamics`, which must outlive it.
   LinearlyImplicitStep(Dynamics& dynamics, const Options& options)
       : stage_(dynamics, options),
         a_(static_cast<std::size_t>(dynamics.n())),
         a_last_(a_.size()),
         q_bar_(a_.size()) {}
 
+  /// Forgets the last acceleration.
   void reset() { std::ranges::fill(a_, 0.0); }
 
   /// Steps from (q, v) at time t to q(), v() at t + h.
@@ -30,7 +32,9 @@ class LinearlyImplicitStep {
     std::ranges::fill(a_, 0.0);
     return stage_.single_step(t + h, q_bar_, v, {1, h, h * h}, a_last_, a_, lambda);
   }
+  /// Returns the coordinates after take().
   In q() const { return stage_.q(); }
+  /// Returns the rates after take().
   In v() const { return stage_.v(); }
 
  private:

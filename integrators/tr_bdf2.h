@@ -8,12 +8,15 @@ namespace tress::integrators {
 
 namespace tr_bdf2_entries {
 
-inline constexpr double d = 1 - std::numbers::sqrt2 / 2;  // g/2
+/// Diagonal coefficient g/2, g = 2 - sqrt(2).
+inline constexpr double d = 1 - std::numbers::sqrt2 / 2;
+/// Weight of the first two stages.
 inline constexpr double w = std::numbers::sqrt2 / 4;
 
 // Measured on scenes/accuracy with super_helix at thresholds from 1e-2 to 1e-4: the error
 // of a run falls as the threshold to the power 0.8 (2/3 in the limit) and was 0.13 to 3.9
 // of it. These share and power leave 0.06 to 0.8 of the tolerance.
+/// Coefficients of TR-BDF2 and its comparison solution of order 3.
 inline constexpr EsdirkTable table{.stages = 3,
                                    .order = 2,
                                    .embedded_order = 3,

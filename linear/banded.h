@@ -26,7 +26,9 @@ BandOrdering reverse_cuthill_mckee(const Pattern& pattern);
 /// half-bandwidth 4.
 class BandedSolver final : public DirectSolver {
  public:
+  /// Orders the unknowns by reverse_cuthill_mckee().
   explicit BandedSolver(const Pattern& pattern);
+  /// Takes an ordering that is known.
   BandedSolver(const Pattern& pattern, BandOrdering ordering);
   std::string_view name() const override { return "banded"; }
 

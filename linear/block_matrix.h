@@ -7,6 +7,7 @@
 
 namespace tress {
 
+/// Returns the pattern of the identity matrix (n x n).
 Pattern identity_pattern(int n);
 
 /// A sparse matrix assembled from blocks of fixed pattern, at any position, overlapping
@@ -15,16 +16,23 @@ Pattern identity_pattern(int n);
 /// block).
 class BlockMatrix {
  public:
+  /// Starts a matrix without blocks (rows x cols).
   BlockMatrix(int rows, int cols);
 
   /// Adds a block with its upper left corner at (row0, col0); returns its id.
   /// `transposed`: values are given in the order of `block` and stored in its transpose.
   int add_block(const Pattern& block, int row0, int col0, bool transposed = false);
+  /// Ends the list of blocks and computes the pattern.
   void finish();
 
+  /// Returns the pattern of the sum; complete after finish().
   const Pattern& pattern() const { return pattern_; }
+  /// Sets all entries to 0.
   void clear() noexcept;
+  /// Adds `factor` times the block of this id, `values` in the order of the block's
+  /// pattern.
   void add(int block, double factor, In values) noexcept;
+  /// Returns the entries in the order of pattern().
   In values() const { return values_; }
 
  private:

@@ -15,7 +15,9 @@ namespace tress {
 /// solves a matrix that turns out unsymmetric or has a pivot that is not positive.
 class DefiniteBand final : public LinearSolver {
  public:
+  /// Orders the unknowns by reverse_cuthill_mckee().
   explicit DefiniteBand(const Pattern& pattern);
+  /// Takes an ordering that is known.
   DefiniteBand(const Pattern& pattern, BandOrdering ordering);
 
   std::string_view name() const override { return "banded"; }

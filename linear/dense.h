@@ -11,6 +11,7 @@ namespace tress {
 /// DenseLu, for few unknowns and as the reference for the other solvers.
 class DenseSolver final : public DirectSolver {
  public:
+  /// Allocates the matrix (n x n) of this pattern.
   explicit DenseSolver(const Pattern& pattern);
   ~DenseSolver() override;
   std::string_view name() const override { return "dense"; }

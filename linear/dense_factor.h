@@ -12,11 +12,13 @@ namespace tress {
 /// factor().
 class DenseFactor {
  public:
+  /// Allocates a matrix (size x size).
   DenseFactor(int size, bool symmetric);
+  /// Factors `matrix`; `retry` if it is singular or not finite.
   Status factor() noexcept;
   Status solve(In b, Out x) noexcept;  // b and x may be the same
 
-  Eigen::MatrixXd matrix;
+  Eigen::MatrixXd matrix;  // matrix to be factored, (size x size)
 
  private:
   bool symmetric_;

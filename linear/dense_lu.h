@@ -9,10 +9,12 @@ namespace tress {
 /// allocates after construction.
 class DenseLu {
  public:
+  /// Allocates for a matrix (size x size).
   explicit DenseLu(Eigen::Index size) : lu_(size), permuted_(size) {}
 
   /// Returns the smallest magnitude of a pivot; 1 if there are no unknowns.
   double factor(const Eigen::MatrixXd& a) noexcept;
+  /// Solves A x = b with the last factors; b becomes x.
   void solve(Eigen::Ref<Eigen::VectorXd> b) const noexcept;
 
  private:

@@ -29,6 +29,7 @@ class DirectSolver : public LinearSolver {
   /// roundoffs.
   static constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
+  /// Allocates for a pattern; `singular_pivot` is relative to entries of R A C.
   explicit DirectSolver(const Pattern& pattern, double singular_pivot = rounding);
 
   Status factor(In values) noexcept final;

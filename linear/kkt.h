@@ -11,8 +11,9 @@
 
 namespace tress {
 
+/// Diagnostics of the last factorisation.
 struct KktReport {
-  std::string_view solver;
+  std::string_view solver;  // name of the linear solver
   int rank_deficiency = 0;  // number of redundant constraints
   double condition = 0;     // of the equilibrated matrix, order of magnitude only
 };
@@ -42,6 +43,7 @@ class Kkt {
   /// finite. No allocation after the first call while the constraints are independent.
   Status factor(In s, In gt, In ht) noexcept;
   Status solve(InOut b, InOut c) noexcept;  // b -> x, c -> y
+  /// Returns the diagnostics of the last factorisation.
   const KktReport& report() const { return report_; }
 
  private:

@@ -13,6 +13,7 @@ namespace tress {
 /// [Davis 2010] T. Davis, E. Palamadai Natarajan, Algorithm 907: KLU, ACM TOMS 37(3).
 class KluSolver final : public DirectSolver {
  public:
+  /// Analyses the pattern; `singular_pivot` as in DirectSolver.
   explicit KluSolver(const Pattern& pattern, double singular_pivot = rounding);
   ~KluSolver() override;
   std::string_view name() const override { return "klu"; }

@@ -14,9 +14,11 @@ namespace tress {
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
+  /// Returns the solver's name, as LinearKind and Stats have it.
   virtual std::string_view name() const = 0;
   /// `retry` when the matrix is singular to working precision or not finite.
   virtual Status factor(In values) noexcept = 0;
+  /// Solves A x = b with the last factors; b becomes x.
   virtual Status solve(InOut b) noexcept = 0;
   /// Cheap estimate of the condition number from the last factorisation.
   virtual double condition() const noexcept = 0;

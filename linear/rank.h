@@ -21,10 +21,12 @@ class NullSpace {
   NullSpace(const Pattern& pattern, In gt, In rows, In columns);
   ~NullSpace();
 
+  /// Returns the number of dependent constraints.
   int dimension() const;
   /// y -= N (N^T N)^-1 N^T y
   void project_out(InOut y) const;
 
+  /// Length, relative to the scaled column, below which a column counts as dependent.
   static constexpr double dependence = 1e-8;
 
  private:

@@ -16,7 +16,9 @@ class Skyline {
   /// first[i] <= i.
   explicit Skyline(const std::vector<std::size_t>& first);
 
+  /// Returns the number of rows.
   std::size_t size() const { return first_.size(); }
+  /// Sets all entries to 0.
   void clear();
   /// Entry (i, j), first[i] <= j <= i.
   double& at(std::size_t i, std::size_t j) { return value_[start_[i] + j - first_[i]]; }

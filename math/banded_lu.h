@@ -11,8 +11,10 @@ namespace tress {
 /// (4th ed.), section 4.3.5.
 class BandedLu {
  public:
+  /// Allocates a matrix (n x n) with this many diagonals below and above the main one.
   BandedLu(int n, int lower, int upper);
 
+  /// Sets all entries to 0.
   void clear();
   double& at(int i, int j) { return band_[index(i, j)]; }  // (i, j) inside the band
   bool factor() noexcept;                          // false: singular or not finite

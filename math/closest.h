@@ -9,15 +9,17 @@ namespace tress {
 
 /// A straight segment from `start` to start + edge.
 struct StraightPiece {
-  Vec start, edge;
+  Vec start, edge;     // one end, and the vector from there to the other
   double inverse = 0;  // 1/|edge|^2; 0 for zero length: the segment is its start
 
   StraightPiece() = default;
+  /// Makes the segment between two points.
   StraightPiece(const Vec& from, const Vec& to) : start(from), edge(to - from) {
     const double square = dot(edge, edge);
     inverse = square > 0 ? 1 / square : 0;
   }
 
+  /// Returns the point at the parameter s, 0 at the start and 1 at the other end.
   Vec at(double s) const { return start + s * edge; }
   /// Parameter in [0, 1] of the point nearest to x.
   double nearest(const Vec& x) const {
@@ -29,8 +31,9 @@ struct StraightPiece {
 /// Parameters in [0, 1] of the points of two pieces that are nearest to each other; of
 /// parallel ones that overlap, the middle of the overlap.
 struct NearestPoints {
-  double of_first, of_second;
+  double of_first, of_second;  // parameters of the two points
 };
+/// Finds the points of two segments that are nearest to each other.
 inline NearestPoints nearest(const StraightPiece& first, const StraightPiece& second) {
   constexpr double parallel = 1e-9;  // squared sine of an angle
   const Vec between = second.start - first.start;

@@ -10,8 +10,11 @@ namespace tress {
 /// `frame * x` maps components in the frame to outer components.
 template <class T>
 struct FrameOf {
+  /// First axis; the tangent in frames of rods.
   Vec3<T> e0{T(1), T(0), T(0)};
+  /// Second axis.
   Vec3<T> e1{T(0), T(1), T(0)};
+  /// Third axis.
   Vec3<T> e2{T(0), T(0), T(1)};
 
   [[gnu::always_inline]] friend constexpr Vec3<T> operator*(const FrameOf& f,
@@ -28,6 +31,7 @@ struct FrameOf {
   }
 };
 
+/// Rotation of numbers in double precision.
 using Frame = FrameOf<double>;
 
 /// Turns by `angle` (rad) about `axis`, whose length must be 1 (Rodrigues).
@@ -45,6 +49,7 @@ inline void store9(const Frame& f, double* p) {
   store3(f.e1, p + 3);
   store3(f.e2, p + 6);
 }
+/// Reads a frame from nine numbers, axis by axis.
 inline Frame load9(const double* p) { return {load3(p), load3(p + 3), load3(p + 6)}; }
 
 /// Whether the axes have length 1, are orthogonal (both to 1e-12, false on NaN) and

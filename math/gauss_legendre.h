@@ -4,8 +4,9 @@
 
 namespace tress {
 
+/// One point of a quadrature rule.
 struct QuadraturePoint {
-  double at, weight;
+  double at, weight;  // position in the interval, and weight
 };
 
 /// Gauss-Legendre over [0, length] with `count` points (> 0): exact for polynomials of

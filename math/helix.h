@@ -18,14 +18,16 @@ namespace tress {
 /// 1/2, 1/6, -1/12, -1/60, 1/90, 1/630, -1/840, -1/7560.
 template <class T>
 struct HelixFunctions {
-  T S, A, B, A1, B1, A2, B2, A3, B3;
+  T S, A, B, A1, B1, A2, B2, A3, B3;  // values of the functions above
 
+  /// All functions, in the order in which they are computed.
   static constexpr T HelixFunctions::*all[] = {
       &HelixFunctions::S,  &HelixFunctions::A,  &HelixFunctions::B,
       &HelixFunctions::A1, &HelixFunctions::B1, &HelixFunctions::A2,
       &HelixFunctions::B2, &HelixFunctions::A3, &HelixFunctions::B3};
 };
 
+/// Sets one lane of all functions.
 template <class T>
 void set_lane(HelixFunctions<T>& to, int lane, const HelixFunctions<double>& f) {
   for (std::size_t i = 0; i < std::size(HelixFunctions<T>::all); ++i) {
@@ -49,6 +51,7 @@ constexpr std::array<double, terms> taylor() {
   return c;
 }
 
+/// Evaluates the first `terms` terms of the Taylor series `taylor` in x.
 template <int p, int m, int terms, class T>
 T taylor_sum(const T& x) {
   static constexpr std::array<double, terms> c = taylor<p, m, terms>();
@@ -116,14 +119,18 @@ inline HelixFunctions<double> closed_forms(double s, double x2, double half, dou
 // Five terms truncate less than eps / 8 of the value up to ws = 0.17 (3!/13! X^5 for B,
 // the worst case), nine less than eps up to 1.5, sixteen up to 4.5, where the alternating
 // sums lose 4 bits; beyond, the closed forms are more accurate.
+/// Bound of X = (ws)^2 up to which five terms of the series are enough.
 inline constexpr double nearly_straight = 0.17 * 0.17;
 inline constexpr double short_end = 1.5 * 1.5;  // as X = (ws)^2
+/// Bound of X up to which sixteen terms are more accurate than the closed forms.
 inline constexpr double long_end = 4.5 * 4.5;
 
+/// Computes the functions of one helix by the method for its X.
 inline HelixFunctions<double> one_by_one(double s, double x2) noexcept {
   return x2 * (s * s) <= long_end ? series<16>(s, x2) : closed_forms(s, x2);
 }
 
+/// Computes the functions lane by lane, each by the method for its own X.
 template <class X>
 HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
   HelixFunctions<Pack> all;

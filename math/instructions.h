@@ -10,8 +10,9 @@ namespace tress {
 #define TRESS_FLATTEN [[gnu::flatten]]
 #endif
 
-/// Sets of vector instructions. A program is compiled for the first, which it needs to
-/// run at all; kernels use another set where the machine has that set.
+/// Sets of vector instructions. A program is compiled for the first, `base`, which it
+/// needs to run at all; kernels use another set, `avx512`, where the machine has that
+/// set.
 enum class Instructions { base, avx512 };
 
 /// Whether this machine and this program have them.

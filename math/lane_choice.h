@@ -8,9 +8,11 @@
 /// with NaN fail.
 namespace tress {
 
+/// Returns `yes` where x < y, else `no`; `no` with a NaN.
 inline double where_less(double x, double y, double yes, double no) {
   return x < y ? yes : no;
 }
+/// Returns, lane by lane, `yes` where x < y, else `no`; `no` with a NaN.
 template <class Number, int width>
 PackOf<Number, width> where_less(const PackOf<Number, width>& x,
                                  const PackOf<Number, width>& y,
@@ -21,6 +23,7 @@ PackOf<Number, width> where_less(const PackOf<Number, width>& x,
 
 /// Whether x < y in some lane.
 inline bool any_less(double x, double y) { return x < y; }
+/// Returns true if x < y in some lane.
 template <class Number, int width>
 bool any_less(const PackOf<Number, width>& x, const PackOf<Number, width>& y) {
   const auto less = x.v < y.v;
@@ -45,15 +48,18 @@ template <class T>
 T larger(const T& x, const T& y) {
   return where_less(x, y, y, x);
 }
+/// Returns the smaller one, lane by lane; y with a NaN.
 template <class T>
 T smaller(const T& x, const T& y) {
   return where_less(y, x, y, x);
 }
+/// Returns |x|, lane by lane.
 template <class T>
 T magnitude(const T& x) {
   return where_less(x, T(0), -x, x);
 }
 
+/// Returns the square root.
 inline double square_root(double x) { return std::sqrt(x); }
 /// One instruction in sources that are compiled without errno for functions of math.
 template <class Number, int width>

@@ -27,9 +27,10 @@ PackOf<Number, width> inverse_sqrt(const PackOf<Number, width>& x) {
   return y;
 }
 
+/// Sine and cosine of one angle.
 template <class T>
 struct SineCosine {
-  T sine, cosine;
+  T sine, cosine;  // the two values
 };
 
 /// Within 2^-51 (2^-22 in single precision) for |x| <= 1e4: the remainder r after
@@ -120,6 +121,7 @@ class ArcTangent {
   }
 
  public:
+  /// Returns the angle of (x, y) from the x axis, rad.
   static T of(const T& y, const T& x) {
     // The same operations and comparison as above for lanes that are as near to the axis.
     const T reach = T(0.41421356237309503) * x;
@@ -130,6 +132,7 @@ class ArcTangent {
   }
 };
 
+/// Returns the angle of (x, y) from the x axis (rad), lane by lane, as ArcTangent.
 template <class Number, int width>
 PackOf<Number, width> arc_tangent(const PackOf<Number, width>& y,
                                   const PackOf<Number, width>& x) {

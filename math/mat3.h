@@ -8,7 +8,7 @@ namespace tress {
 /// A 3x3 matrix over any scalar, stored by rows.
 template <class T>
 struct Mat3Of {
-  Vec3<T> r0, r1, r2;
+  Vec3<T> r0, r1, r2;  // rows
 
   friend constexpr Mat3Of operator+(const Mat3Of& a, const Mat3Of& b) {
     return {a.r0 + b.r0, a.r1 + b.r1, a.r2 + b.r2};
@@ -30,13 +30,17 @@ struct Mat3Of {
     return {a.r0 * b, a.r1 * b, a.r2 * b};
   }
 };
+/// Matrix in double precision.
 using Mat3 = Mat3Of<double>;
 
+/// Returns the diagonal matrix of these entries.
 constexpr Mat3 diagonal(const Vec& d) { return {{d.x, 0, 0}, {0, d.y, 0}, {0, 0, d.z}}; }
+/// Returns the identity matrix.
 template <class T = double>
 constexpr Mat3Of<T> identity() {
   return {{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}};
 }
+/// Returns the sum of the diagonal entries.
 template <class T>
 constexpr T trace(const Mat3Of<T>& a) {
   return a.r0.x + a.r1.y + a.r2.z;

@@ -8,14 +8,18 @@ namespace tress {
 /// loops have fixed bounds and are unrolled.
 template <class T>
 struct Matrix3 {
+  /// Type of rows and columns.
   using Vec = Vec3<T>;
 
-  Vec row[3];
+  Vec row[3];  // rows
 
+  /// Makes the matrix with these columns.
   static Matrix3 columns(const Vec& a, const Vec& b, const Vec& c) {
     return {{{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}}};
   }
+  /// Returns the transpose.
   Matrix3 transposed() const { return columns(row[0], row[1], row[2]); }
+  /// Returns column k, 0 to 2.
   Vec column(int k) const {
     if (k == 0) return {row[0].x, row[1].x, row[2].x};
     if (k == 1) return {row[0].y, row[1].y, row[2].y};
@@ -72,11 +76,13 @@ Matrix3<T> inverse(const Matrix3<T>& m) {
   return (T(1) / dot(m.row[0], x)) * Matrix3<T>::columns(x, y, z);
 }
 
+/// Symmetric 3x3 matrix over any scalar, by its upper triangle.
 template <class T>
 struct Symmetric3 {
+  /// Type of the vectors that it multiplies.
   using Vec = Vec3<T>;
 
-  T xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
+  T xx{}, yy{}, zz{}, xy{}, xz{}, yz{};  // entries of the upper triangle
 
   friend Matrix3<T> operator*(const Symmetric3& a, const Matrix3<T>& b) {
     return {{b.back({a.xx, a.xy, a.xz}), b.back({a.xy, a.yy, a.yz}),
@@ -109,6 +115,7 @@ Symmetric3<T> congruent(const Matrix3<T>& r, const Symmetric3<T>& a) {
   const auto by = [&](const Vec3<T>& row) { return a * row; };
   return upper(Matrix3<T>{{by(r.row[0]), by(r.row[1]), by(r.row[2])}}, r);
 }
+/// Returns all nine entries.
 template <class T>
 Matrix3<T> full(const Symmetric3<T>& a) {
   return {{{a.xx, a.xy, a.xz}, {a.xy, a.yy, a.yz}, {a.xz, a.yz, a.zz}}};

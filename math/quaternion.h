@@ -7,8 +7,8 @@ namespace tress {
 /// A quaternion w + v; with norm 1 it represents a rotation, the same for q and -q.
 template <class T>
 struct QuaternionOf {
-  T w{1};
-  Vec3<T> v{};
+  T w{1};       // scalar part
+  Vec3<T> v{};  // vector part
 
   friend QuaternionOf operator*(const QuaternionOf& p, const QuaternionOf& q) {
     return {p.w * q.w - dot(p.v, q.v), p.w * q.v + q.w * p.v + cross(p.v, q.v)};
@@ -16,11 +16,13 @@ struct QuaternionOf {
   friend QuaternionOf operator*(const T& s, const QuaternionOf& q) {
     return {s * q.w, s * q.v};
   }
+  /// Returns the scalar product of four numbers.
   friend T dot(const QuaternionOf& p, const QuaternionOf& q) {
     return p.w * q.w + dot(p.v, q.v);
   }
 };
 
+/// Quaternion in double precision.
 using Quaternion = QuaternionOf<double>;
 
 /// One of the two quaternions of a frame, of norm 1 to rounding.
@@ -62,11 +64,13 @@ Vec3<T> turn_between(const QuaternionOf<T>& p, const QuaternionOf<T>& q) {
   return T(2) * (p.w * q.v - q.w * p.v - cross(p.v, q.v));
 }
 
+/// Reads w and v from four numbers.
 template <class T>
 QuaternionOf<T> load_quaternion(const T* p) {
   return {p[0], load3(p + 1)};
 }
 
+/// Writes w and v as four numbers.
 template <class T>
 void store_quaternion(const QuaternionOf<T>& q, T* p) {
   p[0] = q.w;

@@ -10,14 +10,14 @@
 
 namespace tress::models {
 
-/// The roots that a model of a strand takes.
+/// Roots that a model of a strand takes: `clamped_or_free`, or only `clamped`.
 enum class Roots { clamped_or_free, clamped };
 
 /// One line of the list of models: what `--list` prints and how to make a model from its
 /// parameters. A model's file ends with a function `ModelEntry <id>_entry()`, which is
 /// listed in catalogue.cpp.
 struct ModelEntry {
-  std::string_view id;
+  std::string_view id;                    // id in scenes
   std::string_view summary;               // unknowns and variants, one line
   std::string_view source;                // author year, or test set
   std::span<const Parameter> parameters;  // its own options
@@ -32,11 +32,12 @@ struct ModelEntry {
   /// model has no batched form.
   std::unique_ptr<System> (*on_strands)(std::span<const Strand>, const Parameters&,
                                         std::vector<Effects>) = nullptr;
-  Roots roots = Roots::clamped_or_free;
+  Roots roots = Roots::clamped_or_free;  // roots that the model takes
   /// Errors fall with this power of the length of elements.
   int order = 2;
 };
 
+/// Function that makes a model on a strand.
 using OnStrand = std::unique_ptr<System>(const Strand&, const Parameters&, Effects);
 
 /// Makes a system on the strand that strand_parameters() describe.

@@ -21,18 +21,20 @@ namespace tress {
 /// only.
 class ComplianceForm {
  public:
-  static constexpr int most_rows = 5, most_coordinates = 12;
+  static constexpr int most_rows = 5, most_coordinates = 12;  // bounds for a block
 
+  /// Constant data of a block.
   struct Block {
     std::vector<int> coordinates;              // indices into q, ascending
     int rows = 0;                              // constraints
     std::array<double, most_rows> alpha{};     // >= 0
     std::array<double, most_rows> friction{};  // c >= 0
   };
+  /// Values of a block at a state.
   struct Value {
-    double c[most_rows];
-    double drift[most_rows];  // C_t
-    double gradient[most_rows][most_coordinates];
+    double c[most_rows];                           // constraints C_k, u
+    double drift[most_rows];                       // C_t
+    double gradient[most_rows][most_coordinates];  // G = dC/dq, by rows of C
   };
 
   virtual ~ComplianceForm() = default;
@@ -44,6 +46,7 @@ class ComplianceForm {
   /// Evaluates block k at x, the values of its coordinates.
   virtual void evaluate(double t, std::size_t k, In x, Value& value) noexcept = 0;
 
+  /// Second derivatives by the coordinates of a block.
   using Second = double[most_coordinates][most_coordinates];
   /// h += sum_r stress_r d^2 C_r/dx^2 of block k at x, a row of C each. False: the second
   /// derivatives are not known, h is as it was.
@@ -57,6 +60,7 @@ class ComplianceForm {
     std::vector<int> coordinates;  // that the energy of its blocks depends on, ascending
     std::size_t own = 0;           // place of its four among them
   };
+  /// Bound of the coordinates in Orientation::coordinates.
   static constexpr int most_oriented = 18;
   /// Ordered along the body; fixed for life. Empty: no coordinates are quaternions, or
   /// there is no closed form for them.

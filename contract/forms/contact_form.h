@@ -71,6 +71,7 @@ class ContactForm {
   virtual Complementarity* complementarity() { return nullptr; }
   /// The multipliers, of fixed number; 0 at first.
   virtual std::vector<double> multipliers() const = 0;
+  /// Sets the multipliers to those of an earlier call of multipliers().
   virtual void set_multipliers(In values) = 0;
   /// Returns the number of coordinates X; fixed for life.
   virtual std::size_t tracked() const = 0;

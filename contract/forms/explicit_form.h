@@ -9,6 +9,7 @@ namespace tress {
 class ExplicitForm {
  public:
   virtual ~ExplicitForm() = default;
+  /// Computes the accelerations a (n).
   virtual Status acceleration(double t, In q, In v, Out a) noexcept = 0;
 };
 

@@ -19,6 +19,7 @@ class History {
   /// All that accept() has changed since reset(). recall() restores it in an identically
   /// constructed system, which then continues as this one would.
   virtual std::vector<double> memory() const = 0;
+  /// Restores what memory() returned.
   virtual void recall(In memory) = 0;
 };
 

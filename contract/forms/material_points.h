@@ -12,6 +12,7 @@ namespace tress {
 class MaterialPoints {
  public:
   virtual ~MaterialPoints() = default;
+  /// Returns the number of points; fixed for life.
   virtual int count() const = 0;
   /// The point that point i is attached to, always an earlier one; -1: none.
   virtual int before(int i) const { return i - 1; }
@@ -42,9 +43,9 @@ class MaterialPoints {
   /// Point i as a mean of coordinates and a prescribed part,
   /// x_i = prescribed(t) + sum_k weight_k (q[c_k], q[c_k + 1], q[c_k + 2]).
   struct Mean {
-    int count = 0;
+    int count = 0;                    // number of terms of the sum
     std::array<int, 4> coordinate{};  // c_k
-    std::array<double, 4> weight{};
+    std::array<double, 4> weight{};   // weights of the terms
   };
   /// Fixed for life. Empty: points are not linear in the coordinates.
   virtual std::optional<Mean> mean(int /*point*/) { return {}; }

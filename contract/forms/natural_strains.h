@@ -20,6 +20,7 @@ class NaturalStrains {
   virtual ~NaturalStrains() = default;
   /// Empty if this system has none.
   virtual std::vector<double> natural() const = 0;
+  /// Sets the natural strains, in the order of natural().
   virtual void set_natural(In values) = 0;
   /// Positive, one for each.
   virtual std::vector<double> natural_stiffness() const = 0;

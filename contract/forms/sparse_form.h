@@ -10,6 +10,7 @@ class SparseForm {
  public:
   virtual ~SparseForm() = default;
   virtual const Pattern& pattern() const = 0;  // (n x n), fixed for the system's life
+  /// Evaluates S(w) at a state, the entries of pattern() in its order.
   virtual Status values(double t, In q, In v, In a, Weights w, Out s) noexcept = 0;
 };
 

@@ -14,6 +14,7 @@ namespace tress {
 class StressForm {
  public:
   virtual ~StressForm() = default;
+  /// State whose stresses the second-order terms use.
   enum class Stresses {
     held,      // those at the origin
     followed,  // with their change linear in that of q since: what a correction from the

@@ -3,9 +3,9 @@
 
     build.py [--check] [--out FOLDER]
 
-Writes FOLDER/html/index.html (default: build/docs). --check: warnings are errors, and every
-link of the built pages must lead somewhere. Exit codes: 0 done, 3 warnings or broken links,
-77 something that the build needs is not installed."""
+Writes FOLDER/html/index.html (default: build/docs). --check: warnings are errors, every link
+of the built pages must lead somewhere, and every public name of the C++ API must have a
+description (api_check.py). Exit codes: 0 done, 3 a check fails, 77 something that the build needs is not installed."""
 import argparse
 import importlib.util
 import os
@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import api_check  # noqa: E402
 import links  # noqa: E402
 from stage import Stage  # noqa: E402
 
@@ -68,7 +69,7 @@ def assets(static):
 
 def doxygen(out):
     """Writes Doxygen's XML of the public headers."""
-    folders = [ROOT / name for name in ("contract", "integrators", "models", "simulation")]
+    folders = [ROOT / name for name in ("contract", "integrators", "linear", "math", "models", "simulation")]
     xml = out / "doxygen/xml/index.xml"
     if not older(xml, HERE / "Doxyfile", HERE / "trailing_comments.sed", *folders):
         return
@@ -112,7 +113,7 @@ def make_accessible(html):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--check", action="store_true", help="warnings and broken links are errors")
+    options.add_argument("--check", action="store_true", help="warnings, broken links and undescribed names of the C++ API are errors")
     options.add_argument("--out", type=Path, default=ROOT / "build/docs", help="folder of the site")
     options = options.parse_args()
     absent = missing()
@@ -130,7 +131,10 @@ def main():
     for line in found + broken:
         print(f"docs: {line}", file=sys.stderr)
     print(f"docs: {count} pages, {len(found) + len(broken)} broken links: {out / 'html/index.html'}", file=sys.stderr)
-    return 3 if not good or (options.check and found + broken) else 0
+    good = good and not (options.check and found + broken)
+    if options.check:
+        good = api_check.report(out / "doxygen/xml") and good
+    return 0 if good else 3
 
 
 if __name__ == "__main__":

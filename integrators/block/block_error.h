@@ -13,6 +13,7 @@ namespace tress::integrators {
 template <class N>
 class BlockError {
  public:
+  /// Allocates for the lanes of a block, which must outlive it.
   explicit BlockError(const Block<N>& block);
 
   /// Returns the error size of `work` at the end of a step, per lane; NaN where an entry

@@ -17,17 +17,18 @@ namespace tress::integrators {
 ///
 /// a_0: the acceleration at t_n, a_1: that of the stage before.
 struct BlockStage {
-  double time = 1, gamma = 1;
-  std::array<double, 2> rate{}, drift{};
+  double time = 1, gamma = 1;  // c_i of the stage, and its diagonal coefficient
+  std::array<double, 2> rate{}, drift{};  // weights of a_0 and a_1 in v_bar and in u
 };
 
 /// Difference between the last stage's state and one of higher order from the same
 /// stages: h^2 sum drift[i] a_i in q, h sum rate[i] a_i in v. The difference falls as
 /// h^falls. The threshold of a step in the norm of BlockError is share tolerance^power.
 struct BlockEstimate {
-  std::array<double, 3> rate, drift;
-  double falls, share, power;
+  std::array<double, 3> rate, drift;  // weights of a_0, a_1 and a_2 in v and in q
+  double falls, share, power;         // order in h; numbers of the threshold
 
+  /// Returns the largest estimate that is accepted at a tolerance.
   double threshold(double tolerance) const { return share * std::pow(tolerance, power); }
 };
 
@@ -37,7 +38,7 @@ struct BlockEstimate {
 ///
 ///     q_n + h v,    v_n + h a
 struct BlockMethod {
-  std::span<const BlockStage> stages;
+  std::span<const BlockStage> stages;  // stages in order
   bool iterates;  // in every step; false: one correction solves a stage
   /// Number of first steps of a strand that differ from the following ones. They solve
   /// the first stage, which later steps take from the step before, or iterate where later
@@ -60,11 +61,12 @@ struct BlockMethod {
 
 /// Methods that blocks have, by the ids of their integrators.
 enum class HeadMethod {
-  linearly_implicit_euler,
-  linearly_implicit_midpoint,
-  backward_euler,
-  tr_bdf2
+  linearly_implicit_euler,     // order 1, one correction a step
+  linearly_implicit_midpoint,  // order 2, one correction a step
+  backward_euler,              // order 1
+  tr_bdf2                      // order 2, with an estimate of the error
 };
+/// Returns the stages of a method.
 BlockMethod block_method(HeadMethod method);
 
 /// The estimate of tr_bdf2, the method whose steps a tolerance chooses.

@@ -12,9 +12,9 @@ namespace tress::integrators {
 
 /// Limits of Newton's iteration: see Options.
 struct NewtonLimits {
-  double tolerance;
-  double left;  // see PlainCourse
-  int iterations;
+  double tolerance;  // bound of the last correction, as in Options::newton_tolerance
+  double left;       // see PlainCourse
+  int iterations;    // bound of the corrections, as in Options::newton_iterations
 };
 
 /// Receiver of the outcome of each strand's step.
@@ -23,6 +23,7 @@ class StepJudge {
   virtual ~StepJudge() = default;
   virtual void ended() = 0;  // BlockWork::end() has been called
   virtual void judged(int lane, std::size_t strand) = 0;  // that of a lane
+  /// Called for a strand whose step has no solution, at the stage where that was found.
   virtual void failed(std::size_t strand, std::size_t stage) = 0;
 };
 
@@ -38,16 +39,18 @@ class BlockSolver {
   /// `block` and `method` must outlive it.
   BlockSolver(Block<N>& block, const BlockMethod& method, const NewtonLimits& newton);
 
-  BlockWork<N> work;
+  BlockWork<N> work;  // Equations of the strands in lanes, and their state.
 
+  /// Strand that failed.
   struct Loss {
-    std::size_t strand;
-    std::string_view reason;
+    std::size_t strand;       // index of the strand
+    std::string_view reason;  // cause, for messages
   };
+  /// Data of a call of step().
   struct Step {
-    BlockStore<N>& strands;
-    TimeSpan span;
-    NewtonWork& done;
+    BlockStore<N>& strands;  // strands that are stepped
+    TimeSpan span;           // interval of time
+    NewtonWork& done;        // work done, to which the call adds
   };
 
   /// A step of the queue's strands that are not lost. Returns those that are from now on.
@@ -66,6 +69,7 @@ class BlockSolver {
   /// Length of a step in the block's units.
   double length(const TimeSpan& of) const { return of.length(1) / work_time_; }
 
+  /// Reason of a Loss: even the shortest steps have no solution.
   static constexpr std::string_view no_solution =
       "no solution for the step, nor for 64 parts of it";
 

@@ -12,8 +12,10 @@ namespace tress::integrators {
 
 /// Strands that wait for a lane: a range, or those of a list.
 struct LaneQueue {
-  std::size_t next, end;
+  std::size_t next, end;  // range of places in `list`, or of strands
+  /// Strands in order; null: the range counts strands.
   const std::vector<std::size_t>* list = nullptr;
+  /// Returns the strand that is next.
   std::size_t strand() const { return list == nullptr ? next : (*list)[next]; }
 };
 
@@ -22,6 +24,7 @@ struct LaneQueue {
 template <class N>
 class BlockStore {
  public:
+  /// Marks a lane without a strand.
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   using Home = std::vector<std::size_t>;  // the strand in each lane, or none
 
@@ -29,6 +32,7 @@ class BlockStore {
   BlockStore(std::unique_ptr<StrandMemory> memory, int lanes, std::size_t unknowns,
              const BlockMethod& method, bool controlled);
 
+  /// Allocates memory for a number of strands.
   void reserve(std::size_t strands);
   /// write(place, memory, q, v) of another strand, whose numbers are those of its block.
   template <class Write>
@@ -47,30 +51,43 @@ class BlockStore {
   void add(const BlockStore& others, std::size_t strand);
   /// Copies from a strand of `others` the data that steps change.
   void take(std::size_t strand, const BlockStore& others, std::size_t from);
+  /// Removes all strands.
   void clear();
 
+  /// Returns the number of strands.
   std::size_t size() const { return lost_.size(); }
+  /// Returns the number of blocks.
   std::size_t blocks() const { return memory_->blocks(); }
   /// Strands of a block.
   std::size_t of(std::size_t block) const {
     return std::min(width_, size() - width_ * block);
   }
+  /// Returns the size of all data, bytes.
   std::size_t bytes() const {
     return memory_->bytes() + blocks() * of_block_ * sizeof(N) + size() +
            lengths_.size() * sizeof(StepLength);
   }
 
+  /// Returns the block and lane of a strand.
   LanePlace place(std::size_t strand) const {
     return {strand / width_, static_cast<int>(strand % width_)};
   }
+  /// Returns the model's data of the strands.
   StrandMemory& memory() { return *memory_; }
+  /// Returns the model's data of the strands.
   const StrandMemory& memory() const { return *memory_; }
+  /// Returns the coordinates of a block.
   N* q(std::size_t block) { return &state_[of_block_ * block]; }
+  /// Returns the coordinates of a block.
   const N* q(std::size_t block) const { return &state_[of_block_ * block]; }
+  /// Returns the rates of a block.
   N* v(std::size_t block) { return q(block) + size_ * width_; }
+  /// Returns the rates of a block.
   const N* v(std::size_t block) const { return q(block) + size_ * width_; }
 
+  /// Returns true if the strand has failed.
   bool lost(std::size_t strand) const { return lost_[strand] != 0; }
+  /// Returns true if a strand of the block has failed.
   bool some_lost(std::size_t block) const;
   /// Marks a strand as failed: it rests from now on.
   void lose(std::size_t strand);
@@ -97,7 +114,9 @@ class BlockStore {
   std::size_t kept() const {
     return of_state_ + memory_->kept() + 1 + (controlled_ ? StepLength::kept : 0);
   }
+  /// Writes all numbers of a block that steps change, for checkpoints.
   void keep(std::size_t block, double* to) const;
+  /// Restores what keep() wrote.
   void recall(std::size_t block, const double* from);
 
   /// Takes the next strands that are neither lost nor among `but` (sorted) into free

@@ -8,8 +8,8 @@
 
 namespace tress::integrators {
 
-/// Whence Newton's iteration begins: from the guess, from zero acceleration, or from the
-/// acceleration that ends all motion.
+/// Start of Newton's iteration: the `guess`, `zero` acceleration, or the acceleration
+/// that ends all motion (`standstill`).
 enum class NewtonStart { guess, zero, standstill };
 
 /// The equations of a stage (BlockStage) of the strands in the lanes of a Block.
@@ -19,21 +19,24 @@ class BlockWork {
   /// `block` and `method` must outlive it.
   BlockWork(Block<N>& block, const BlockMethod& method);
 
+  /// Returns the equations of the block.
   Block<N>& block() { return block_; }
-  /// The strands: those in lanes, and the same with what a step has made of them.
-  static constexpr std::size_t now = 0, renewed = 1;
+  static constexpr std::size_t now = 0, renewed = 1;  // blocks of `strands`
+  /// The strands in lanes, and the same strands as a step has changed them.
   std::unique_ptr<StrandMemory> strands;
 
   // At t_n what is known of the strands, as far as the method keeps it: q, v, the
   // acceleration a_0 of the last step and the one before, a_1; the lengths of both steps,
   // 0: none. `after`: once the stage is solved.
-  LaneVector<N> state, after;
+  LaneVector<N> state, after;       // state at t_n, and after the step
   LaneVector<N> q_bar, q, v, step;  // q, v: at a
   LaneVector<N> size;               // of the step, per lane
-  Weights weights;
+  Weights weights;  // Weights of the unknowns in the equations of the stage.
 
+  /// Returns the number of lanes.
   int lanes() const { return lanes_; }
   std::size_t numbers() const { return numbers_; }  // of a vector: unknowns times lanes
+  /// Returns the accelerations, the unknowns of the stage.
   N* a() { return a_.data(); }
   /// Lengths of the last two steps, of the strands at `from`.
   N* lengths(LaneVector<N>& from) const { return from.data() + 4 * numbers_; }

@@ -26,10 +26,11 @@ class ControlledBlocks {
   ControlledBlocks(const Block<N>& block, const BlockMethod& method, double tolerance,
                    double least, BlockSolver<N>& solver);
 
+  /// Strand that failed.
   struct Loss {
-    std::size_t strand;
-    double at;  // the start of its step, as a part of the interval
-    std::string_view reason;
+    std::size_t strand;       // index of the strand
+    double at;                // the start of its step, as a part of the interval
+    std::string_view reason;  // cause, for messages
   };
 
   /// An interval of strands first to last - 1 that are not lost. Returns those that are

@@ -35,7 +35,9 @@ void for_lanes(std::size_t count, int lanes, Use use) {
   }
 }
 
+/// Returns true if the set contains the lane.
 inline bool has(Lanes set, int lane) { return (set >> lane & 1U) != 0; }
+/// Returns the set of the first `count` lanes.
 inline Lanes all_lanes(int count) {
   return count >= 32 ? ~Lanes{0} : (Lanes{1} << count) - 1;
 }

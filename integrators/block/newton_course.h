@@ -11,6 +11,7 @@
 
 namespace tress::integrators {
 
+/// Decision for a lane after a correction: `go_on`, `converged` or `failed`.
 enum class NewtonVerdict { go_on, converged, failed };
 
 /// Control of Newton's iterations of strands in lanes. Each lane is judged by the sizes
@@ -18,6 +19,7 @@ enum class NewtonVerdict { go_on, converged, failed };
 template <class N>
 class NewtonCourse {
  public:
+  /// Decisions for all lanes: in, those that iterate; out, what comes next.
   using Verdicts = std::span<NewtonVerdict>;
 
   virtual ~NewtonCourse() = default;
@@ -35,6 +37,7 @@ class SingleCourse final : public NewtonCourse<N> {
  public:
   bool whole() const override { return false; }  // there is none before
   void start(int /*lane*/, const BlockWork<N>& /*work*/) override {}
+  /// Takes one correction in each lane that iterates, and ends it.
   void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
 };
 
@@ -48,6 +51,7 @@ class PlainCourse final : public NewtonCourse<N> {
 
   bool whole() const override { return true; }
   void start(int lane, const BlockWork<N>& work) override;
+  /// Judges the last corrections and takes the next ones.
   void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
 
  private:
@@ -70,11 +74,13 @@ class PlainCourse final : public NewtonCourse<N> {
 template <class N>
 class DampedCourse final : public NewtonCourse<N> {
  public:
+  /// Takes at most damped_patience times `most_iterations` corrections.
   DampedCourse(double tolerance, int most_iterations)
       : tolerance_(tolerance), iterations_(damped_patience * most_iterations) {}
 
   bool whole() const override { return false; }
   void start(int lane, const BlockWork<N>& work) override;
+  /// Judges the last corrections and takes the next ones, damped.
   void go_on(BlockWork<N>& work, std::span<NewtonVerdict> all) override;
 
   long iterations = 0, lanes = 0;  // with kept matrices

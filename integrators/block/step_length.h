@@ -19,8 +19,11 @@ namespace tress::integrators {
 /// units.
 class StepLength {
  public:
+  /// Returns the length of the next step.
   double next() const { return std::min(next_, ceiling_); }
+  /// Returns true after begin(), accept() or reject() has set a length.
   bool begun() const { return next_ > 0; }
+  /// Starts with steps of h.
   void begin(double h) { next_ = h; }
 
   /// A step of h was taken with this estimate over its threshold, at most 1.
@@ -36,17 +39,20 @@ class StepLength {
     const double factor = factor_of(error, falls);
     next_ = (factor > step_factors::least ? factor : step_factors::least) * h;
   }
+  /// Shortens the next step after one of h without a solution, and sets the ceiling.
   void unsolved(double h) {
     next_ = step_factors::unsolved * h;
     ceiling_ = step_factors::unsolved_ceiling * h;
   }
 
-  static constexpr std::size_t kept = 2;
+  static constexpr std::size_t kept = 2;  // Number of entries that keep() writes.
+  /// Writes the state for checkpoints; returns the place behind it.
   double* keep(double* to) const {
     to[0] = next_;
     to[1] = ceiling_;
     return to + kept;
   }
+  /// Restores what keep() wrote; returns the place behind it.
   const double* recall(const double* from) {
     next_ = from[0];
     ceiling_ = from[1];

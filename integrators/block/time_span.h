@@ -9,6 +9,8 @@ struct TimeSpan {
   const TimeSpan* of = nullptr;  // of which this is a part, if it is one:
   double begin = 0, part = 1;    // from begin on, of its length
 
+  /// Returns a part of a span, which must outlive it: `part` of its length from `begin`
+  /// on.
   static TimeSpan part_of(const TimeSpan& whole, double begin, double part) {
     return {.of = &whole, .begin = begin, .part = part};
   }

@@ -49,9 +49,11 @@ class ErrorControlled : public Integrator, public Rewindable {
 
   /// One end of a step.
   struct State {
+    /// Allocates for n coordinates and m multipliers.
     State(std::size_t n, std::size_t m) : q(n), v(n), a(n), lambda(m) {}
-    double t = 0;
-    std::vector<double> q, v, a, lambda;
+    double t = 0;                 // time, s
+    std::vector<double> q, v, a;  // coordinates, rates, accelerations
+    std::vector<double> lambda;   // multipliers
   };
 
   /// Takes a trial step from `from` over h to `to`, with the estimated errors of q and v.

@@ -19,8 +19,10 @@ namespace tress::integrators {
 /// without length is measured by its coordinates and velocities alone.
 class ErrorNorm {
  public:
+  /// Uses the material points and scales of the system of `dynamics`.
   explicit ErrorNorm(Dynamics& dynamics);
 
+  /// Takes the length of the body from the state at the start of a run.
   void start(double t, In q);
 
   /// Returns the size of the error (dq, dv) of the state (q, v).

@@ -34,7 +34,9 @@ class ImpulseResponse {
   Status compliance(std::span<const int> points, std::vector<double>& blocks);
   /// The state after forces on those points (3 numbers each, N).
   Status respond(std::span<const int> points, In forces) noexcept;
+  /// Returns the coordinates after respond().
   In q() const { return q_; }
+  /// Returns the rates after respond().
   In v() const { return v_; }
 
  private:

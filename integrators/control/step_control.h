@@ -12,6 +12,7 @@ namespace tress::integrators {
 /// otherwise grow into the same failure again and again.
 class StepControl {
  public:
+  /// Controls an error that falls as h^k.
   explicit StepControl(int k) : k_(k) {}
 
   /// Begins with h (s); a step below `least` is too short.
@@ -19,6 +20,7 @@ class StepControl {
   /// Forgets the last estimate, for equations that have changed; the length remains.
   void forget() { before_ = 1; }
 
+  /// Length of a step to be tried.
   struct Trial {
     double h;    // s
     bool cut;    // shorter than what the control asked for
@@ -35,13 +37,15 @@ class StepControl {
   void unsolved(const Trial& failed, std::string_view cause);
   /// After a rejection: the next step is below `least`.
   bool too_short() const { return !(h_ >= least_); }
+  /// Returns the shortest length that is allowed, s.
   double least() const { return least_; }
 
   /// The shortest step that was accepted and not cut; h = 0: none.
   struct Shortest {
     double h = 0, at = 0;         // s
-    std::string_view cause = "";  // "start", "error" or that of unsolved()
+    std::string_view cause = "";  // cause: "start", "error" or that of unsolved()
   };
+  /// Returns the shortest step since start().
   const Shortest& shortest() const { return shortest_; }
 
  private:

@@ -13,6 +13,7 @@
 
 namespace tress::integrators {
 
+/// Converts a count to the type of sizes.
 inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 /// A system together with the form its constraints take, as one set of equations in the
@@ -29,11 +30,17 @@ inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
 /// linear/kkt.h. No call allocates after the first.
 class Dynamics {
  public:
+  /// Takes formulation, gains and linear solver from the options; the system must
+  /// outlive it.
   Dynamics(System& system, const Options& options);
 
+  /// Returns the number of coordinates.
   int n() const { return layout_.coordinates; }
+  /// Returns the number of constraints.
   int m() const { return layout_.constraints; }
+  /// Returns the system.
   System& system() { return system_; }
+  /// Returns the constraints; null if the system has none.
   ConstraintForm* constraints() { return constraints_; }
 
   /// Counts residuals, linearizations and solves; integrators add the rest.
@@ -49,7 +56,9 @@ class Dynamics {
   /// (r, c) -> (x, y): S x - G^T y = r and (dc) x = c, as linearize() left the matrix.
   Status solve(InOut r, InOut c) noexcept;
 
-  /// Whether directional() is called at a new state, or at that of its last call.
+  /// State at which directional() is called: a new one (`fresh`), or that of its last
+  /// call
+  /// (`kept`).
   enum class Base { fresh, kept };
 
   /// Computes the derivative of (r, c) along (dq, dv) at fixed a and lambda by a forward
@@ -94,7 +103,9 @@ class Dynamics {
 
   /// Typical sizes of the coordinates and velocities (System::scale), and of g.
   In q_typ() const { return q_typ_; }
+  /// Returns the typical sizes of the velocities.
   In v_typ() const { return v_typ_; }
+  /// Returns the typical sizes of the constraints, m.
   In g_typ() const { return g_typ_; }
 
  private:

@@ -9,6 +9,7 @@ namespace tress::integrators {
 /// One factorisation at the incoming q serves both, by simplified Newton iterations.
 class Projection {
  public:
+  /// Works on `dynamics`, which must outlive it.
   explicit Projection(Dynamics& dynamics);
 
   /// `retry` when the iteration does not reach the rounding level of g.
@@ -16,6 +17,7 @@ class Projection {
 
   /// The two parts of project() separately, with the factorisation held by `dynamics`.
   Status positions(double t, InOut q) noexcept;
+  /// Projects the velocities, with the factorisation of positions().
   Status velocities(double t, In q, InOut v) noexcept;
 
  private:

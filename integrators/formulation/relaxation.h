@@ -26,6 +26,7 @@ std::optional<std::vector<double>> diagonal_mass(System& system);
 /// section 5]
 class Relaxation {
  public:
+  /// Takes `tolerance` relative to the scales of g.
   Relaxation(System& system, double tolerance);
 
   /// `retry` when |g| over its scale does not reach the tolerance.

@@ -26,14 +26,15 @@ struct Augmentation {
   int sweeps;      // before multipliers are improved
 };
 
+/// Options of BlockDescent.
 struct DescentChoice {
-  int sweeps;
-  std::string sweep_order;
-  int block = 1;  // nodes solved together, 0: all
-  Curvature curvature = Curvature::exact;
+  int sweeps;               // sweeps per step
+  std::string sweep_order;  // order of the blocks in a sweep, as sweep_order_option
+  int block = 1;            // nodes solved together, 0: all
+  Curvature curvature = Curvature::exact;  // treatment of second derivatives
   double chebyshev =
       0;  // spectral radius for which sweeps are accelerated, 0: not at all
-  std::optional<Augmentation> augmentation = {};
+  std::optional<Augmentation> augmentation = {};  // multipliers; none: pure descent
   bool oriented = false;  // orientations by ComplianceForm::orient
 };
 
@@ -69,6 +70,7 @@ struct DescentChoice {
 /// omega) [Wang 2015]. Nothing allocates in run().
 class BlockDescent {
  public:
+  /// Works on the compliance form of a system, which must outlive it.
   BlockDescent(System& system, const DescentChoice& choice);
 
   /// The multipliers of a state that is not reached by run(): of its strains.

@@ -14,6 +14,7 @@ enum class Start {
   adaptive   // q + h v + h^2 s a, s in [0, 1] the part of a in the last step's motion
 };
 
+/// Option that selects Start.
 inline constexpr Parameter start_option{
     .name = "start",
     .help =
@@ -25,6 +26,7 @@ inline constexpr Parameter start_option{
 /// that are not of the compliance form are explicit, as in xpbd. [Chen et al. 2024]
 class DescentMethod final : public FixedStep {
  public:
+  /// Binds the method to a system with a compliance form.
   DescentMethod(System& system, const Options& options, const DescentChoice& choice,
                 Start start);
 

@@ -11,12 +11,14 @@
 
 namespace tress::integrators {
 
+/// Option for the number of sweeps.
 inline constexpr Parameter sweeps_option{.name = "sweeps",
                                          .help = "Gauss-Seidel sweeps per step",
                                          .number = 10,
                                          .min = 1,
                                          .max = 1e6,
                                          .whole = true};
+/// Option for the order of blocks in a sweep.
 inline constexpr Parameter sweep_order_option{.name = "sweep_order",
                                               .help = "order of the blocks in a sweep",
                                               .choices = "root_to_tip|bilateral"};

@@ -5,6 +5,7 @@
 
 namespace tress::integrators {
 
+/// Option for DescentChoice::block.
 inline constexpr Parameter block_option{
     .name = "block",
     .help =
@@ -14,12 +15,14 @@ inline constexpr Parameter block_option{
     .min = 0,
     .max = 1e6,
     .whole = true};
+/// Option for DescentChoice::curvature.
 inline constexpr Parameter curvature_option{
     .name = "second_derivatives",
     .help =
         "second derivatives of strains: exact where the matrix stays positive definite, "
         "bounded by the sums of their rows, or left out",
     .choices = "exact|majorised|none"};
+/// Option for DescentChoice::chebyshev.
 inline constexpr Parameter chebyshev_option{
     .name = "chebyshev",
     .help = "rate of sweeps for which they are accelerated, 0: they are not",
@@ -29,6 +32,7 @@ inline constexpr Parameter chebyshev_option{
 
 /// Returns the choice given by sweeps_option, sweep_order_option and the options above.
 DescentChoice descent_choice(const Parameters& chosen);
+/// Returns the choice given by start_option.
 Start start_choice(const Parameters& chosen);
 
 /// Whether a row has no compliance.

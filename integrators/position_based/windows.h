@@ -11,13 +11,13 @@ namespace tress::integrators {
 struct Window {
   /// A block of the form that touches the window.
   struct Part {
-    std::size_t block;
+    std::size_t block;    // index of the block
     std::vector<int> at;  // of each of its coordinates in the window, -1: it is held
   };
 
   std::vector<std::size_t> coordinates;  // indices into q
-  std::vector<Part> parts;
-  Skyline matrix, exact;  // of the profile that the parts give
+  std::vector<Part> parts;               // blocks that touch the window
+  Skyline matrix, exact;                 // of the profile that the parts give
 };
 
 /// Returns the nodes of a system of n coordinates, each as a list of coordinates. A node

@@ -19,6 +19,7 @@ namespace tress::integrators {
 /// methods.
 class ContactForces {
  public:
+  /// Works on `equations` and `contacts`, which must outlive it; `tolerance` in m/s.
   ContactForces(StageEquations& equations, ContactForm& contacts, double tolerance)
       : equations_(equations),
         contacts_(contacts),

@@ -14,6 +14,8 @@ namespace tress::integrators {
 /// points of the path. The most expensive way, and the last.
 class Continuation {
  public:
+  /// Works on `equations`, with `damped` for the first two points; both must outlive
+  /// it.
   Continuation(StageEquations& equations, Damped& damped)
       : equations_(equations),
         damped_(damped),

@@ -15,6 +15,7 @@ namespace tress::integrators {
 /// taken.
 class Damped {
  public:
+  /// Works on `equations`, which must outlive it.
   explicit Damped(StageEquations& equations)
       : equations_(equations), start_(equations.dynamics), step_(start_), next_(start_) {}
 

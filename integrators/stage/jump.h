@@ -16,6 +16,7 @@ namespace tress::integrators {
 /// jump, which happens again until the mean vanishes.
 class Jump {
  public:
+  /// Works on `equations`, which must outlive it.
   explicit Jump(StageEquations& equations)
       : equations_(equations),
         here_(equations.dynamics),

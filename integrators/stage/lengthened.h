@@ -15,8 +15,10 @@ namespace tress::integrators {
 /// with growth down to 1.05, so a step that can be solved takes about ten.
 class Lengthened {
  public:
+  /// Force-free motion of a part of the step.
   using Drift = StageEquations::Drift;
 
+  /// Works on `equations` with these methods, all of which must outlive it.
   Lengthened(StageEquations& equations, Damped& damped, Continuation& continuation)
       : equations_(equations),
         damped_(damped),

@@ -12,6 +12,7 @@ namespace tress::integrators {
 
 /// Convergence criteria of Newton's method, and reuse of its matrix.
 struct NewtonEnding {
+  /// Expected remaining error over newton_tolerance at which the iteration ends.
   double remaining = NewtonRules::margin;
   /// Reuses the matrix of earlier stages, improved by SecantUpdates, where it is the
   /// same. For smooth equations without multipliers. Only the matrix is reused: the rate
@@ -49,6 +50,8 @@ class Newton {
   Newton(StageEquations& equations, StressOrigin& stresses, Refresh refresh,
          const NewtonEnding& ending, bool contacts);
 
+  /// Solves the equations from a guess; x: the solution, or the last iterate with
+  /// `retry`.
   Status solve(const Unknowns& guess, Matrix matrix, Unknowns& x) noexcept;
   /// One correction from x by the matrix at acceleration a_matrix.
   Status single_step(In a_matrix, Unknowns& x) noexcept;

@@ -12,6 +12,7 @@ inline constexpr int most_grown = 2;
 /// Factor on the allowed number of corrections when they are damped, since these are
 /// smaller. A fraction of a correction below the shortest makes no progress.
 inline constexpr int damped_patience = 3;
+/// Shortest part of a damped correction that is tried.
 inline constexpr double shortest_damped = 1e-4;
 
 /// Whether a part of a correction of a size is good enough: the next one with the same
@@ -20,6 +21,7 @@ inline bool shrinks_enough(double next, double part, double size) {
   return next <= (1 - part / 4) * size;
 }
 
+/// Tolerances of Newton's method, and the decision after each correction.
 struct NewtonRules {
   double tolerance;  // of a correction
   double left;       // of the error, by the rate at which corrections shrink

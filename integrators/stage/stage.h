@@ -34,10 +34,14 @@ namespace tress::integrators {
 /// ContactForces then follows Jump.
 class Stage {
  public:
+  /// Convergence criteria.
   using Ending = NewtonEnding;
+  /// Reuse of the matrix.
   using Matrix = Newton::Matrix;
 
+  /// Works on `dynamics`, which must outlive it, with the default criteria.
   Stage(Dynamics& dynamics, const Options& options) : Stage(dynamics, options, {}) {}
+  /// Works on `dynamics`, which must outlive it.
   Stage(Dynamics& dynamics, const Options& options, Ending ending);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
@@ -65,11 +69,13 @@ class Stage {
   void places(double t, In q, In v, Out x) noexcept {
     if (contacts_ != nullptr) contacts_->places(t, q, v, x);
   }
+  /// Computes U at a state; leaves `u` where there is no exact contact.
   void slides(double t, In q, In v, Out u) noexcept {
     if (contacts_ != nullptr) contacts_->slides(t, q, v, u);
   }
 
   In q() const { return equations_.q(); }  // of the last call
+  /// Returns the rates of the last solution.
   In v() const { return equations_.v(); }
 
  private:

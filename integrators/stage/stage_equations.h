@@ -24,6 +24,7 @@ class StageEquations {
   /// 0. `own`: left = (1 - s) w.pos/w.vel, so that the part starts where the step does.
   enum class Drift { whole, own };
 
+  /// Allocates for a system, which must outlive it.
   StageEquations(Dynamics& system, const NewtonRules& endings, int most_iterations)
       : dynamics(system),
         rules(endings),
@@ -32,9 +33,9 @@ class StageEquations {
         q_(q_part_.size()),
         v_(q_part_.size()) {}
 
-  Dynamics& dynamics;
-  const NewtonRules rules;
-  const int iterations;  // of Newton's method
+  Dynamics& dynamics;       // system with the form of its constraints
+  const NewtonRules rules;  // tolerances of Newton's method
+  const int iterations;     // of Newton's method
 
   /// Poses the equations of a stage. The spans must last until the next call.
   void pose(double t, In q_bar, In v_bar, Weights w) noexcept {
@@ -42,7 +43,9 @@ class StageEquations {
     v_bar_ = v_bar;
     now_ = whole_;
   }
+  /// Selects the equations of the whole step.
   void take_whole() noexcept { now_ = whole_; }
+  /// Selects the equations of a part of the step, 0 to 1.
   void take_part(double part, Drift drift) noexcept {
     const Weights w = whole_.w;
     const double left = drift == Drift::own ? (1 - part) * w.pos / w.vel : 0;
@@ -59,10 +62,13 @@ class StageEquations {
   }
 
   // At q() and v(), those of x.
+  /// Evaluates F(x) at q() and v(), which must be those of x.
   Status residual(const Unknowns& x, Unknowns& f) noexcept {
     return dynamics.residual(now_.t, q_, v_, x.a, x.lambda, f.a, f.lambda);
   }
+  /// Builds the matrix at q() and v(), those of x.
   Status linearize(const Unknowns& x) noexcept { return linearize(x.a, x.lambda); }
+  /// Builds the matrix at q() and v() for these accelerations and multipliers.
   Status linearize(In a, In lambda) noexcept {
     return dynamics.linearize(now_.t, q_, v_, a, lambda, now_.w);
   }
@@ -79,15 +85,22 @@ class StageEquations {
 
   /// Largest change of q and v over System::scale, under the weights of now or others.
   double size_of(const Unknowns& step) const noexcept { return size_of(step, now_.w); }
+  /// Returns the largest change of q and v over System::scale under weights `w`.
   double size_of(const Unknowns& step, Weights w) const noexcept;
   /// Scalar product over System::scale.
   double dot(In x, In y) const noexcept;
 
+  /// Returns the coordinates at which the equations are evaluated.
   In q() const { return q_; }
+  /// Returns the rates at which the equations are evaluated.
   In v() const { return v_; }
+  /// Returns the rates of the stage without its acceleration.
   In v_bar() const { return v_bar_; }
+  /// Returns the time of the selected equations, s.
   double t() const { return now_.t; }
+  /// Returns the weights of the selected equations.
   Weights w() const { return now_.w; }
+  /// Returns the weights of the whole step.
   Weights whole_w() const { return whole_.w; }
   /// The position at the start of the whole step, from which v_bar leads to q_bar.
   void start(Out q) const noexcept {

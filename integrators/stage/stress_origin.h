@@ -14,11 +14,13 @@ namespace tress::integrators {
 /// effect.
 class StressOrigin {
  public:
+  /// Works on the system of `dynamics`, which must outlive it.
   explicit StressOrigin(Dynamics& dynamics)
       : form_(dynamics.system().stress_form()),
         q_left_(size(dynamics.n())),
         q_corrected_(q_left_) {}
 
+  /// Returns true if the system has a StressForm.
   bool exists() const { return form_ != nullptr; }
   /// The state from which the next solution goes on.
   void leave(double t, In q) noexcept {

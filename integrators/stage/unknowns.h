@@ -10,10 +10,11 @@ namespace tress::integrators {
 
 /// The unknowns of a stage, or a change of them: accelerations (n) and multipliers (m).
 struct Unknowns {
+  /// Allocates for a system; all zero.
   explicit Unknowns(const Dynamics& dynamics)
       : a(size(dynamics.n())), lambda(size(dynamics.m())) {}
 
-  std::vector<double> a, lambda;
+  std::vector<double> a, lambda;  // accelerations (n), multipliers (m)
 
   /// Becomes x + factor d; both may be this one.
   void become(const Unknowns& x, double factor, const Unknowns& d) noexcept {

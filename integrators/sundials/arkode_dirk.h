@@ -12,6 +12,7 @@ namespace tress::integrators {
 /// that order. Reynolds et al., ARKODE, ACM TOMS 49(2), 2023.
 class ArkodeDirk final : public Driver {
  public:
+  /// Binds the method to a system, which must outlive it.
   ArkodeDirk(System& system, const Options& options);
 
  private:

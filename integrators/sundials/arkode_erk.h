@@ -13,6 +13,7 @@ namespace tress::integrators {
 /// with one.
 class ArkodeErk final : public Driver {
  public:
+  /// Binds the method to a system, which must outlive it.
   ArkodeErk(System& system, const Options& options);
 
  private:

@@ -9,6 +9,7 @@ namespace tress::integrators {
 /// Hindmarsh et al., SUNDIALS, ACM TOMS 31(3), 2005. O(n) per step and order.
 class CvodeAdams final : public Cvode {
  public:
+  /// Binds the method to a system, which must outlive it.
   CvodeAdams(System& system, const Options& options);
 
  private:

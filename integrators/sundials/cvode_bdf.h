@@ -15,6 +15,7 @@ namespace tress::integrators {
 /// Hindmarsh et al., SUNDIALS, ACM TOMS 31(3), 2005.
 class CvodeBdf final : public Cvode {
  public:
+  /// Binds the method to a system, which must outlive it.
   CvodeBdf(System& system, const Options& options);
 
  private:

@@ -17,11 +17,13 @@ namespace tress::integrators {
 /// Without constraints F consists of the first two rows only.
 class DaeForm {
  public:
+  /// Takes formulation and gains from the options; the system must outlive it.
   DaeForm(System& system, const Options& options);
 
   /// Number of unknowns that follow q and v.
   static int multipliers(System& system, Formulation formulation);
 
+  /// Evaluates F at y and y'.
   Status residual(double t, In y, In y_dot, Out f) noexcept;
 
   /// Fills lambda, mu = 0 and y' = (v, a, 0) so that F = 0 when (q, v) satisfies g = 0
@@ -36,15 +38,16 @@ class DaeForm {
   /// 1 for differential unknowns (q and v), 0 for multipliers.
   void differential(Out id) const;
 
-  Dynamics dynamics;
-  SparseForm* const sparse;  // null without constraints
-  const Formulation formulation;
-  const std::size_t n, m;
+  Dynamics dynamics;              // system with the form of its constraints
+  SparseForm* const sparse;       // null without constraints
+  const Formulation formulation;  // form of the constraints
+  const std::size_t n, m;         // numbers of coordinates and constraints
 
   /// The parts of y, y' or a direction.
   struct Parts {
-    In q, v, lambda, mu;
+    In q, v, lambda, mu;  // q (n), v (n), lambda (m), mu (m; GGL only)
   };
+  /// Returns the parts of a vector of unknowns.
   Parts parts(In y) const noexcept;
 
  private:

@@ -20,6 +20,7 @@ class DaeNewton : public NewtonMatrix {
 ///     S z = b_2 - D r,   w = (1, 1/cj, 1/cj^2),   D along dq = b_1 / cj.
 class EliminatedNewton final : public DaeNewton {
  public:
+  /// Works on `form`, which must outlive it.
   explicit EliminatedNewton(DaeForm& form);
   Status factor(double t, In y, In y_dot, double cj) noexcept override;
   Status solve(InOut b) noexcept override;
@@ -49,6 +50,7 @@ class EliminatedNewton final : public DaeNewton {
 /// Bauchau, Cardona, SIAM J. Sci. Comput. 29 (2007) 397] scales index 3 in the same way.
 class AssembledNewton final : public DaeNewton {
  public:
+  /// Works on `form`, which must outlive it, with the linear solver of the options.
   AssembledNewton(DaeForm& form, const Options& options);
   Status factor(double t, In y, In y_dot, double cj) noexcept override;
   Status solve(InOut b) noexcept override;

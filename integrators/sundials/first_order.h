@@ -22,8 +22,11 @@ namespace tress::integrators {
 /// M^-1 is ever formed.
 class FirstOrder {
  public:
+  /// Takes formulation, solver and tolerances from the options; the system must outlive
+  /// it.
   FirstOrder(System& system, const Options& options);
 
+  /// Evaluates y' = f(t, y).
   Status rate(double t, In y, Out y_dot) noexcept;
 
   /// y: guess in, solution of y = known + gamma f(t, y) out.
@@ -35,9 +38,12 @@ class FirstOrder {
 
   /// Whether the model has returned `fatal` since begin().
   bool gave_up() const { return gave_up_; }
+  /// Forgets an earlier `fatal`.
   void begin() { gave_up_ = false; }
 
+  /// Returns the work of all evaluations.
   const Stats& work() const { return rates_.stats; }
+  /// Returns the system with the form of its constraints.
   Dynamics& rates() { return rates_; }
 
   /// CVRhsFn and ARKRhsFn; user data: a FirstOrder.

@@ -19,6 +19,7 @@ namespace tress::integrators {
 /// Solution of Initial-Value Problems in DAEs, SIAM 1996, pp. 146-147.
 class Ida final : public Driver {
  public:
+  /// Binds the method to a system, which must outlive it.
   Ida(System& system, const Options& options);
 
  private:

@@ -8,9 +8,12 @@ namespace tress::integrators {
 /// iteration to it.
 class ImplicitAdapter {
  public:
+  /// Solves `equations`, which must outlive it.
   ImplicitAdapter(const SundialsContext& context, FirstOrder& equations);
 
+  /// Becomes the nonlinear solver of this CVODE.
   void attach(const CvodeMemory& memory);
+  /// Becomes the nonlinear solver of this ARKStep.
   void attach(const ArkstepMemory& memory);
 
  private:

@@ -22,8 +22,10 @@ class NewtonMatrix {
 /// the rescaling of corrections when cj has changed since.
 class LinearAdapter {
  public:
+  /// Solves with `newton`, which must outlive it.
   LinearAdapter(const SundialsContext& context, NewtonMatrix& newton);
 
+  /// Becomes the linear solver of this IDA.
   void attach(const IdaMemory& memory) const;
 
  private:

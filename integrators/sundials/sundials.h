@@ -51,6 +51,7 @@ inline void require(int code, const char* call) {
                            std::to_string(code));
 }
 
+/// Returns the pointer; throws std::runtime_error naming `call` if it is null.
 template <class Pointer>
 Pointer require(Pointer made, const char* call) {
   if (made == nullptr) throw std::runtime_error(std::string("SUNDIALS failed: ") + call);
@@ -61,9 +62,12 @@ Pointer require(Pointer made, const char* call) {
 /// the counters show the same.
 class SundialsMessages {
  public:
+  /// Returns the last error; empty if there was none.
   const char* last() const { return text_.data(); }
+  /// Forgets the last error.
   void clear() noexcept { text_[0] = '\0'; }
 
+  /// Keeps an error.
   void keep(const char* message) noexcept {
     std::strncpy(text_.data(), message == nullptr ? "" : message, text_.size() - 1);
   }
@@ -74,6 +78,7 @@ class SundialsMessages {
     if (code < 0) static_cast<SundialsMessages*>(self)->keep(message);
   }
 #else
+  /// Handler for SUNDIALS before 7; `self`: a SundialsMessages.
   static void receive(int code, const char*, const char*, char* message,
                       void* self) noexcept {
     if (code < 0) static_cast<SundialsMessages*>(self)->keep(message);
@@ -87,6 +92,7 @@ class SundialsMessages {
 /// One per integrator: contexts are not shared between threads. Must outlive its users.
 class SundialsContext {
  public:
+  /// Creates a context that keeps its errors in `messages`.
   SundialsContext() {
 #if SUNDIALS_VERSION_MAJOR >= 7
     require(-std::abs(SUNContext_Create(SUN_COMM_NULL, &context_)), "SUNContext_Create");
@@ -99,9 +105,10 @@ class SundialsContext {
   ~SundialsContext() { SUNContext_Free(&context_); }
   SundialsContext(const SundialsContext&) = delete;
   SundialsContext& operator=(const SundialsContext&) = delete;
+  /// Returns SUNDIALS' handle.
   SUNContext handle() const { return context_; }
 
-  SundialsMessages messages;
+  SundialsMessages messages;  // errors of this context
 
  private:
   SUNContext context_ = nullptr;
@@ -110,12 +117,16 @@ class SundialsContext {
 /// Memory owned by this class, with an N_Vector as a view.
 class SundialsVector {
  public:
+  /// Allocates `length` numbers.
   SundialsVector(const SundialsContext& context, int length)
       : values_(static_cast<std::size_t>(length)),
         handle_(require(N_VMake_Serial(length, values_.data(), context.handle()),
                         "N_VMake_Serial")) {}
+  /// Returns SUNDIALS' handle, a view of values().
   N_Vector handle() const { return handle_.get(); }
+  /// Returns the numbers.
   Out values() { return values_; }
+  /// Returns the numbers.
   In values() const { return values_; }
 
  private:
@@ -126,22 +137,32 @@ class SundialsVector {
   std::unique_ptr<std::remove_pointer_t<N_Vector>, Destroy> handle_;
 };
 
+/// Returns the numbers of a serial N_Vector.
 inline Out entries(N_Vector v) noexcept {
   return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))};
 }
 
+/// Deleter for SUNDIALS' memory.
 template <void (*Free)(void**)>
 struct FreeSundials {
+  /// Frees the memory.
   void operator()(void* memory) const { Free(&memory); }
 };
+/// Memory of CVODE.
 using CvodeMemory = std::unique_ptr<void, FreeSundials<CVodeFree>>;
+/// Memory of IDA.
 using IdaMemory = std::unique_ptr<void, FreeSundials<IDAFree>>;
+/// Memory of ARKStep.
 using ArkstepMemory = std::unique_ptr<void, FreeSundials<ARKStepFree>>;
+/// Memory of ERKStep.
 using ErkstepMemory = std::unique_ptr<void, FreeSundials<ERKStepFree>>;
 
+/// Deleter for SUNDIALS' nonlinear solvers.
 struct FreeNonlinearSolver {
+  /// Frees the solver.
   void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
 };
+/// Nonlinear solver of SUNDIALS.
 using NonlinearSolver =
     std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, FreeNonlinearSolver>;
 
@@ -155,12 +176,15 @@ int send_messages(const Memory&, SundialsMessages&) {
 inline int send_messages(const CvodeMemory& memory, SundialsMessages& messages) {
   return CVodeSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
 }
+/// Sends the errors of IDA to `messages`.
 inline int send_messages(const IdaMemory& memory, SundialsMessages& messages) {
   return IDASetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
 }
+/// Sends the errors of ARKStep to `messages`.
 inline int send_messages(const ArkstepMemory& memory, SundialsMessages& messages) {
   return ARKStepSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
 }
+/// Sends the errors of ERKStep to `messages`.
 inline int send_messages(const ErkstepMemory& memory, SundialsMessages& messages) {
   return ERKStepSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
 }

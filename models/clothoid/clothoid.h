@@ -26,23 +26,31 @@ namespace tress::models {
 template <class T, int modes>
 class ClothoidOf {
  public:
+  /// scalar: a number, or a pack of lanes.
   using Real = T;
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Frame of these scalars.
   using Frame = FrameOf<T>;
+  /// Strain of an element.
   using Strain = LinearStrainOf<T>;
+  /// Quadrature rule of the element.
   using Rule = Collocation<T>;
+  /// Functions of arc length for each strain: constant and linear.
   static constexpr int functions = 2;
 
   /// A block of points, or the tip: negative.
   template <class P>
   struct At {
-    int block = -1;
+    int block = -1;  // index of the block
   };
 
+  /// Values along the element, with places as arguments.
   struct Along : AlongOf<T> {
     using AlongOf<T>::AlongOf;
     Along() = default;
     Along(const AlongOf<T>& values) : AlongOf<T>(values) {}  // NOLINT
+    /// Returns the value at a place.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       if constexpr (std::same_as<P, T>) {
@@ -57,14 +65,18 @@ class ClothoidOf {
   };
   /// Value at the tip only.
   struct AtTip {
-    Vec value;
+    Vec value;  // value at the tip
+    /// Returns the value.
     const Vec& at(const At<T>&) const { return value; }
   };
 
-  static constexpr int dofs = functions * modes;
+  static constexpr int dofs = functions * modes;  // number of unknowns
+  /// Values for each unknown.
   using Directions = std::array<Along, dofs>;
 
   ClothoidOf() = default;
+  /// Integrates along an element of this Darboux vector and length, with the points of
+  /// `rule`.
   ClothoidOf(const Strain& kappa, const T& length, const Rule& rule)
       : rule_(&rule), length_(length), t_(blocks()), n_(blocks()), b_(blocks()) {
     tip_ = TurningOf<T>(kappa, length)
@@ -80,23 +92,32 @@ class ClothoidOf {
     }
   }
 
+  /// Returns the place of a block of points.
   At<Pack> point(int block) const { return {block}; }
+  /// Returns the place of the tip.
   At<T> tip() const { return {}; }
 
+  /// Returns W y along the element.
   Along W(const Strain& y) const { return combined(turn_, y); }
+  /// Returns the derivative of W y along x, at the tip.
   AtTip dW(const Strain& x, const Strain& y) const {
     return {to_tip(product(W(x), turned(y)))};
   }
+  /// Returns the second derivative of W y along x1 and x2, at the tip.
   AtTip d2W(const Strain& x1, const Strain& x2, const Strain& y) const {
     return {to_tip(turning_slope(x1, x2, y))};
   }
 
   /// W e_k and P'[e_k] of unknown k.
   const Along& turn_of(int k) const { return turn_[at(k)]; }
+  /// Returns P'[e_k] of unknown k.
   const Along& slope_of(int k) const { return slope_[at(k)]; }
 
+  /// Returns P along the element.
   const Along& position() const { return position_; }
+  /// Returns P'[x] along the element.
   Along first(const Strain& x) const { return combined(slope_, x); }
+  /// Returns the derivative of P'[x1] along x2.
   Along second(const Strain& x1, const Strain& x2) const {
     const Along w1 = W(x1), w2 = W(x2), d = D(w2, x1);
     return integral([&](int b) {
@@ -170,6 +191,7 @@ class ClothoidOf {
   Vec3<Pack> rotated(const At<Pack>& p, const Vec3<double>& y) const {
     return Pack(y.x) * t_[p.block] + Pack(y.y) * n_[p.block] + Pack(y.z) * b_[p.block];
   }
+  /// Returns the frame at the tip in the components of the start.
   const Frame& rotation(const At<T>&) const { return tip_; }
   /// (dW[x])^T y at the tip.
   Strain dW_transposed(const At<T>&, const Strain& x, const Vec& y) const {

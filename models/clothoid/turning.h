@@ -20,8 +20,10 @@ namespace tress::models {
 template <class Real>
 class TurningOf {
  public:
+  /// Quaternion of these scalars.
   using Quaternion = QuaternionOf<Real>;
 
+  /// Prepares the series of an element.
   TurningOf(const LinearStrainOf<Real>& kappa, const Real& length)
       : a_((length / Real(4)) * kappa.mean), b_((length / Real(4)) * kappa.half) {
     const Real square = dot(a_, a_) + dot(b_, b_);

@@ -13,13 +13,15 @@ namespace tress::models {
 /// which is theta - theta0 (rad) to first order for any lengths. Regular for theta in
 /// (0, pi); at 0 and pi no single equation is regular.
 struct Angle {
-  static constexpr int node_count = 3;
-  static constexpr int inputs = 9;
-  static constexpr int rows = 1;
-  static constexpr bool linear = false;
-  double cosine, sine;  // of theta0
+  static constexpr int node_count = 3;   // number of nodes
+  static constexpr int inputs = 9;       // length of z
+  static constexpr int rows = 1;         // length of C
+  static constexpr bool linear = false;  // whether H = 0
+  double cosine, sine;                   // of theta0
+  /// Returns the typical size of C in a scene of the given extent (m).
   double scale(double) const { return 1; }
 
+  /// Evaluates C at z.
   template <class T>
   void value(const T* z, T* c) const {
     using std::sqrt;
@@ -27,19 +29,23 @@ struct Angle {
     const Vec3<T> v = load3(z + 6) - load3(z + 3);
     c[0] = (T(cosine) - dot(u, v) / sqrt(dot(u, u) * dot(v, v))) / T(sine);
   }
+  /// Evaluates the first derivatives of C, row by row.
   void gradient(const double* z, double* g) const;
+  /// Evaluates the second derivatives of w . C, row by row.
   void hessian(const double* z, const double* w, double* h) const;
 };
 
 /// Three distances at once (3 rows, m): edges ab, bc, ca.
 struct Triangle {
-  static constexpr int node_count = 3;
-  static constexpr int inputs = 9;
-  static constexpr int rows = 3;
-  static constexpr bool linear = false;
-  std::array<double, 3> length;  // m
+  static constexpr int node_count = 3;   // number of nodes
+  static constexpr int inputs = 9;       // length of z
+  static constexpr int rows = 3;         // length of C
+  static constexpr bool linear = false;  // whether H = 0
+  std::array<double, 3> length;          // m
+  /// Returns the typical size of C in a scene of the given extent (m).
   double scale(double) const { return length[0]; }
 
+  /// Evaluates C at z.
   template <class T>
   void value(const T* z, T* c) const {
     for (int k = 0; k < 3; ++k) {
@@ -48,7 +54,9 @@ struct Triangle {
       FixedDistance{length[static_cast<std::size_t>(k)]}.value(d, c + k);
     }
   }
+  /// Evaluates the first derivatives of C, row by row.
   void gradient(const double* z, double* g) const;
+  /// Evaluates the second derivatives of w . C, row by row.
   void hessian(const double* z, const double* w, double* h) const;
 };
 

@@ -34,16 +34,17 @@ class BeadOnWire final : public System,
                          private Energetics,
                          private MaterialPoints {
  public:
+  /// Bead, wire and start.
   struct Setup {
-    std::shared_ptr<const Curve> curve;
-    double mass = 1;           // kg, > 0
-    double length = 1;         // m, strand length on which drag acts
-    double start = 0;          // s at t = 0
-    double start_speed = 0;    // m/s along increasing s
-    double extent = 1;         // m, typical size
-    double typical_speed = 1;  // m/s
-    bool uniform = false;      // |c'| is the same everywhere: M is constant
-    Jacobian jacobian = Jacobian::exact;
+    std::shared_ptr<const Curve> curve;   // shape of the wire
+    double mass = 1;                      // kg, > 0
+    double length = 1;                    // m, strand length on which drag acts
+    double start = 0;                     // s at t = 0
+    double start_speed = 0;               // m/s along increasing s
+    double extent = 1;                    // m, typical size
+    double typical_speed = 1;             // m/s
+    bool uniform = false;                 // |c'| is the same everywhere: M is constant
+    Jacobian jacobian = Jacobian::exact;  // terms of the Jacobian
   };
 
   /// Throws InputError if mass <= 0 or c' = 0 at the start.
@@ -84,7 +85,9 @@ class BeadOnWire final : public System,
   double tangent_ = 0;
 };
 
+/// Returns the parameters of the model.
 std::span<const Parameter> bead_on_wire_parameters();
+/// Makes the model.
 std::unique_ptr<System> make_bead_on_wire(const Parameters& parameters);
 
 }  // namespace tress::models

@@ -11,15 +11,19 @@ namespace tress::models {
 /// Object to which a constraint is attached: a particle (3 coordinates), a massless
 /// parameter (1 coordinate) or an anchor (3 numbers prescribed in time, no coordinates).
 struct Node {
+  /// Kinds of nodes, as above: `particle`, `parameter` or `anchor`.
   enum class Kind { particle, parameter, anchor };
-  Kind kind = Kind::particle;
-  int index = 0;
+  Kind kind = Kind::particle;  // what the node is
+  int index = 0;               // index among the nodes of its kind
 
+  /// Returns the number of its coordinates, or of its prescribed numbers.
   int size() const { return kind == Kind::parameter ? 1 : 3; }
   friend bool operator==(const Node&, const Node&) = default;
 };
 
+/// Bound of Constraint::inputs().
 inline constexpr int max_constraint_inputs = 9;
+/// Bound of Constraint::rows().
 inline constexpr int max_constraint_rows = 3;
 
 /// One modular, local constraint C(z) = 0; z holds the coordinates of its nodes, in their
@@ -34,6 +38,7 @@ inline constexpr int max_constraint_rows = 3;
 class Constraint {
  public:
   virtual ~Constraint() = default;
+  /// Returns the nodes whose coordinates are z.
   virtual std::span<const Node> nodes() const = 0;
   virtual int inputs() const = 0;   // numbers in z
   virtual int rows() const = 0;     // 1 to 3
@@ -48,6 +53,7 @@ class Constraint {
   virtual void hessian(In z, In w, Out h) const noexcept = 0;
 };
 
+/// Constraints of a system.
 using Constraints = std::vector<std::unique_ptr<const Constraint>>;
 
 /// Constraint made from a kernel: a small struct with `node_count`, `inputs`, `rows`,
@@ -56,6 +62,7 @@ using Constraints = std::vector<std::unique_ptr<const Constraint>>;
 template <class Kernel>
 class Module final : public Constraint {
  public:
+  /// Attaches a kernel to nodes.
   Module(std::array<Node, Kernel::node_count> nodes, Kernel kernel)
       : nodes_(nodes), kernel_(std::move(kernel)) {
     static_assert(Kernel::inputs <= max_constraint_inputs);
@@ -83,21 +90,24 @@ class Module final : public Constraint {
 /// A two-point kernel made from a kernel of d = x - origin.
 template <class Inner>
 struct Difference {
-  static constexpr int node_count = 2;
-  static constexpr int inputs = 6;
-  static constexpr int rows = Inner::rows;
-  static constexpr bool linear = Inner::linear;
+  static constexpr int node_count = 2;           // number of nodes
+  static constexpr int inputs = 6;               // length of z
+  static constexpr int rows = Inner::rows;       // length of C
+  static constexpr bool linear = Inner::linear;  // whether H = 0
 
-  Inner inner;
+  Inner inner;  // kernel of the difference
 
+  /// Returns the typical size of C in a scene of the given extent (m).
   double scale(double extent) const { return inner.scale(extent); }
 
+  /// Evaluates C at z.
   template <class T>
   void value(const T* z, T* c) const {
     const T d[3] = {z[0] - z[3], z[1] - z[4], z[2] - z[5]};
     inner.value(d, c);
   }
 
+  /// Evaluates the first derivatives of C, row by row.
   void gradient(const double* z, double* g) const {
     const double d[3] = {z[0] - z[3], z[1] - z[4], z[2] - z[5]};
     double local[3 * rows];
@@ -110,6 +120,7 @@ struct Difference {
     }
   }
 
+  /// Evaluates the second derivatives of w . C, row by row.
   void hessian(const double* z, const double* w, double* h) const {
     const double d[3] = {z[0] - z[3], z[1] - z[4], z[2] - z[5]};
     double local[9];

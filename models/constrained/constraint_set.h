@@ -13,8 +13,8 @@ namespace tress::models {
 /// A point with prescribed position: fixed at x, or following `motion` (x is then
 /// unused).
 struct Anchor {
-  Vec x;
-  std::shared_ptr<const Curve> motion;
+  Vec x;                                // place of a fixed anchor, m
+  std::shared_ptr<const Curve> motion;  // motion over time; null: fixed
 };
 
 /// Assembles modules into g(t, q) = 0 with block-sparse G. Particle i has coordinates
@@ -28,6 +28,7 @@ class ConstraintSet final : public ConstraintForm {
   ConstraintSet(Constraints modules, std::vector<Anchor> anchors, int particles,
                 int parameters, double extent);
 
+  /// Returns the number of constraints.
   int rows() const { return gradient_.cols; }
 
   /// Adds every pair coupled by curvature to `columns` (one row list per column of S).

@@ -11,7 +11,7 @@ namespace tress::models {
 
 /// Position (m) and its first three derivatives with respect to the curve's parameter.
 struct CurvePoint {
-  Vec c, d1, d2, d3;
+  Vec c, d1, d2, d3;  // position and derivatives
 };
 
 /// A smooth curve in space. The parameter is any s for a wire, and the time (s) for the
@@ -19,6 +19,7 @@ struct CurvePoint {
 class Curve {
  public:
   virtual ~Curve() = default;
+  /// Evaluates the curve at s.
   virtual CurvePoint at(double s) const noexcept = 0;
 };
 
@@ -27,18 +28,22 @@ class Curve {
 /// circular motion; three give the trefoil knot.
 class FourierCurve final : public Curve {
  public:
+  /// Coefficients of one harmonic.
   struct Harmonic {
     Vec cosine, sine;  // m
   };
+  /// Parameters of the formula.
   struct Shape {
-    Vec origin, drift;  // m, m per radian
-    std::vector<Harmonic> harmonics;
-    double rate = 1;   // radians per unit of s
-    double phase = 0;  // rad
+    Vec origin, drift;                // m, m per radian
+    std::vector<Harmonic> harmonics;  // harmonics from k = 1 on
+    double rate = 1;                  // radians per unit of s
+    double phase = 0;                 // rad
   };
 
+  /// Makes a curve of this shape.
   explicit FourierCurve(Shape shape) : shape_(std::move(shape)) {}
 
+  /// Evaluates the position for any scalar.
   template <class T>
   Vec3<T> position(const T& s) const {
     using std::cos, std::sin;

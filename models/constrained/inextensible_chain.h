@@ -18,12 +18,14 @@ struct HangingShape {
   double spin = 0;        // rad/s, about the vertical through the origin
 };
 
+/// Parameter for HangingShape::drag.
 inline constexpr Parameter hanging_drag_parameter{
     .name = "drag_kg_m_s",
     .help = "air drag per length nu (kg/(m s))",
     .number = 0,
     .min = 0,
     .max = 1e6};
+/// Parameter for HangingShape::spin.
 inline constexpr Parameter hanging_spin_parameter{
     .name = "spin_rad_s",
     .help = "initial rotation about the vertical (rad/s)",
@@ -31,6 +33,7 @@ inline constexpr Parameter hanging_spin_parameter{
     .min = -1e6,
     .max = 1e6};
 
+/// Reads the data common to all structures.
 HangingShape hanging_shape(const Parameters& parameters);
 
 /// Hanging strand of n rigid massless links of length L/n with point masses m/n at their
@@ -41,8 +44,8 @@ HangingShape hanging_shape(const Parameters& parameters);
 /// particle is fixed at the origin: n particles, n + 3 rows. Both may spin about the
 /// vertical through the origin, a rigid and therefore consistent motion.
 struct ChainShape : HangingShape {
-  int links = 10;  // n: >= 1 open, >= 3 closed
-  bool closed = false;
+  int links = 10;       // n: >= 1 open, >= 3 closed
+  bool closed = false;  // whether the chain is a ring
 };
 
 /// Throws InputError on sizes out of range.
@@ -56,7 +59,9 @@ void add_gravity_and_drag(ParticleScene& scene, double gravity, double drag,
 /// Gives every particle the velocity of a rigid rotation about the z axis (rad/s).
 void spin_about_z(ParticleScene& scene, double spin);
 
+/// Returns the parameters of the model.
 std::span<const Parameter> inextensible_chain_parameters();
+/// Makes the model.
 std::unique_ptr<System> make_inextensible_chain(const Parameters& parameters);
 
 }  // namespace tress::models

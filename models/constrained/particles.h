@@ -31,25 +31,30 @@ namespace tress::models {
 /// Add particles and constraints in the order of their connection: see constraint_set.h.
 /// Modules: joints.h, on_curve.h, angles.h, or the caller's own.
 struct ParticleScene {
+  /// A particle and its start.
   struct Particle {
     double mass;    // kg, > 0
     Vec x, v;       // at t = 0, m and m/s
     double length;  // strand length carried, m, on which drag acts
   };
+  /// A massless parameter and its start.
   struct MasslessParameter {
     double s, rate;  // at t = 0
   };
 
+  /// Adds a particle and returns its node.
   Node add_particle(double mass, Vec x, Vec v = {}, double length = 0);
+  /// Adds a massless parameter and returns its node.
   Node add_parameter(double s, double rate = 0);
+  /// Adds a fixed anchor (m) and returns its node.
   Node add_anchor(Vec x);
   Node add_anchor(std::shared_ptr<const Curve> motion);  // time in s is its parameter
 
-  std::vector<Particle> particles;
-  std::vector<MasslessParameter> parameters;
-  std::vector<Anchor> anchors;
-  Constraints constraints;
-  Effects effects;
+  std::vector<Particle> particles;            // particles in order
+  std::vector<MasslessParameter> parameters;  // massless parameters in order
+  std::vector<Anchor> anchors;                // anchors in order
+  Constraints constraints;                    // constraints between them
+  Effects effects;                            // effects on the particles
   double typical_speed = 0;  // m/s; at least the fastest particle's; 0: extent per second
 };
 

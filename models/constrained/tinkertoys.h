@@ -27,14 +27,16 @@ enum class Structure { chain, ring, net, tree, truss };
 /// `length` is that of the chain, the ring's perimeter, the net's side, the tree's height
 /// or the truss; a net has no spin.
 struct ToyShape : HangingShape {
-  Structure structure = Structure::chain;
-  int size = 4;
+  Structure structure = Structure::chain;  // arrangement of the particles
+  int size = 4;                            // number of parts, by structure
 };
 
 /// Throws InputError on a size that the structure does not have.
 ParticleScene tinkertoys(const ToyShape& shape);
 
+/// Returns the parameters of the model.
 std::span<const Parameter> tinkertoys_parameters();
+/// Makes the model.
 std::unique_ptr<System> make_tinkertoys(const Parameters& parameters);
 
 }  // namespace tress::models

@@ -25,24 +25,28 @@ struct NormalContact {
   double damping = 0;    // c, s/m
   double offset = 0;     // radius of the strand, m
 
+  /// Returns the depth of the strand's surface in the body, m.
   double depth(const Distance& to) const { return offset - to.value; }
 
   /// Elastic load on a point in contact, d > 0; N/m.
   Vec elastic_load(const Distance& to) const {
     return (stiffness * depth(to)) * to.gradient;
   }
+  /// Returns the energy per length of a point in contact, J/m.
   double energy(const Distance& to) const {
     return stiffness / 2 * depth(to) * depth(to);
   }
 
+  /// Contact of a point at a state.
   template <class T>
   struct StateOf {
-    T depth, steepness;
-    Vec3<T> n;
-    T speed_away;  // u_n
-    T cushion, cushion_slope;
-    T load;  // N
+    T depth, steepness;        // d (m), |g|
+    Vec3<T> n;                 // normal
+    T speed_away;              // u_n
+    T cushion, cushion_slope;  // h and its derivative
+    T load;                    // N
 
+    /// Evaluates the law for a distance and a velocity.
     StateOf(const NormalContact& law, const DistanceOf<T>& to, const Vec3<T>& u)
         : depth(T(law.offset) - to.value),
           steepness(square_root(dot(to.gradient, to.gradient))),
@@ -55,6 +59,7 @@ struct NormalContact {
       cushion_slope = start;
       load = T(law.stiffness) * depth * steepness * cushion;
     }
+    /// Returns the projection onto the tangent plane.
     Mat3Of<T> across() const { return identity<T>() - outer(n, n); }
     /// dn/dx, with the second derivatives of phi.
     Mat3Of<T> n_by_x(const Mat3Of<T>& curvature) const {
@@ -66,6 +71,7 @@ struct NormalContact {
       return T(-1) * (outer(n, u * n_by_x) + speed_away * n_by_x);
     }
   };
+  /// Contact of one point.
   using State = StateOf<double>;
 
   /// dN/du_n
@@ -96,8 +102,9 @@ inline void check(const NormalContact& law, double friction) {
 /// df/dx at fixed u and df/du of a contact force.
 template <class T>
 struct ContactSlopesOf {
-  Mat3Of<T> by_x, by_u;
+  Mat3Of<T> by_x, by_u;  // derivatives by place and by velocity
 };
+/// Derivatives of one contact force.
 using ContactSlopes = ContactSlopesOf<double>;
 
 /// Compliant contact with regularised friction, per length of strand:
@@ -115,8 +122,10 @@ struct BodyContact {
   double slip = 1e-3;    // v, m/s, > 0
   double offset = 0;     // radius of the strand, m
 
+  /// Returns the law of the normal force.
   NormalContact normal() const { return {stiffness, damping, offset}; }
 
+  /// Returns the load on a point, N/m.
   template <class T>
   Vec3<T> load(const DistanceOf<T>& to, const Vec3<T>& u) const {
     const State<T> at(*this, to, u);

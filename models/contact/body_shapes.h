@@ -13,24 +13,28 @@
 /// doubles, or packs of one place a lane; a lane's result does not depend on the others.
 namespace tress::models {
 
+/// Signed distance to the surface, negative inside, and its gradient.
 template <class T>
 struct DistanceOf {
-  T value{};  // m
-  Vec3<T> gradient;
+  T value{};         // m
+  Vec3<T> gradient;  // derivative by the place, of length 1
 };
+/// Distance of one place.
 using Distance = DistanceOf<double>;
 
 /// Result of a search for the nearest point.
 template <class T>
 struct NearestOf {
-  DistanceOf<T> to;
-  T length{};  // of an ellipsoid, of y_i/a_i^2
+  DistanceOf<T> to;  // distance to the nearest point
+  T length{};        // of an ellipsoid, of y_i/a_i^2
 };
 
 /// Functions of all shapes that follow from nearest() and curvature(x, nearest(x)).
 template <class Shape>
 struct DistanceByNearest {
+  /// Returns the distance of a place, m.
   Distance distance(const Vec& x) const { return self().nearest(x).to; }
+  /// Returns the second derivatives of the distance at a place, 1/m.
   Mat3 curvature(const Vec& x) const { return self().curvature(x, self().nearest(x)); }
 
  private:
@@ -44,6 +48,7 @@ NearestOf<T> around_point(const Vec3<T>& arm, double radius) {
   const T by = T(1) / where_less(o, r, r, T(1));
   return {{r - T(radius), {by * arm.x, by * arm.y, where_less(o, r, by * arm.z, T(1))}}};
 }
+/// Returns the second derivatives of the distance to a ball of this radius.
 template <class T>
 Mat3Of<T> curvature_around_point(const NearestOf<T>& at, double radius) {
   const T r = at.to.value + T(radius), o(0);
@@ -53,26 +58,34 @@ Mat3Of<T> curvature_around_point(const NearestOf<T>& at, double radius) {
 
 /// Everything below z = 0 is inside.
 struct Plane : DistanceByNearest<Plane> {
+  /// Curvature at a place.
   using DistanceByNearest::curvature;
+  /// Finds the nearest point.
   template <class T>
   NearestOf<T> nearest(const Vec3<T>& x) const {
     return {{x.z, {T(0), T(0), T(1)}}};
   }
+  /// Returns 0: the plane is flat.
   template <class T>
   Mat3Of<T> curvature(const Vec3<T>&, const NearestOf<T>&) const {
     return {};
   }
 };
 
+/// All points within `radius` of the origin.
 struct Sphere : DistanceByNearest<Sphere> {
   double radius;  // m
 
+  /// Makes a sphere of this radius, m.
   explicit Sphere(double r) : radius(r) {}
+  /// Curvature at a place.
   using DistanceByNearest::curvature;
+  /// Finds the nearest point.
   template <class T>
   NearestOf<T> nearest(const Vec3<T>& x) const {
     return around_point(x, radius);
   }
+  /// Returns the second derivatives of the distance, 1/m.
   template <class T>
   Mat3Of<T> curvature(const Vec3<T>&, const NearestOf<T>& at) const {
     return curvature_around_point(at, radius);
@@ -84,8 +97,11 @@ struct Capsule : DistanceByNearest<Capsule> {
   double radius;       // m
   double half_length;  // m, without the caps
 
+  /// Makes a capsule of this radius and half length, m.
   Capsule(double r, double half) : radius(r), half_length(half) {}
+  /// Curvature at a place.
   using DistanceByNearest::curvature;
+  /// Finds the nearest point.
   template <class T>
   NearestOf<T> nearest(const Vec3<T>& x) const {
     // From the nearest point of the axis.
@@ -97,6 +113,7 @@ struct Capsule : DistanceByNearest<Capsule> {
     at.to.gradient.z = where_less(o, off, at.to.gradient.z, o);
     return at;
   }
+  /// Returns the second derivatives of the distance, 1/m.
   template <class T>
   Mat3Of<T> curvature(const Vec3<T>& x, const NearestOf<T>& at) const {
     Mat3Of<T> all = curvature_around_point(at, radius);
@@ -125,12 +142,17 @@ class Ellipsoid : public DistanceByNearest<Ellipsoid> {
  public:
   /// Constructs an ellipsoid with these half axes, m, > 0.
   explicit Ellipsoid(const Vec& half_axes);
+  /// Returns the half axes, m.
   const Vec& half_axes() const { return a_; }
 
+  /// Curvature at a place.
   using DistanceByNearest::curvature;
+  /// Finds the nearest point.
   NearestOf<double> nearest(const Vec& x) const;
+  /// Finds the nearest points of a pack of places.
   template <class Number, int width>
   NearestOf<PackOf<Number, width>> nearest(const Vec3<PackOf<Number, width>>& x) const;
+  /// Returns the second derivatives of the distance, 1/m.
   template <class T>
   Mat3Of<T> curvature(const Vec3<T>& x, const NearestOf<T>& at) const;
   /// A lower bound of phi outside (m), without the search: |x_i/a_i| is 1 on the surface
@@ -139,6 +161,7 @@ class Ellipsoid : public DistanceByNearest<Ellipsoid> {
   T at_least(const Vec3<T>& x) const {
     return T(least_) * (size(x) - T(1));
   }
+  /// Returns the lower bound of phi with its gradient.
   template <class T>
   DistanceOf<T> below(const Vec3<T>& x) const {
     const T r = size(x), by = T(least_) / where_less(T(0), r, r, T(1));

@@ -16,7 +16,7 @@ using Loop =
 
 /// Sides along the axes, m.
 struct Box {
-  Vec least, most;
+  Vec least, most;  // corners, m
 
   /// Holds no place; what it includes decides.
   static constexpr Box none() {
@@ -26,14 +26,18 @@ struct Box {
   /// Tests for none(), or a box that is not finite.
   bool empty() const { return !(least.x <= most.x); }
 
+  /// Grows the box to hold a place.
   void include(const Vec& x) { include(Box{x, x}); }
+  /// Grows the box to hold another one.
   void include(const Box& other) {
     const Vec &a = other.least, &b = other.most;
     least = {std::min(least.x, a.x), std::min(least.y, a.y), std::min(least.z, a.z)};
     most = {std::max(most.x, b.x), std::max(most.y, b.y), std::max(most.z, b.z)};
   }
+  /// Moves all sides outwards, m.
   void grow(double by);
 };
+/// Returns true if no place is in both boxes.
 inline bool apart(const Box& a, const Box& b) {
   return a.least.x > b.most.x || b.least.x > a.most.x || a.least.y > b.most.y ||
          b.least.y > a.most.y || a.least.z > b.most.z || b.least.z > a.most.z;
@@ -45,6 +49,7 @@ inline bool apart(const Box& a, const Box& b) {
 /// table, which takes about 0.5 us per box on shaken hair.
 class BoxPairs {
  public:
+  /// Two boxes that may touch.
   struct Pair {
     int first, second;    // the first before the second
     double distance = 0;  // that they keep at least, m, if it is told

@@ -26,6 +26,7 @@ namespace tress::models {
 /// kink at P, w does not.
 class ContactLaw {
  public:
+  /// Coefficients of the law.
   struct Values {
     double stiffness;  // K, N/m^2
     double viscosity;  // D, N s/m^2
@@ -34,8 +35,9 @@ class ContactLaw {
   };
   /// Row-major 3x3.
   using Matrix = std::array<double, 9>;
+  /// Derivatives of the force.
   struct Slopes {
-    Matrix by_gap;
+    Matrix by_gap;       // derivative by d, N/m^2
     double by_velocity;  // times the identity
   };
 
@@ -44,6 +46,7 @@ class ContactLaw {
   /// Constructs a law from the values of contact_parameters().
   ContactLaw(const Parameters& parameters, const std::string& where);
 
+  /// Returns the distance below which strands repel, m.
   double inner() const { return law_.inner; }
   /// Returns the distance beyond which the force is 0, m.
   double reach() const { return law_.viscosity > 0 ? law_.outer : law_.inner; }
@@ -52,13 +55,15 @@ class ContactLaw {
   /// dF/dd = push I + (push_slope d - drag_slope u) d^T.
   template <class T>
   struct Factors {
-    T push, drag, push_slope, drag_slope;
+    T push, drag, push_slope, drag_slope;  // factors for a gap d
   };
   /// Computes the factors for one gap, or one per lane of a pack.
   template <class T>
   Factors<T> factors(const Vec3<T>& d) const noexcept;
 
+  /// Returns the force per length F at gap d and velocity u, N/m.
   Vec force(const Vec& d, const Vec& u) const noexcept;
+  /// Returns the derivatives of the force.
   Slopes slopes(const Vec& d, const Vec& u) const noexcept;
   /// Potential of the repulsion, J/m.
   double potential(const Vec& d) const noexcept;

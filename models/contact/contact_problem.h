@@ -46,9 +46,10 @@ class ContactProblem {
  public:
   /// A point of a body, and its weight in the contact's velocity.
   struct End {
-    int body = 0, point = 0;
-    double weight = 0;
+    int body = 0, point = 0;  // body, and point of it
+    double weight = 0;        // weight of the point's velocity
   };
+  /// Contact between points of bodies.
   struct Contact {
     std::array<End, 4> ends;  // two on one body, and two on another or the same one
     double friction;          // Coulomb's coefficient
@@ -63,6 +64,7 @@ class ContactProblem {
     Compliance() = default;
     /// Row-major 3x3 blocks, point by point of the forces.
     explicit Compliance(In blocks) { set(blocks); }
+    /// Sets the blocks.
     void set(In blocks);
 
    private:
@@ -71,17 +73,20 @@ class ContactProblem {
     // By point and component of the force: all points. The fourth lane is not used.
     std::vector<Pack> columns_;
   };
+  /// Result of solve().
   struct Outcome {
-    int sweeps = 0;
+    int sweeps = 0;        // sweeps over all contacts
     double violation = 0;  // the largest of all contacts, m/s
   };
 
+  /// Removes all bodies and contacts.
   void clear();
   /// Returns its number. The compliance must outlive the use of the problem.
   int add_body(const Compliance& compliance);
   /// Renews a body whose compliance is now that of other points: its contacts must be
   /// set() again.
   void renew_body(int body);
+  /// Adds a contact.
   void add(const Contact& contact);
   /// Adds `count` contacts, to be set before solve().
   void add(std::size_t count);
@@ -98,13 +103,16 @@ class ContactProblem {
   /// own work, then by all of it, so that it ends. Returns the violation, m/s.
   double stop_driving(double tolerance, const Loop& loop = one_by_one);
 
+  /// Returns the contacts with their forces.
   std::span<const Contact> contacts() const { return contacts_; }
   /// With the forces, in the contact's axes, m/s.
   Vec velocity(const Contact& contact) const;
+  /// Returns the number of bodies.
   std::size_t bodies() const { return used_; }
   /// Returns the change of the velocity of a body's point by the forces, m/s; forces()
   /// returns the forces on its points, N.
   Vec change(std::size_t body, std::size_t point) const;
+  /// Returns the forces on a body's points, N.
   std::span<const Vec> forces(std::size_t body) const { return bodies_[body].forces; }
 
  private:
@@ -119,8 +127,9 @@ class ContactProblem {
   };
   /// State of a contact in solve().
   struct Solved {
+    /// Changes of one body by a contact.
     struct Pushed {
-      Body* body = nullptr;
+      Body* body = nullptr;           // body that the contact pushes
       std::size_t first = 0;          // of columns, in columns_
       const Pack* columns = nullptr;  // changes of all points by unit forces along axes
       long pushes = -1;               // of the body when the contact had settled

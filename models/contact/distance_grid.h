@@ -15,17 +15,20 @@ namespace tress::models {
 /// distance is infinite.
 class DistanceGrid {
  public:
+  /// Samples of the distance on a regular grid.
   struct Samples {
-    std::size_t nx = 0, ny = 0, nz = 0;
-    Vec origin;                 // of the first point, m
-    double spacing = 0;         // m
-    std::vector<double> value;  // (nx ny nz) m, x fastest; < 0 inside
+    std::size_t nx = 0, ny = 0, nz = 0;  // points along each axis
+    Vec origin;                          // of the first point, m
+    double spacing = 0;                  // m
+    std::vector<double> value;           // (nx ny nz) m, x fastest; < 0 inside
   };
   /// Throws InputError naming `where` unless there are at least 4 points in each
   /// direction, a finite value for each point, and spacing > 0.
   DistanceGrid(Samples samples, const std::string& where);
 
+  /// Returns the interpolated distance at x, m.
   Distance distance(const Vec& x) const;
+  /// Returns the second derivatives at x, 1/m.
   Mat3 curvature(const Vec& x) const;
   /// Finds the nearest point as the other shapes do; packs are looked up lane by lane.
   template <class T>
@@ -38,6 +41,7 @@ class DistanceGrid {
     }
     return at;
   }
+  /// Returns the second derivatives of the distance, 1/m.
   template <class T>
   Mat3Of<T> curvature(const Vec3<T>& x, const NearestOf<T>&) const {
     Mat3Of<T> all;
@@ -66,6 +70,7 @@ class DistanceGrid {
     return {where_less(o, r, r, T(-std::numeric_limits<double>::infinity())),
             T(1) / where_less(o, r, r, T(1)) * out};
   }
+  /// Returns the samples.
   const Samples& samples() const { return s_; }
   /// The least value in the two outermost layers (m).
   double clearance() const;

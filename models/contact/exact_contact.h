@@ -21,6 +21,7 @@ struct HeldContact {
   double leaves = 0;  // part of its error that an improvement leaves, 0: unknown
   Vec slide;          // U of the last solution, m/s
 
+  /// Returns true if the contact holds a force.
   bool some() const { return normal > 0 || dot(tangential, tangential) > 0; }
 };
 
@@ -43,10 +44,10 @@ struct HeldContact {
 /// satisfied where the multipliers are the forces. Without a penalty a rigid contact's
 /// force is its multiplier.
 struct ExactContact {
-  NormalContact compliance;
-  bool rigid = false;
-  double friction = 0;     // mu
-  double restitution = 0;  // e, of a rigid surface
+  NormalContact compliance;  // law of a compliant surface
+  bool rigid = false;        // whether the surface is rigid
+  double friction = 0;       // mu
+  double restitution = 0;    // e, of a rigid surface
 
   /// Penalty of a point while the equations of one state are solved.
   struct Penalty {
@@ -67,8 +68,10 @@ struct ExactContact {
     return compliance.offset + held.rest_gap + pulls;
   }
 
+  /// Contact of one point at a state.
   class State {
    public:
+    /// Evaluates the law for a place and a velocity.
     State(const ExactContact& law, const HeldContact& held, const Penalty& penalty,
           const Distance& to, const Vec& x, const Vec& u)
         : law_(law),
@@ -87,6 +90,7 @@ struct ExactContact {
       tangential_ = slips_ ? (law.friction * load_ / norm(pull_)) * pull_ : pull_;
     }
     double gap() const { return -normal_.depth; }  // m
+    /// Returns the normal of the surface.
     const Vec& outwards() const { return normal_.n; }
     const Vec& along() const { return along_; }  // U, m/s
     /// Returns the quantity that the laws of a rigid contact restrict: w n + U_t, m/s.
@@ -95,7 +99,9 @@ struct ExactContact {
     }
     double normal() const { return load_; }                // N
     const Vec& tangential() const { return tangential_; }  // T
+    /// Returns true if friction is at its bound.
     bool slips() const { return slips_; }
+    /// Returns the force, N.
     Vec load() const { return load_ * normal_.n + tangential_; }
 
     /// The largest speed by which the motion and the force violate the law, m/s. It
@@ -112,6 +118,7 @@ struct ExactContact {
                       norm(slide_ + (speed / (law_.friction * load_)) * tangential_));
     }
 
+    /// Returns the derivatives of the force.
     ContactSlopes slopes(const Mat3& curvature) const {
       if (normal_.steepness == 0 || load_ == 0) return {};
       const Mat3 across = normal_.across(), n_by_x = normal_.n_by_x(curvature);

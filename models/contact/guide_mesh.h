@@ -21,9 +21,9 @@ std::vector<std::pair<int, int>> neighbouring_roots(const std::vector<Vec>& root
 struct GuideMesh {
   /// A point and the nearest one of a neighbour. Neither roots nor tips are linked.
   struct Link {
-    int first, second;
-    double apart;    // m, at rest
-    double carried;  // length of strand that it stands for, m
+    int first, second;  // points
+    double apart;       // m, at rest
+    double carried;     // length of strand that it stands for, m
   };
   /// Between two points of one guide and one of the other.
   struct Triangle {
@@ -31,12 +31,12 @@ struct GuideMesh {
     std::array<int, 3> corner;  // the first two are of one guide
     double width;               // between the guides at rest, m
   };
-  std::vector<std::pair<int, int>> strips;
-  std::vector<Link> links;          // within `width`, ordered
-  std::vector<Triangle> triangles;  // in the order of their strips
-  std::vector<int> first;           // point of each strand
-  std::vector<int> strand;          // of each point
-  std::vector<double> carried;      // by each point, m
+  std::vector<std::pair<int, int>> strips;  // pairs of neighbouring guides
+  std::vector<Link> links;                  // within `width`, ordered
+  std::vector<Triangle> triangles;          // in the order of their strips
+  std::vector<int> first;                   // point of each strand
+  std::vector<int> strand;                  // of each point
+  std::vector<double> carried;              // by each point, m
 
   GuideMesh() = default;
   /// segments[k]: lengths of the segments of strand k, at least two, m; x: where their

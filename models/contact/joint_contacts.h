@@ -22,14 +22,16 @@ namespace tress::models {
 /// violation. A step costs O((3 contacts)^3).
 class JointContacts {
  public:
+  /// Contact with its unknown force.
   struct Contact {
-    double friction;
-    Vec free;   // velocity without these forces, m/s
-    Vec force;  // a guess, then what solve() has found, N
+    double friction;  // Coulomb's coefficient
+    Vec free;         // velocity without these forces, m/s
+    Vec force;        // a guess, then what solve() has found, N
   };
 
   /// Sets the number of contacts; all contacts and all blocks must be set before solve().
   void resize(std::size_t count);
+  /// Returns the contacts.
   std::span<Contact> contacts() { return contacts_; }
   /// Velocity of contact i per force on contact j.
   Mat3& block(std::size_t i, std::size_t j) { return blocks_[i * contacts_.size() + j]; }

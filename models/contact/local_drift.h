@@ -21,8 +21,8 @@ class LocalDrift {
  public:
   /// Displacements, m; radius < 0: of nothing.
   struct Spread {
-    Vec middle;
-    double radius;
+    Vec middle;     // mean displacement
+    double radius;  // largest distance from the mean
   };
 
   /// Segments as they lie at x. A place is told of all parts of segments whose middles
@@ -44,6 +44,7 @@ class LocalDrift {
   /// The radius, mean over all segments, m.
   double mean() const { return mean_; }
 
+  /// Returns the memory in use, bytes.
   std::size_t bytes() const;
 
  private:

@@ -22,6 +22,7 @@ class PointGroups {
 
   /// The points at x (3 each). Points that carry no length are left out.
   void ready(In x, In length);
+  /// Returns the number of groups.
   std::size_t groups() const { return groups_.size(); }
   /// False: no segment is near a group made ready, its loads are zero.
   bool feels(std::size_t group) const { return !groups_[group].list.empty(); }
@@ -32,6 +33,7 @@ class PointGroups {
   /// Returns the number of lists made.
   long made() const { return made_; }
 
+  /// Returns the memory in use, bytes.
   std::size_t bytes() const;
 
  private:

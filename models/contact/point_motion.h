@@ -22,10 +22,12 @@ class PointMotion {
 
   /// Time since the start, 0 for points that stay.
   double elapsed(double t) const { return moves_ * (t - t_); }
+  /// Returns the position of a point, m.
   Vec place(std::size_t point, double elapsed) const {
     const Cubic& p = at_[point];
     return p.x + elapsed * (p.v + elapsed * (p.square + elapsed * p.cube));
   }
+  /// Returns the velocity of a point, m/s.
   Vec velocity(std::size_t point, double elapsed) const {
     const Cubic& p = at_[point];
     return p.v + elapsed * (2 * p.square + (3 * elapsed) * p.cube);

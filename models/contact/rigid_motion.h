@@ -8,9 +8,10 @@ namespace tress::models {
 
 /// x -> to + turn * (x - from).
 struct RigidMotion {
-  Frame turn;
-  Vec from, to;
+  Frame turn;    // rotation
+  Vec from, to;  // centre before and after
 
+  /// Returns the place that is moved to x.
   template <class T>
   Vec3<T> back(const Vec3<T>& x) const {
     const Vec3<T> d = x - Vec3<T>(to);

@@ -21,6 +21,7 @@ inline void in_turn(std::size_t count, const std::function<void(std::size_t)>& w
 
 /// Calls work(from, to) for parts of [0, count) of at most loop_part entries.
 inline constexpr std::size_t loop_part = 8192;
+/// Calls work(from, to) for parts of [0, count) of at most loop_part entries.
 inline void in_parts(std::size_t count, const Loop& loop,
                      const std::function<void(std::size_t, std::size_t)>& work) {
   loop((count + loop_part - 1) / loop_part,
@@ -47,9 +48,13 @@ class SegmentCells {
   /// Numbers of polylines, points and segments count over all. A segment is known by the
   /// number of its first point.
   std::size_t polylines() const { return first_.size() - 1; }
+  /// Returns the number of points.
   std::size_t points() const { return polyline_.size(); }
+  /// Returns the polyline of a point.
   int polyline(int point) const { return polyline_[static_cast<std::size_t>(point)]; }
+  /// Returns the first point of a polyline.
   int first(std::size_t polyline) const { return first_[polyline]; }
+  /// Returns true for the last point of its polyline.
   bool last(int point) const {
     return point + 1 == first_[static_cast<std::size_t>(polyline(point)) + 1];
   }
@@ -70,6 +75,7 @@ class SegmentCells {
     return {static_cast<std::size_t>(part_[segment]),
             static_cast<std::size_t>(part_[segment + 1])};
   }
+  /// Returns the number of parts of all segments.
   std::size_t parts() const { return static_cast<std::size_t>(part_.back()); }
   double longest_part() const { return longest_; }  // m
   /// Whether usual segments lie in several.
@@ -91,6 +97,7 @@ class SegmentCells {
   /// Returns the box that the grid spans.
   Box extent() const;
 
+  /// Returns the memory in use, bytes.
   std::size_t bytes() const;
 
  private:

@@ -11,6 +11,7 @@ namespace tress::models {
 /// where strands are not all at the same distance.
 class SegmentTree {
  public:
+  /// Builds the boxes of the strands' segments.
   explicit SegmentTree(const StrandPartners& strands);
 
   /// Returns the distance from x to the nearest segment of another strand than `but`, m;

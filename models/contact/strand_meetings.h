@@ -22,6 +22,7 @@ template <class P>
   }
   (std::make_integer_sequence<int, P::lanes>{});
 }
+/// Sets all lanes to one vector.
 template <class P>
 [[gnu::always_inline]] inline Vec3<P> all(const Vec& x) {
   return {all<P>(x.x), all<P>(x.y), all<P>(x.z)};
@@ -33,10 +34,12 @@ template <class P>
                                         const P& inverse) {
   return larger(smaller(inverse * dot(d, edge), P(1)), P(0));
 }
+/// Returns the square of the length, lane by lane.
 template <class P>
 [[gnu::always_inline]] inline P square_of(const Vec3<P>& d) {
   return dot(d, d);
 }
+/// Returns `yes` where x < y, else `no`, lane by lane.
 template <class P>
 [[gnu::always_inline]] inline Vec3<P> choose(const P& x, const P& y, const Vec3<P>& yes,
                                              const Vec3<P>& no) {
@@ -47,7 +50,7 @@ template <class P>
 /// The nearest points of one strand.
 template <class P>
 struct Meeting {
-  std::span<const SegmentRun> runs;
+  std::span<const SegmentRun> runs;  // segments that were searched
   P square;  // of the distance; at least `far` (see meet) where it is out of reach
   P s;       // where on its segment
   P which;   // number of the segment among those of the runs
@@ -87,9 +90,10 @@ template <class P, class Segments>
 template <class P>
 struct ChosenSegments {
   Vec3<P> start, edge, v, faster;  // moves at v, its end by `faster` faster
-  P inverse;
+  P inverse;                       // 1/|edge|^2
 };
 
+/// Reads the segments that lanes chose.
 template <class P, class Segments>
 [[gnu::always_inline]] inline ChosenSegments<P> chosen(const Meeting<P>& met,
                                                        const Segments& segments) {
@@ -116,12 +120,14 @@ template <class P, class Segments>
   return of;
 }
 
+/// Loads on points, a lane each.
 template <class P>
 struct LaneLoads {
-  Vec3<P> force, by_place[3];
-  P by_velocity;
+  Vec3<P> force, by_place[3];  // force, and rows of dF/dx
+  P by_velocity;               // dF/dv over the identity
 };
 
+/// Adds the loads of the segments that were met.
 template <class P, class Segments>
 [[gnu::always_inline]] inline void add(const Meeting<P>& met, const Vec3<P>& x,
                                        const Vec3<P>& points_v, const P& far,

@@ -25,13 +25,20 @@ class StrandPartners {
   StrandPartners(std::span<const int> points, double reach);
 
   // As those of StrandInteraction, which see. The same bits whoever runs the loop.
+  /// Takes points that stay in place.
   void hold(In x, In v, const Loop& loop);
+  /// Takes points that move uniformly from t to `end`.
   void extrapolate(double t, double end, In x, In v, const Loop& loop);
+  /// Takes points that move to known places y and velocities w.
   void interpolate(double t, double end, In x, In v, In y, In w, const Loop& loop);
 
+  /// Returns true after the first update.
   bool updated() const { return !nodes_.empty(); }
+  /// Returns the number of updates.
   long updates() const { return updates_; }
+  /// Returns the number of epochs.
   long epochs() const { return epochs_; }
+  /// Returns the distance within which strands act on each other, m.
   double reach() const { return reach_; }
 
   // For lists of what is within reach() + margin() of a place at an update.
@@ -65,6 +72,7 @@ class StrandPartners {
   /// Returns the largest displacement of points since the epoch.
   double moved() const { return moved_; }
 
+  /// Returns the cells of the epoch's segments.
   const SegmentCells& segments() const { return cells_; }
   /// Returns the motion of the points at any time in its interval.
   const PointMotion& motion() const { return motion_; }
@@ -78,18 +86,22 @@ class StrandPartners {
     piece.inverse = nodes_[i].inverse;
     return piece;
   }
+  /// Returns the place of a point at the last update.
   const Vec& place(int point) const { return nodes_[static_cast<std::size_t>(point)].x; }
   /// 1/|edge|^2 of a segment, as of its piece.
   double inverse(int segment) const {
     return nodes_[static_cast<std::size_t>(segment)].inverse;
   }
+  /// Returns the velocity of a point.
   const Vec& velocity(int point) const { return v_[static_cast<std::size_t>(point)]; }
   // What is needed soon is let come into the cache.
+  /// Prefetches the data of a run of segments.
   void fetch_segments(int first, unsigned count) const {
     const auto i = static_cast<std::size_t>(first);
     fetch(&nodes_[i], count + 1);
     fetch(&v_[i], count + 1);
   }
+  /// Prefetches the places of a segment.
   void fetch_place(int segment) const {
     fetch(&nodes_[static_cast<std::size_t>(segment)], 2);
   }
@@ -101,6 +113,7 @@ class StrandPartners {
     cells_.near(at_epoch, radius + moved_, but, found);
   }
 
+  /// Returns the memory in use, bytes.
   std::size_t bytes() const;
   /// With what PointGroups keep, for each point of hair as dense as that of a head, of
   /// segments of that length (m): an estimate.

@@ -8,12 +8,12 @@ namespace tress::models {
 
 /// A clamped rod of one section under a uniform load, as its own weight.
 struct LoadedRod {
-  Material material;
-  CrossSection section;
-  double length = 0;  // m
-  Shape natural;      // 1/m
-  Frame clamp;        // at the root
-  Vec load;           // N/m
+  Material material;     // material of the rod
+  CrossSection section;  // section of the rod
+  double length = 0;     // m
+  Shape natural;         // 1/m
+  Frame clamp;           // at the root
+  Vec load;              // N/m
 };
 
 /// Lengths of elements of constant curvature, and the largest distance of their shape at
@@ -54,7 +54,8 @@ std::vector<double> linear_cut(const LoadedRod& rod, int elements);
 Strand cut_into(const LoadedRod& rod, const std::vector<double>& lengths,
                 const Shape& initial = {});
 
-/// Strain of an element: that of super_helix, or of super_clothoid.
+/// Strain of an element along its length: `constant` as in super_helix, or `linear` as in
+/// super_clothoid.
 enum class ElementStrain { constant, linear };
 
 /// Coordinates of the model at rest under the load: a stable equilibrium, reached from

@@ -19,6 +19,7 @@ class AirDrag final : public Effect {
   static constexpr bool uniform = Wind::Flow::uniform;
 
  public:
+  /// Combines a law with a field under a name of the catalogue.
   AirDrag(std::string_view name, Law law, Wind wind)
       : name_(name), law_(law), wind_(std::move(wind)) {}
 
@@ -88,27 +89,32 @@ inline constexpr Parameter air_density_parameter{.name = "air_density_kg_m3",
                                                  .number = 1.2,
                                                  .min = 0,
                                                  .max = 1e5};
+/// Parameter for the viscosity of the air.
 inline constexpr Parameter air_viscosity_parameter{
     .name = "air_viscosity_pa_s",
     .help = "coefficients = reynolds: dynamic viscosity of the air (Pa s)",
     .number = 1.8e-5,
     .min = 1e-9,
     .max = 1e3};
+/// Parameter for the radius of the strand.
 inline constexpr Parameter strand_radius_parameter{.name = "strand_radius_m",
                                                    .help = "radius of the strand (m)",
                                                    .number = 40e-6,
                                                    .min = 0,
                                                    .max = 1e3};
+/// Parameter that selects the drag coefficient.
 inline constexpr Parameter coefficients_parameter{
     .name = "coefficients",
     .help = "normal drag coefficient: c_normal, or of a cylinder at its Reynolds number",
     .choices = "constant|reynolds"};
+/// Parameter for the drag coefficient across the strand.
 inline constexpr Parameter c_normal_parameter{
     .name = "c_normal",
     .help = "coefficients = constant: drag coefficient across the strand",
     .number = 1.2,
     .min = 0,
     .max = 1e6};
+/// Parameter for the friction coefficient along the strand.
 inline constexpr Parameter c_tangential_parameter{
     .name = "c_tangential",
     .help = "friction coefficient along the strand, of its whole surface",

@@ -13,12 +13,15 @@ namespace tress::models {
 
 /// -nu l u, nu in kg/(m s).
 struct LinearAirLaw {
+  /// Whether the law reads tangents, and velocities of points.
   static constexpr bool tangent = false, relative = true;
-  double nu = 0;
+  double nu = 0;  // drag per length, kg/(m s)
 
+  /// Returns the force on point i for the relative velocity u, N.
   Vec force(const Points& p, std::size_t i, const Vec& u) const {
     return -(nu * p.length[i]) * u;
   }
+  /// Returns df/du, N s/m.
   Mat3 slope(const Points& p, std::size_t i, const Vec&) const {
     return -(nu * p.length[i]) * identity();
   }
@@ -26,13 +29,15 @@ struct LinearAirLaw {
 
 /// Linear law on a strand assumed at rest: the force depends on the wind only.
 struct StandingAirLaw : LinearAirLaw {
-  static constexpr bool relative = false;
+  static constexpr bool relative = false;  // the velocity of points is not read
 };
 
 /// b(u) = c u: quadratic drag, c in kg/m^2.
 struct SquareDrag {
-  double c = 0;
+  double c = 0;  // coefficient, kg/m^2
+  /// Returns the coefficient b(u).
   double value(double u) const { return c * u; }
+  /// Returns the derivative db/du.
   double slope(double) const { return c; }
 };
 
@@ -47,15 +52,17 @@ struct SquareDrag {
 /// > 1, and for 0.001 < Re < 0.1 between 0.9 and 1.7 times Lamb's C Re = 8 pi/(2.002 - ln
 /// Re).
 struct CylinderDrag {
-  static constexpr double reynolds_0 = 0.1;
-  double half_viscosity = 0;      // mu/2, Pa s
-  double reynolds_per_speed = 0;  // 2 r rho/mu, s/m
+  static constexpr double reynolds_0 = 0.1;  // Re_0 of the formula
+  double half_viscosity = 0;                 // mu/2, Pa s
+  double reynolds_per_speed = 0;             // 2 r rho/mu, s/m
 
+  /// Returns the coefficient b(u).
   double value(double u) const {
     const double re = reynolds_per_speed * u;
     return half_viscosity *
            (re + 10 * std::pow(re * re + reynolds_0 * reynolds_0, 1.0 / 6));
   }
+  /// Returns the derivative db/du.
   double slope(double u) const {
     const double re = reynolds_per_speed * u;
     const double power = std::pow(re * re + reynolds_0 * reynolds_0, -5.0 / 6);
@@ -71,10 +78,12 @@ struct CylinderDrag {
 /// Once differentiable in u, with slope 0 (or b(0)) at rest.
 template <class NormalDrag>
 struct AnisotropicAirLaw {
+  /// Whether the law reads tangents, and velocities of points.
   static constexpr bool tangent = true, relative = true;
-  NormalDrag normal;
+  NormalDrag normal;      // law across the strand
   double tangential = 0;  // rho C_t pi r, kg/m^2
 
+  /// Returns the force on point i for the relative velocity u, N.
   Vec force(const Points& p, std::size_t i, const Vec& u) const {
     const Vec t = load3(&p.tangent[3 * i]);
     const double along = dot(u, t);
@@ -83,6 +92,7 @@ struct AnisotropicAirLaw {
     return -p.length[i] *
            (normal.value(speed) * across + (tangential * std::abs(along) * along) * t);
   }
+  /// Returns df/du, N s/m.
   Mat3 slope(const Points& p, std::size_t i, const Vec& u) const {
     const Vec t = load3(&p.tangent[3 * i]);
     const double along = dot(u, t);

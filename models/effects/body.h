@@ -10,12 +10,13 @@
 
 namespace tress::models {
 
+/// Returns the parameters of the effect.
 std::span<const Parameter> body_parameters();
 
 /// Result of Effect::rigid_contact(): per length of strand, `law`.
 struct RigidContact {
-  RigidBody body;
-  BodyContact law;
+  RigidBody body;   // shape and motion
+  BodyContact law;  // law of contact
 };
 
 /// Contact of the strand with a rigid body and regularised friction. The load on a point
@@ -51,7 +52,9 @@ class Body final : public Effect {
     return contact_.body.outline(t);
   }
 
+  /// Returns the body's position and motion at t (s).
   BodyPose pose(double t) const { return contact_.body.pose(t); }
+  /// Returns the body and its law.
   const RigidContact& contact_on_points() const { return contact_; }
 
   /// Returns a copy for one strand whose points meet the surface `more` (m, one each)

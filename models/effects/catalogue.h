@@ -15,10 +15,10 @@ struct RootMotion;
 /// One line of the list of effects, which a scene names as [effects.id]. `./tress new
 /// effect` adds one.
 struct EffectEntry {
-  std::string_view id;
-  std::string_view summary;  // one line
-  std::string_view source;
-  std::span<const Parameter> parameters;
+  std::string_view id;                    // id in scenes
+  std::string_view summary;               // one line
+  std::string_view source;                // author and year
+  std::span<const Parameter> parameters;  // parameters of the effect
   /// `head`: the rigid motion of all roots, for bodies that follow it. Null for
   /// effects between strands, which are made for all of them at once (StrandInteraction,
   /// StrandFriction, ControlMesh).

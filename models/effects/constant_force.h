@@ -7,6 +7,7 @@
 
 namespace tress::models {
 
+/// Returns the parameters of the effect.
 std::span<const Parameter> constant_force_parameters();
 
 /// A force constant in space and time: f = l p + m a per point with p in N/m and a in
@@ -35,6 +36,7 @@ class ConstantForce final : public Effect {
   Vec per_mass_;    // N/kg
 };
 
+/// Makes the effect.
 std::unique_ptr<const Effect> make_constant_force(const Parameters& parameters,
                                                   const RootMotion& head);
 

@@ -74,8 +74,11 @@ class ControlMesh {
   /// thread at a time per effect; other threads may use others.
   std::unique_ptr<const Effect> effect(std::size_t strand) const;
 
+  /// Returns the links and triangles of the mesh.
   const GuideMesh& mesh() const { return mesh_; }
+  /// Returns the number of broken links.
   std::size_t broken() const { return broken_count_; }
+  /// Returns the number of contacts with triangles.
   std::size_t contacts() const { return bonds_.size() - mesh_.links.size(); }
   /// Returns the energy of the links that hold, at the last update, J.
   double energy() const;
@@ -83,6 +86,7 @@ class ControlMesh {
   /// Numbers of broken links; recall() restores it, and everything else follows from the
   /// next update().
   std::vector<double> memory() const;
+  /// Restores the broken links; their numbers are from memory().
   void recall(In memory);
 
  private:

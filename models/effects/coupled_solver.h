@@ -16,6 +16,7 @@ namespace tress::models {
 
 /// Numbers of the four points of a contact.
 using CoupledPoints = std::array<std::size_t, 4>;
+/// Returns the numbers of a contact's points.
 inline CoupledPoints points_of(const Coupling& contact) {
   const auto& e = contact.ends;
   return {e[0].point, e[1].point, e[2].point, e[3].point};
@@ -25,6 +26,7 @@ inline CoupledPoints points_of(const Coupling& contact) {
 /// contacts between distant points, by KLU. The pattern follows the contacts.
 class CoupledSolver {
  public:
+  /// a point as a mean of coordinates.
   using Mean = MaterialPoints::Mean;
 
   /// `uncoupled` must outlive this; `means` are the contact points, over all coordinates.
@@ -40,11 +42,15 @@ class CoupledSolver {
   }
 
   // The matrix as a sum, then its factors.
+  /// Sets the matrix to 0.
   void clear() noexcept;
+  /// Adds the values of a matrix on the diagonal, in the order of its pattern.
   void add(std::size_t uncoupled, In values) noexcept;
   /// Less w.pos and w.vel times the contact's derivatives.
   void add(const Coupling& contact, Weights w) noexcept;
+  /// Factors the sum; `retry` if it is singular.
   Status factor() noexcept;
+  /// Solves with the last factors; b becomes the solution.
   Status solve(InOut b) noexcept { return solver_->solve(b); }
 
  private:

@@ -17,12 +17,13 @@ namespace tress::models {
 /// in world components, N/m and N s/m between f and x, v. The rank is four: the points
 /// share one force and its point of application.
 struct Coupling {
-  static constexpr std::size_t rank = 4;
+  static constexpr std::size_t rank = 4;  // number of terms y_r
+  /// Factors of one point.
   struct End {
-    std::size_t point = 0;
-    std::array<Vec, rank> onto, by_place, by_velocity;
+    std::size_t point = 0;                              // index of the point
+    std::array<Vec, rank> onto, by_place, by_velocity;  // factors of each term
   };
-  std::array<End, 4> ends;
+  std::array<End, 4> ends;  // the four points
 
   /// block += pos df_a/dx_c + vel df_a/dv_c, row-major 3x3.
   void add_block(std::size_t a, std::size_t c, double pos, double vel,

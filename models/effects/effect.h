@@ -16,25 +16,26 @@ namespace tress::models {
 
 /// The material points on which an effect acts; spans that it does not need may be empty.
 struct Points {
-  int count = 0;
-  In x;          // (3 count) position, m
-  In v;          // (3 count) velocity, m/s
-  In tangent;    // (3 count) unit tangent
-  In mass;       // (count) mass carried by the point, kg
-  In length;     // (count) strand length carried by the point, m
-  int held = 0;  // the first so many move as the root prescribes, whatever their load
+  int count = 0;  // number of points
+  In x;           // (3 count) position, m
+  In v;           // (3 count) velocity, m/s
+  In tangent;     // (3 count) unit tangent
+  In mass;        // (count) mass carried by the point, kg
+  In length;      // (count) strand length carried by the point, m
+  int held = 0;   // the first so many move as the root prescribes, whatever their load
 };
 
 /// Quantities that a model must compute before it calls add_load, add_derivatives or
 /// power. The model computes the union over effects. potential() always reads positions.
 struct Needs {
-  bool position = false;
-  bool velocity = false;
-  bool tangent = false;
+  bool position = false;     // positions
+  bool velocity = false;     // velocities
+  bool tangent = false;      // tangents
   bool derivatives = false;  // add_derivatives adds something
   bool couplings = false;    // add_couplings adds something
   bool directions = false;   // add_direction_derivatives adds something
 
+  /// Returns what either needs.
   Needs operator|(Needs other) const {
     return {position || other.position,   velocity || other.velocity,
             tangent || other.tangent,     derivatives || other.derivatives,
@@ -47,8 +48,8 @@ struct RigidContact;
 
 /// All places within `radius` of its centre, m.
 struct Ball {
-  Vec centre;
-  double radius = 0;
+  Vec centre;         // centre of the ball
+  double radius = 0;  // radius of the ball
 };
 
 /// The load -(per_length l + per_mass m) v on points of length l and mass m.
@@ -67,11 +68,11 @@ struct Outline {
 
 /// A rigid contact of a point.
 struct RigidTouch {
-  std::size_t point = 0;
-  Vec normal;    // outwards, of length 1
-  Vec velocity;  // that its laws are about (Complementarity), m/s
-  Vec force;     // N
-  double friction = 0;
+  std::size_t point = 0;  // index of the point
+  Vec normal;             // outwards, of length 1
+  Vec velocity;           // that its laws are about (Complementarity), m/s
+  Vec force;              // N
+  double friction = 0;    // Coulomb's coefficient
 };
 
 /// Contact forces that an effect holds between the steps of one strand: the part of
@@ -80,6 +81,7 @@ struct RigidTouch {
 class Multipliers {
  public:
   virtual ~Multipliers() = default;
+  /// Returns true if the surface is rigid.
   virtual bool rigid() const = 0;
   /// Adds points that hold forces or overlap to those already taken. All forces are
   /// constants until give_back().
@@ -87,19 +89,31 @@ class Multipliers {
   /// Appends those of the points that are taken.
   virtual void touches(double t, const Points& p,
                        std::vector<RigidTouch>& to) const noexcept = 0;
+  /// Sets the force on a point that is taken, N.
   virtual void set_force(double t, std::size_t point, double normal,
                          const Vec& tangential) noexcept = 0;
+  /// Ends take(): the effect holds the forces again.
   virtual void give_back(const Points& p) noexcept = 0;
   virtual std::size_t tracked() const noexcept = 0;  // three numbers for every point
+  /// Computes the coordinates X of ContactForm::places(), m.
   virtual void places(double t, const Points& p, Out x) const noexcept = 0;
+  /// Computes the slides U of ContactForm::slides(), m/s.
   virtual void slides(double t, const Points& p, Out u) const noexcept = 0;
+  /// Prepares the equations of a state, as ContactForm::begin().
   virtual void begin(double t, double tau, const Points& p, In x0) noexcept = 0;
+  /// Improves the multipliers, as ContactForm::improve(); returns the violation, m/s.
   virtual double improve(double t, const Points& p) noexcept = 0;
+  /// Returns ContactForm::drive() of these points, m/s.
   virtual double drive() const noexcept = 0;
+  /// Extrapolates the multipliers, as ContactForm::extrapolate().
   virtual void extrapolate() noexcept = 0;
+  /// Returns ContactForm::approach() of these points, m/s.
   virtual double approach(double t, const Points& p) noexcept = 0;
+  /// Drops the forces of an impulse, as ContactForm::release().
   virtual void release() noexcept = 0;
+  /// Returns true if points may rebound.
   virtual bool rebounds() const = 0;
+  /// Returns the multipliers.
   virtual InOut values() noexcept = 0;
 };
 
@@ -108,7 +122,9 @@ class Multipliers {
 class Effect {
  public:
   virtual ~Effect() = default;
+  /// Returns the id of the effect.
   virtual std::string_view name() const = 0;
+  /// Returns the quantities that loads and derivatives read.
   virtual Needs needs() const = 0;
   /// f += load, (3 count) N.
   virtual void add_load(double t, const Points& p, InOut f) const noexcept = 0;
@@ -166,6 +182,7 @@ class Effect {
   /// if the load depends on contact forces that the effect holds (see HeldContacts). Null
   /// otherwise.
   virtual std::unique_ptr<Effect> for_strand(std::size_t /*points*/) const { return {}; }
+  /// Returns the contact forces that the effect holds; null if it holds none.
   virtual Multipliers* multipliers() { return nullptr; }
   /// Set if its contact may be solved together with that between strands
   /// (StrandFriction): what then takes its place among the strand's effects.
@@ -181,12 +198,14 @@ inline bool hold_contacts(const Effects& effects) {
       effects, [](const auto& effect) { return effect->for_strand(0) != nullptr; });
 }
 
+/// Returns the first breakpoint of all effects after t (s), or infinity.
 inline double next_breakpoint(const Effects& effects, double t) {
   double next = std::numeric_limits<double>::infinity();
   for (const auto& effect : effects) next = std::min(next, effect->next_breakpoint(t));
   return next;
 }
 
+/// Returns the union of the effects' needs.
 inline Needs needs(const Effects& effects) {
   Needs all;
   for (const auto& effect : effects) all = all | effect->needs();

@@ -15,6 +15,7 @@ inline constexpr Parameter gravity_parameter{.name = "gravity_m_s2",
                                              .min = 0,
                                              .max = 1e6};
 
+/// Returns the parameters of the effect.
 std::span<const Parameter> gravity_parameters();
 
 /// Uniform gravity: f = m g per point, potential energy -m g.x (zero at the origin).
@@ -37,6 +38,7 @@ class Gravity final : public Effect {
   Vec g_;
 };
 
+/// Makes the effect.
 std::unique_ptr<const Effect> make_gravity(const Parameters& parameters,
                                            const RootMotion& head);
 

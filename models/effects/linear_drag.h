@@ -6,6 +6,7 @@
 
 namespace tress::models {
 
+/// Returns the parameters of the effect.
 std::span<const Parameter> linear_drag_parameters();
 
 /// Viscous drag of still air on a thin strand and mass-proportional damping: f = -r v per
@@ -37,6 +38,7 @@ class LinearDrag final : public Effect {
   double mass_damping_;  // 1/s
 };
 
+/// Makes the effect.
 std::unique_ptr<const Effect> make_linear_drag(const Parameters& parameters,
                                                const RootMotion& head);
 

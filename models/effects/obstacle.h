@@ -12,6 +12,7 @@ namespace tress::models {
 /// own.
 class Obstacle final : public Effect {
  public:
+  /// Takes the radius of the strand as `offset` (m).
   Obstacle(std::shared_ptr<const RigidBody> body, double offset, double friction);
 
   std::string_view name() const override { return "body"; }
@@ -26,6 +27,7 @@ class Obstacle final : public Effect {
   }
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
 
+  /// Returns Coulomb's coefficient.
   double friction() const { return friction_; }
   /// Distance of points (m) that may not miss it between them.
   double spacing() const { return body_->least_radius() + offset_; }
@@ -36,11 +38,13 @@ class Obstacle final : public Effect {
     double height;      // of points that just touch, along the normal, m
     Vec velocity;       // of the surface in the step, where the point was at its start
     double gap_before;  // of the point at the start of the step, m
+    /// Returns the distance of a point from the plane, m.
     double gap(const Vec& x) const { return dot(normal, x) - height; }
   };
   /// The step of h (s) that ends at time t.
   class Step {
    public:
+    /// Prepares a step of h (s) that ends at t.
     Step(const Obstacle& of, double t, double h);
     /// Returns the plane of contact of a point that moves straight from x0 to x1, if it
     /// ends nearer to the surface than `reach` or was inside on its way. The plane is

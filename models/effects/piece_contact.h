@@ -19,13 +19,17 @@ namespace tress::models {
 /// so the forces on the four points sum to zero (action equals reaction).
 class PieceContact {
  public:
+  /// Positions or velocities of the four points.
   using Points = std::array<Vec, 4>;
 
   /// `at` is s, the point of piece x_2, x_3 nearest to the sample.
   PieceContact(const Points& x, const Points& v, double sigma, double at, double length);
 
+  /// Returns d, m.
   const Vec& gap() const { return d_; }
+  /// Returns the length of strand that the sample stands for, m.
   double length() const { return length_; }
+  /// Returns the weight W of a point.
   double weight(std::size_t a) const { return weight_[a]; }
 
   /// length F, distributed by W.
@@ -35,6 +39,7 @@ class PieceContact {
   double power(const ContactLaw& law) const {
     return length_ * dot(law.force(d_, u_) - law.force(d_, {}), u_);
   }
+  /// Returns the potential of the sample, J.
   double potential(const ContactLaw& law) const { return length_ * law.potential(d_); }
 
   /// Derivatives of all f_a for the given point indices: y_0 to y_2 are dF, through d, u

@@ -10,6 +10,7 @@
 
 namespace tress::models {
 
+/// Shapes of bodies, in their own frames.
 using BodyShape = std::variant<Plane, Sphere, Capsule, Ellipsoid, DistanceGrid>;
 
 /// Position and motion of a body.
@@ -19,6 +20,7 @@ struct BodyPose {
   Vec v;        // m/s
   Vec omega;    // rad/s
 
+  /// Returns the velocity of the surface at a place, m/s.
   Vec surface_velocity(const Vec& at) const { return v + cross(omega, at - x); }
 };
 
@@ -34,12 +36,14 @@ class RigidBody {
   RigidBody(BodyShape shape, const StrandPlace& place, double offset,
             std::optional<RootMotion> head);
 
+  /// Returns position and motion at t (s).
   BodyPose pose(double t) const;
   /// Empty for a distance grid.
   std::optional<Outline> outline(double t) const;
   /// Largest depth (m) of the strand's surface in the body over the points at x.
   double penetration(double t, In x) const;
 
+  /// Returns the shape.
   const BodyShape& shape() const { return shape_; }
   double offset() const { return offset_; }  // m
   /// Whether points of the ball may be in contact.
@@ -52,12 +56,14 @@ class RigidBody {
 
   /// A point of the strand near the surface, in the frame of the body.
   struct Near {
-    std::size_t point = 0;
+    std::size_t point = 0;  // index of the point
     Vec x, u;  // u: velocity relative to the surface; 0 if velocities were not asked for
-    Distance to;
+    Distance to;     // distance to the surface
     Mat3 curvature;  // of the distance; 0 unless asked for
   };
-  enum class With { position, velocity, curvature };  // each with those before it
+  /// Quantities that for_near() computes: `position`, also `velocity`, also
+  /// `curvature`.
+  enum class With { position, velocity, curvature };
   /// Calls see(Near) for the points whose distance is below reach(point), in order.
   template <With with, class Reach, class See>
   void for_near(const BodyPose& now, const Points& p, Reach reach, See see) const {

@@ -11,6 +11,7 @@
 
 namespace tress::models {
 
+/// Returns the parameters of the effect.
 std::span<const Parameter> self_contact_parameters();
 
 /// Self-contact of a strand, as in plectonemes. The polyline through the points that
@@ -65,6 +66,7 @@ class SelfContact final : public Effect {
   double separation_;
 };
 
+/// Makes the effect.
 std::unique_ptr<const Effect> make_self_contact(const Parameters& parameters,
                                                 const RootMotion& head);
 

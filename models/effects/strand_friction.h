@@ -38,6 +38,7 @@ std::span<const Parameter> strand_friction_parameters();
 /// the search, O(touching) for the rest.
 class StrandFriction {
  public:
+  /// Parameters of the contact.
   struct Law {
     double friction;   // Coulomb's coefficient
     double thickness;  // distance of axes that touch, m; 0: the sum of radii
@@ -64,6 +65,7 @@ class StrandFriction {
   /// Velocities (m/s) of those points per force (N) on each, row-major 3x3 blocks: those
   /// of the force on the first point, of the second ...
   void respond(std::size_t strand, In compliance);
+  /// Finds the forces of all contacts.
   void solve(const Loop& loop);
   /// Strands on which solve() has found other forces than before, ascending.
   std::span<const std::size_t> moved() const { return moved_; }
@@ -73,6 +75,7 @@ class StrandFriction {
   /// Returns the strands with contacts in the step, or in the recalled state, ascending.
   /// forces() returns the forces (N) on points_of() in the step.
   std::span<const std::size_t> touching() const { return touching_; }
+  /// Returns the forces on points_of() of a strand, N.
   In forces(std::size_t strand) const { return strands_[strand].forces; }
   /// f += the forces on all points of a strand, 3 numbers each, N.
   void add_loads(std::size_t strand, InOut f) const;
@@ -83,13 +86,15 @@ class StrandFriction {
 
   /// Returns the outcome of the step: sweeps, and the final violation of the laws, m/s.
   const ContactProblem::Outcome& outcome() const { return outcome_; }
+  /// Returns the largest violation that is allowed, m/s.
   double tolerance() const { return law_.tolerance; }
   /// Place where strands touched in the step, and the force on the first one (N).
   struct Touch {
-    std::size_t first_strand, second_strand;
-    double first, second;  // arc length at the start of the step, m
-    Vec force;
+    std::size_t first_strand, second_strand;  // the strands that touch
+    double first, second;                     // arc length at the start of the step, m
+    Vec force;                                // force on the first strand
   };
+  /// Returns all places where strands touched in the step.
   std::vector<Touch> touches() const;
 
   /// The largest T.u/(mu N) of the step's contacts, m/s: friction does work on a slide
@@ -107,6 +112,7 @@ class StrandFriction {
   /// deepest() and the forces of the last step, from which the next one starts: pairs and
   /// vectors. Empty: those of a new run.
   std::vector<double> memory() const;
+  /// Restores what memory() returned.
   void recall(In memory);
 
  private:

@@ -39,6 +39,7 @@ class StrandInteraction {
   /// points[k]: material points of strand k, a polyline. Throws InputError if a strand
   /// has fewer than two, or the law is invalid.
   StrandInteraction(const Parameters& parameters, std::vector<int> points);
+  /// Constructs the interaction from a law; points as above.
   StrandInteraction(const ContactLaw& law, std::vector<int> points);
 
   /// Refers to *this, which must outlive it and not move. No load before update(). Caches
@@ -58,6 +59,7 @@ class StrandInteraction {
                    const Loop& loop = in_turn);
   /// Longest distance (m) at which strands feel each other.
   double reach() const { return law_.reach(); }
+  /// Returns the law of contact.
   const ContactLaw& law() const { return law_; }
 
   // Readouts of the strands where the last call put them, too costly for every step.
@@ -68,6 +70,7 @@ class StrandInteraction {
   /// strands, m. Infinite for a single strand or before update().
   double mean_distance(const Loop& loop = in_turn) const;
 
+  /// Returns the strands as others see them.
   const StrandPartners& partners() const { return partners_; }
 
  private:

@@ -7,6 +7,7 @@
 
 namespace tress::models {
 
+/// Returns the parameters of the effect.
 std::span<const Parameter> tether_parameters();
 
 /// Pulls one point of the strand towards a moving place X(t) = target + amplitude sin(2
@@ -23,8 +24,9 @@ std::span<const Parameter> tether_parameters();
 /// is O(points).
 class Tether final : public Effect {
  public:
+  /// Parameters of the tether.
   struct Settings {
-    double at = 1;
+    double at = 1;              // place along the strand, 0 root to 1 tip
     double stiffness = 0;       // N/m
     double damping = 0;         // N s/m
     double pull = 0;            // N
@@ -65,6 +67,7 @@ class Tether final : public Effect {
   Settings s_;
 };
 
+/// Makes the effect.
 std::unique_ptr<const Effect> make_tether(const Parameters& parameters,
                                           const RootMotion& head);
 

@@ -9,6 +9,7 @@
 
 namespace tress::models {
 
+/// Returns the parameters of quadratic_drag.
 std::span<const Parameter> quadratic_drag_parameters();
 
 /// Quadratic drag of still air, different across and along the strand
@@ -16,6 +17,7 @@ std::span<const Parameter> quadratic_drag_parameters();
 std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
                                                   const RootMotion& head);
 
+/// Returns the parameters of wind.
 std::span<const Parameter> wind_parameters();
 
 /// Makes the load of moving air: a field of effects/wind_field.h (`profile`) and a law of

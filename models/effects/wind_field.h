@@ -12,32 +12,45 @@
 /// uniform flow does not read x.
 namespace tress::models {
 
+/// Air that moves with one velocity.
 struct UniformFlow {
-  static constexpr bool uniform = true;
-  Vec w;
+  static constexpr bool uniform = true;  // the velocity does not depend on the place
+  Vec w;                                 // velocity, m/s
+  /// Returns the velocity, m/s.
   Vec velocity(const Vec&) const { return w; }
+  /// Returns 0 everywhere.
   Mat3 gradient(const Vec&) const { return {}; }
 };
 
+/// Air at rest.
 struct StillAir {
+  /// Flow at an instant.
   using Flow = StillAir;
-  static constexpr bool uniform = true;
+  static constexpr bool uniform = true;  // the velocity does not depend on the place
+  /// Returns the flow at t (s).
   StillAir at(double) const { return {}; }
+  /// Returns 0 everywhere.
   static constexpr Vec velocity(const Vec&) { return {}; }
+  /// Returns 0 everywhere.
   static constexpr Mat3 gradient(const Vec&) { return {}; }
 };
 
+/// Wind of constant velocity.
 struct SteadyWind {
+  /// Flow at an instant.
   using Flow = UniformFlow;
-  Vec mean;
+  Vec mean;  // velocity, m/s
+  /// Returns the flow at t (s).
   UniformFlow at(double) const { return {mean}; }
 };
 
 /// A constant times sin(2 pi frequency t).
 struct SineWind {
+  /// Flow at an instant.
   using Flow = UniformFlow;
-  Vec peak;
+  Vec peak;              // largest velocity, m/s
   double frequency = 0;  // 1/s
+  /// Returns the flow at t (s).
   UniformFlow at(double t) const {
     return {std::sin(2 * std::numbers::pi * frequency * t) * peak};
   }
@@ -56,13 +69,16 @@ struct SineWind {
 /// [Kolmogorov 1941]. All derivatives are exact. Cost: `waves` sines per point and call.
 class Gusts {
  public:
-  static constexpr int waves = 24;
+  static constexpr int waves = 24;  // number of waves
 
+  /// The field at one instant.
   struct Flow {
-    static constexpr bool uniform = false;
-    const Gusts* gusts;
-    double t;
+    static constexpr bool uniform = false;  // the velocity depends on the place
+    const Gusts* gusts;                     // field of gusts
+    double t;                               // time, s
+    /// Returns the velocity at a place, m/s.
     Vec velocity(const Vec& x) const { return gusts->velocity(t, x); }
+    /// Returns the velocity gradient at a place, 1/s.
     Mat3 gradient(const Vec& x) const { return gusts->gradient(t, x); }
   };
 
@@ -72,7 +88,9 @@ class Gusts {
   /// every machine.
   Gusts(Vec mean, double rms, double length, double time, std::uint64_t seed);
 
+  /// Returns the flow at t (s).
   Flow at(double t) const { return {this, t}; }
+  /// Returns the velocity at a place, m/s.
   Vec velocity(double t, const Vec& x) const;
   /// Returns the velocity gradient dw_i/dx_j, 1/s.
   Mat3 gradient(double t, const Vec& x) const;

@@ -13,10 +13,12 @@ namespace tress::models {
 /// the strand. O(elements).
 class ElementElasticity final : public Elasticity, private StrainForm {
  public:
+  /// Element and its place.
   struct Placed {
-    int first;  // node, >= -1
-    std::unique_ptr<RodElement> element;
+    int first;                            // node, >= -1
+    std::unique_ptr<RodElement> element;  // element
   };
+  /// Takes elements in order; `behind`: length of the clamp's edge, m.
   ElementElasticity(std::vector<Placed> elements, double behind);
 
   std::vector<std::vector<int>> groups() const override;

@@ -21,20 +21,24 @@ class ElementRod {
     place(first, std::make_unique<LawElement<Law>>(std::move(law), constants));
   }
 
+  /// Edge between two nodes.
   struct Edge {
-    int first;  // node
-    const Segment& segment;
+    int first;               // node
+    const Segment& segment;  // segment that the edge is made from
   };
+  /// Returns the edges from the root on.
   std::vector<Edge> edges() const;
 
   /// A joint: three nodes with two edges between them. The first joint of a clamped
   /// strand is that of the clamp with edge 0, half an edge long.
   struct Joint {
-    int first;  // node
-    RodJoint rod;
+    int first;     // node
+    RodJoint rod;  // section and rest shape of the joint
   };
+  /// Returns the joints from the root on.
   std::vector<Joint> joints() const;
 
+  /// Makes the system of all elements.
   std::unique_ptr<System> system(Effects effects, LinearKind solver) &&;
 
  private:

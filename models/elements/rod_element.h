@@ -41,6 +41,7 @@ concept RodLaw = L::nodes >= 1 && L::nodes <= 4 && L::strains >= 1 &&
 /// Stiffness (J per square of the strain) and friction (J s) of each strain.
 template <RodLaw Law>
 struct ElementConstants {
+  /// Stiffness and friction of each strain.
   std::array<double, Law::strains> stiffness{}, friction{};
 };
 
@@ -48,10 +49,13 @@ struct ElementConstants {
 /// law. Cost of the second derivatives: 9 nodes^2 times that of the strains.
 template <RodLaw Law>
 struct LawPart {
+  /// Number of strains, and of coordinates in x.
   static constexpr int strains = Law::strains, coordinates = 3 * Law::nodes;
-  Law law;
+  Law law;  // law of the strains
+  /// Coefficients and rest values of each strain.
   double stiffness[strains] = {}, friction[strains] = {}, rest[strains] = {};
 
+  /// Evaluates the strains at x.
   template <class T>
   void strain(const T* x, T* s) const {
     std::array<Vec3<T>, Law::nodes> at;
@@ -60,6 +64,7 @@ struct LawPart {
     for (int k = 0; k < strains; ++k) s[k] = s[k] - T(rest[k]);
   }
 
+  /// Evaluates the first derivatives of the strains by x.
   void gradient(const double* x, double (&g)[strains][coordinates]) const {
     if constexpr (requires { law.gradient(x, g); }) {
       law.gradient(x, g);
@@ -76,6 +81,7 @@ struct LawPart {
     }
   }
 
+  /// Adds the second derivatives of the strains, weighted with `stress`.
   void add_second(const double* x, const double* stress,
                   double (&h)[coordinates][coordinates]) const {
     if constexpr (requires { law.add_second(x, stress, h); }) {
@@ -104,12 +110,15 @@ struct LawPart {
 /// velocities of its nodes, three numbers each; matrices are row-major.
 class RodElement {
  public:
+  /// Bound of the coordinates of an element.
   static constexpr int most_coordinates = ComplianceForm::most_coordinates;
 
   virtual ~RodElement() = default;
+  /// Returns the number of nodes.
   virtual int nodes() const = 0;
   /// The element is to be free of stress in the rest shape, in which its nodes are at x.
   virtual void rest_at(const double* x) = 0;
+  /// Adds the elastic and friction forces df on the nodes.
   virtual void add_force(const double* x, const double* rate,
                          double* f) const noexcept = 0;
   /// h = pos df/dx + vel df/d(rate). `from`: the element at the origin of stresses, or
@@ -122,20 +131,26 @@ class RodElement {
   /// Power (W) of friction, and that of the first `led` coordinates, which are
   /// prescribed.
   virtual double power(const double* x, const double* rate, int led) const noexcept = 0;
+  /// Returns the constant data of ComplianceForm for these coordinates.
   virtual ComplianceForm::Block block(std::vector<int> coordinates) const = 0;
   /// Computes strains as StrainForm does, with the first `led` coordinates prescribed.
   virtual void strain(const double* x, const double* rate, int led,
                       ComplianceForm::Value& value) const noexcept = 0;
+  /// Adds second derivatives as ComplianceForm::add_second(), with `led` coordinates
+  /// prescribed.
   virtual void add_second(const double* x, const double* stress, int led,
                           ComplianceForm::Second& h) const noexcept = 0;
 };
 
+/// Element of the strains of a law.
 template <RodLaw Law>
 class LawElement final : public RodElement {
  public:
+  /// Strains that the element has.
   using Part = LawPart<Law>;
-  static constexpr int size = Part::coordinates;
+  static constexpr int size = Part::coordinates;  // number of coordinates
 
+  /// Takes the law and its coefficients.
   LawElement(Law law, const ElementConstants<Law>& constants) : part_{std::move(law)} {
     std::ranges::copy(constants.stiffness, part_.stiffness);
     std::ranges::copy(constants.friction, part_.friction);
@@ -186,6 +201,7 @@ class LawElement final : public RodElement {
       std::copy(g[k] + led, g[k] + size, value.gradient[k]);
     }
   }
+  /// Adds the second derivatives of the strains, weighted with `stress`.
   void add_second(const double* x, const double* stress, int led,
                   ComplianceForm::Second& h) const noexcept override {
     double all[size][size] = {};

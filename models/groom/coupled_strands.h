@@ -51,6 +51,7 @@ class CoupledStrands final : public StrandBlock,
   ContactForm* contact_form() override { return held_contacts_.empty() ? nullptr : this; }
   StressForm* stress_form() override { return stressed_.empty() ? nullptr : this; }
 
+  /// Returns the contacts between strands.
   const StrandContacts& contacts() const { return *contacts_; }
   /// The part of energy() that belongs to the contacts, J.
   double contact_potential(double t, In q, In v);

@@ -27,7 +27,9 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
   Energetics* energetics() override;
   MaterialPoints* material_points() override { return this; }
 
+  /// Returns the number of strands.
   std::size_t strands() const { return strands_.size(); }
+  /// Returns the system of strand k.
   System& strand(std::size_t k) const { return *strands_[k]; }
   /// Whether pull_back() and responses() are known, and of all strands cost little more
   /// than of one.

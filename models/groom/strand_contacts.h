@@ -28,7 +28,9 @@ class StrandContacts {
   /// Positions at which the list was made.
   const std::vector<double>& made_at() const { return made_at_; }
 
+  /// Returns the law of contact.
   const ContactLaw& law() const { return law_; }
+  /// Returns the number of segments.
   std::size_t segments() const { return samples_.size(); }
   /// Segments of other strands that may touch this one, ascending.
   std::span<const int> partners(std::size_t segment) const {

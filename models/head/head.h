@@ -40,24 +40,27 @@ struct LaneOptions {
 
 /// Why a head cannot have an effect, and what would help; nothing if it can.
 struct HeadRefusal {
-  std::string reason, remedy;
+  std::string reason, remedy;  // cause and remedy for messages
 };
+/// Returns why batches cannot have an effect; nothing if they can.
 std::optional<HeadRefusal> refused_by_heads(const Effect& effect);
 /// Effects that the other numbers say as well, uniform accelerations and linear drag,
 /// join them; the others are left.
 void take_uniform_effects(LaneOptions& options);
+/// Returns options after take_uniform_effects().
 template <std::derived_from<LaneOptions> Options>
 Options with_uniform_effects(Options options) {
   take_uniform_effects(options);
   return options;
 }
 
-/// Number type of a batch, whose strands lie in SIMD lanes. Wider packs and single
-/// precision are faster on machines with registers of that size. Results are
-/// bit-identical for any number of lanes of one type.
+/// Number type of a batch, whose strands lie in SIMD lanes: `float64` or `float32`. Wider
+/// packs and single precision are faster on machines with registers of that size. Results
+/// are bit-identical for any number of lanes of one type.
 enum class HeadNumber { float64, float32 };
+/// Lanes of a batch.
 struct HeadPack {
-  HeadNumber number = HeadNumber::float64;
+  HeadNumber number = HeadNumber::float64;        // number type
   int lanes = 4;                                  // 1, 4, 8; of float32 8, 16
   std::optional<Instructions> instructions = {};  // none: the widest of the machine
 };
@@ -70,12 +73,13 @@ inline HeadPack widest_pack(HeadNumber number) {
 
 /// A strand without a solution: it stays where it was, the others go on.
 struct HeadLoss {
-  std::size_t strand;
-  long step;    // of its head, the first is 1
-  double time;  // at which the step starts, s
-  std::string_view reason;
+  std::size_t strand;       // index of the strand
+  long step;                // of its head, the first is 1
+  double time;              // at which the step starts, s
+  std::string_view reason;  // cause, for messages
 };
 
+/// Work done by steps.
 using HeadWork = NewtonWork;
 
 /// Energies of a strand at one instant.
@@ -105,9 +109,12 @@ class Head {
   /// free root, and on effects as LaneOptions says. Its own root motion is not read but
   /// for `position` and `frame` at rest.
   virtual void add(const Strand& strand, Effects own) = 0;
+  /// Adds a strand without effects of its own.
   void add(const Strand& strand) { add(strand, {}); }
 
+  /// Returns the number of strands.
   virtual std::size_t strands() const = 0;
+  /// Returns the number of blocks.
   virtual std::size_t blocks() const = 0;
   virtual std::size_t bytes() const = 0;  // of all strands
 
@@ -117,6 +124,7 @@ class Head {
     virtual ~Scratch() = default;
     HeadWork work;  // done with it
   };
+  /// Returns memory for the calls of one thread.
   virtual std::unique_ptr<Scratch> scratch() const = 0;
 
   /// Advances a block by one step from t to t + h (s). With a tolerance each strand takes
@@ -135,9 +143,11 @@ class Head {
   }
   /// Returns the number of blocks per call with which few lanes are empty.
   virtual std::size_t blocks_at_once() const { return 12; }
+  /// Returns true if the strand has failed.
   virtual bool lost(std::size_t strand) const = 0;
   /// All but the first `known` that were found, by strand.
   virtual std::vector<HeadLoss> losses(std::size_t known) const = 0;
+  /// Returns all that were found.
   std::vector<HeadLoss> losses() const { return losses(0); }
   /// Marks a strand as failed whose state the caller finds impossible.
   virtual void lose(std::size_t strand) = 0;
@@ -145,7 +155,9 @@ class Head {
   /// Returns how many numbers positions() writes for one strand, 3 (elements + 1): root
   /// and tips of elements (m). Strands of a block follow each other.
   virtual std::size_t numbers() const = 0;
+  /// Returns the number of strands of a block.
   virtual std::size_t strands_of(std::size_t block) const = 0;
+  /// Computes root and tips of the strands of a block, m.
   virtual void positions(std::size_t block, double t, std::span<double> x) const = 0;
   /// Computes the positions (m) and velocities (m/s) of root and tips of elements.
   virtual void motion(std::size_t block, double t, std::span<double> x,
@@ -174,7 +186,9 @@ class Head {
   virtual std::size_t kept() const = 0;
   /// Returns how many of these numbers are coordinates and rates; they come first.
   virtual std::size_t kept_of_state() const = 0;
+  /// Writes all that steps change, kept() numbers a strand.
   virtual void keep(std::size_t block, std::span<double> x) const = 0;
+  /// Restores what keep() wrote.
   virtual void recall(std::size_t block, std::span<const double> x) = 0;
 
   /// Returns the data that a device needs to step the strands
@@ -188,6 +202,7 @@ class Head {
 /// or the rotation vectors of joints (rad), 3 per element. They throw InputError if the
 /// options or the pack make no sense.
 std::unique_ptr<Head> stiff_helix_head(const LaneOptions& options, const HeadPack& pack);
+/// Makes chains of rigid links; see stiff_helix_head().
 std::unique_ptr<Head> stiff_chain_head(const LaneOptions& options, const HeadPack& pack);
 
 }  // namespace tress::models

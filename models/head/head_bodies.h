@@ -16,17 +16,21 @@ class HeadBodies {
  public:
   /// Bodies found for one time; memory of one thread.
   struct Near {
+    /// Time of the search, s.
     double t = std::numeric_limits<double>::quiet_NaN();
     Vec head;                             // its position, m
     std::vector<NearBody> around, reach;  // bodies that reach the head, and a block
 
+    /// Returns true if no body reaches the head.
     bool none() const { return around.empty(); }
   };
 
+  /// Adds a body, which must outlive it.
   void add(const RigidContact* body) { bodies_.push_back(body); }
   /// A strand that stays so near to the head's position (m).
   void include(double radius) { radius_ = std::max(radius_, radius); }
 
+  /// Finds the bodies for a time, unless `near` is for that time.
   void look(double t, const RootMotion& head, Near& near) const {
     if (bodies_.empty() || near.t == t) return;
     near.t = t;

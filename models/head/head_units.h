@@ -11,6 +11,7 @@ namespace tress::models {
 /// then fit into single precision.
 struct HeadUnits {
   double length, time, density;  // m, s, kg/m
+  /// Returns the units for a longest strand (m).
   static HeadUnits of(double longest) {
     return {longest, std::sqrt(longest / earth_gravity), 0};
   }
@@ -19,9 +20,13 @@ struct HeadUnits {
   void weigh(double given, double first) {
     if (density == 0) density = given > 0 ? given : first;
   }
+  /// Returns the unit of bending stiffness, N m^2.
   double stiffness() const { return density * std::pow(length, 4) / (time * time); }
+  /// Returns the unit of speed, m/s.
   double speed() const { return length / time; }
+  /// Returns the unit of force, N.
   double force() const { return density * speed() * speed(); }
+  /// Returns the unit of mass, kg.
   double mass() const { return density * length; }
 };
 

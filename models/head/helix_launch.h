@@ -11,13 +11,14 @@ namespace tress::models {
 /// Data of a strand that steps do not change, before the rest shape of its elements.
 template <class T>
 struct HelixFixed {
-  ReducedMaterial<T> material;
-  LaneRoot<T> root;
+  ReducedMaterial<T> material;  // material of the elements
+  LaneRoot<T> root;             // root of the strand
 
-  static constexpr int numbers = 20;
+  static constexpr int numbers = 20;  // count of numbers before the rest shape
 };
 /// Numbers of a strand.
 constexpr int helix_fixed(int elements) { return 20 + 3 * elements; }
+/// Returns the count of numbers of a strand's state.
 constexpr int helix_state(int elements) { return 6 * elements; }
 
 /// A step from t to t + h.
@@ -30,9 +31,9 @@ struct HelixStep {
 /// side by side read numbers side by side. T = PackOf<double, 1> or PackOf<float, 1>.
 template <class T>
 struct HelixLaunch {
-  HelixStrand<T> kernel;
-  long strands;
-  int steps;
+  HelixStrand<T> kernel;    // kernel of the steps
+  long strands;             // number of strands
+  int steps;                // steps of this launch
   int before;               // steps of earlier launches
   const HelixStep* motion;  // (steps)
   const T* fixed;           // (helix_fixed, strands)
@@ -43,7 +44,7 @@ struct HelixLaunch {
 static_assert(sizeof(HelixLaunch<PackOf<double, 1>>) == 320);
 static_assert(sizeof(HelixLaunch<PackOf<float, 1>>) == 320);
 
-/// Sizes of the two device kernels, whose memory of elements is fixed.
+/// Bounds of the elements of the two device kernels, whose memory is fixed.
 inline constexpr int few_elements = 16, most_elements = 64;
 
 /// All steps of strand s. A strand whose result is not finite stays as it was before the

@@ -17,10 +17,14 @@ namespace tress::models {
 template <LaneModel Model>
 class ModelLanes final : public LaneKernel<typename Model::Real::Scalar> {
  public:
+  /// scalar: a number, or a pack of lanes.
   using T = typename Model::Real;
+  /// Number of a lane.
   using N = typename T::Scalar;
+  /// Data of strands in blocks.
   using Memory = LaneMemory<Model>;
 
+  /// Makes the model with what acts on all strands.
   ModelLanes(const LaneOptions& options, Instructions instructions)
       : options_(with_uniform_effects(options)),
         units_(HeadUnits::of(options.longest)),
@@ -165,6 +169,7 @@ class ModelLanes final : public LaneKernel<typename Model::Real::Scalar> {
 template <LaneModel Model>
 class ModelLanes<Model>::OfThread final : public Block<N> {
  public:
+  /// Allocates for one thread.
   explicit OfThread(const ModelLanes& of)
       : of_(of), model_(of.model_), scratch_(of.model_) {}
 

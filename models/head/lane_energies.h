@@ -9,11 +9,12 @@ namespace tress::models {
 /// Energies of strands side by side, in a head's units.
 template <class T>
 struct LaneEnergies {
-  T kinetic, elastic;
-  Vec3<T> first;  // mass times place, seen from the head's position
-  T fastest;      // largest speed of a point, squared
-  Vec3<T> tip;    // place of the last one, seen from there
+  T kinetic, elastic;  // energies of the lanes
+  Vec3<T> first;       // mass times place, seen from the head's position
+  T fastest;           // largest speed of a point, squared
+  Vec3<T> tip;         // place of the last one, seen from there
 
+  /// Takes the speed of a point into `fastest`.
   void passes(const Vec3<T>& velocity) {
     const T speed = dot(velocity, velocity);
     for (int lane = 0; lane < T::lanes; ++lane) {

@@ -17,6 +17,7 @@
 /// Common code of all batches, whatever their kernel.
 namespace tress::models {
 
+/// Place of errors of batches.
 inline constexpr const char* place_of_head = "head of hair";
 
 /// Throws InputError unless these numbers make sense.

@@ -13,16 +13,23 @@ namespace tress::models {
 template <LaneModel Model>
 class LaneMemory final : public StrandMemory {
  public:
+  /// scalar: a number, or a pack of lanes.
   using T = typename Model::Real;
+  /// Data of a strand that steps do not change.
   using Strand = typename Model::Strand;
+  /// Data of an element that steps change.
   using Element = typename Model::Element;
 
   /// `model` must outlive it.
   explicit LaneMemory(const Model& model) : model_(model), n_(model.elements()) {}
 
+  /// Returns the constant data of a block's strands.
   Strand& strand(std::size_t block) { return strands_[block]; }
+  /// Returns the constant data of a block's strands.
   const Strand& strand(std::size_t block) const { return strands_[block]; }
+  /// Returns the elements of a block's strands.
   Element* elements(std::size_t block) { return &elements_[n_ * block]; }
+  /// Returns the elements of a block's strands.
   const Element* elements(std::size_t block) const { return &elements_[n_ * block]; }
 
   std::size_t blocks() const override { return strands_.size(); }

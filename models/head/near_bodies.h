@@ -16,8 +16,8 @@ namespace tress::models {
 /// A body that acts on a head at one time, and where it is, seen from the head's position
 /// along the axes of the world.
 struct NearBody {
-  const RigidContact* contact;
-  BodyPose pose;
+  const RigidContact* contact;  // body and its law
+  BodyPose pose;                // position and motion
 };
 
 /// Finds the bodies that reach the ball of all strands at t, seen from its centre.
@@ -32,6 +32,7 @@ inline void bodies_around(std::span<const RigidContact* const> all, double t,
   }
 }
 
+/// Transforms a place into the axes of a body.
 template <class T>
 Vec3<T> in_body(const BodyPose& pose, const Vec3<T>& x) {
   return FrameOf<T>{pose.frame.e0, pose.frame.e1, pose.frame.e2}.back(x);
@@ -58,8 +59,10 @@ void bodies_near(std::span<const NearBody> around, const Vec3<T>& from, const T&
 template <class T, class Shape>
 class BodyTouch {
  public:
+  /// Vector of these scalars.
   using Vec3T = Vec3<T>;
 
+  /// Prepares the contact of points with a body.
   BodyTouch(const NearBody& body, const Shape& shape, const FrameOf<T>& frame, double h)
       : pose_(body.pose),
         law_(body.contact->law),

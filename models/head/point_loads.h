@@ -9,24 +9,25 @@ namespace tress::models {
 /// semidefinite where it enters a tangent.
 template <class T>
 struct PointLoad {
-  Vec3<T> force;
-  Symmetric3<T> block;
+  Vec3<T> force;        // load f
+  Symmetric3<T> block;  // derivatives B
 };
 
 /// Load on a point with separate derivatives of any symmetry: -df/dx at constant
 /// velocity, and -df/du.
 template <class T>
 struct ExactLoad {
-  Vec3<T> force;
-  Matrix3<T> by_x, by_u;
+  Vec3<T> force;          // load f
+  Matrix3<T> by_x, by_u;  // derivatives by place and by velocity
 };
 /// Load at a point p of an element; `some`: 1 in lanes with a load, 0 in others.
 template <class T, class Load>
 struct LoadedPoint {
   Vec3<T> p;  // from the start, in the element's axes
-  Load load;
-  T some;
+  Load load;  // load on the point
+  T some;     // 1 in lanes with a load, 0 in others
 };
+/// Point with a load of separate derivatives.
 template <class T>
 using ExactPoint = LoadedPoint<T, ExactLoad<T>>;
 
@@ -38,11 +39,13 @@ Symmetric3<T> where_less(const T& x, const T& y, const Symmetric3<T>& yes,
   return {one(yes.xx, no.xx), one(yes.yy, no.yy), one(yes.zz, no.zz),
           one(yes.xy, no.xy), one(yes.xz, no.xz), one(yes.yz, no.yz)};
 }
+/// Returns `yes` where x < y, else `no`, lane by lane.
 template <class T>
 Vec3<T> where_less(const T& x, const T& y, const Vec3<T>& yes, const Vec3<T>& no) {
   return {where_less(x, y, yes.x, no.x), where_less(x, y, yes.y, no.y),
           where_less(x, y, yes.z, no.z)};
 }
+/// Returns `yes` where x < y, else `no`, lane by lane.
 template <class T>
 Matrix3<T> where_less(const T& x, const T& y, const Matrix3<T>& yes,
                       const Matrix3<T>& no) {
@@ -55,10 +58,10 @@ Matrix3<T> where_less(const T& x, const T& y, const Matrix3<T>& yes,
 /// element's axes. J = [1, -[P]x, d] is the motion of a point, d_j = dP/dq_j.
 template <class T>
 struct LoadSums {
-  T some{};  // 1 in lanes with a load, 0 in others
-  Vec3<T> force, moment, unknown;
-  Symmetric3<T> ll, aa, inner;
-  Matrix3<T> la;
+  T some{};                        // 1 in lanes with a load, 0 in others
+  Vec3<T> force, moment, unknown;  // sums of J^T f
+  Symmetric3<T> ll, aa, inner;     // diagonal blocks of the sum of J^T B J
+  Matrix3<T> la;                   // block of translations and rotations
   Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
 
   /// Adds the load on a point that the unknowns do not move.

@@ -13,6 +13,7 @@ class StateHash {
  public:
   /// More strands, by what the head keeps of them.
   void add(const Head& head, std::span<const double> kept);
+  /// Returns the hash of all strands so far.
   std::size_t value() const { return all_; }
 
  private:

@@ -12,6 +12,7 @@ namespace tress::models {
 /// The ContactForm of a strand: its effects that hold contact forces.
 class HeldContacts final : private ContactForm {
  public:
+  /// Function that computes the points of a state.
   using PointsAt = TakenContacts::PointsAt;
 
   /// Replaces effects that hold contact forces in `effects` by copies for this strand

@@ -18,10 +18,11 @@ class DerElasticity final : public Elasticity,
                             private NaturalStrains,
                             private StrandElimination {
  public:
+  /// An edge at rest.
   struct EdgeData {
-    Frame reference;
-    double length;   // at rest, m
-    double stretch;  // EA/l, N/m; 0: held by constraints
+    Frame reference;  // frame at rest
+    double length;    // at rest, m
+    double stretch;   // EA/l, N/m; 0: held by constraints
   };
   /// `joints`: between neighbouring edges; if `walled`, the clamp's joint comes first.
   DerElasticity(std::vector<EdgeData> edges, std::vector<RodJoint> joints, bool walled,
@@ -39,6 +40,7 @@ class DerElasticity final : public Elasticity,
   void carry(InOut z, InOut rate, InOut second) const override;
   void reset() override;
   std::vector<double> memory() const override;
+  /// Restores what keep() wrote.
   void recall(In memory) override;
   StrandElimination* elimination() override { return walled_ ? this : nullptr; }
   NaturalStrains* natural_strains() override { return this; }

@@ -9,8 +9,8 @@ namespace tress::models {
 
 /// The earlier reference of an edge whose reference renew_reference() has replaced.
 struct Replaced {
-  std::size_t edge;
-  Frame reference;
+  std::size_t edge;  // index of the edge
+  Frame reference;   // its earlier reference
 };
 
 /// dc/dt of EdgeTurn's c for an edge vector that changes at the rate de.

@@ -12,8 +12,9 @@ namespace tress::models {
 
 /// Origin of stresses (StressForm): all coordinates z and the clamp there.
 struct StressOrigin {
-  RootPose root;
-  std::vector<double> z;
+  RootPose root;          // clamp at the origin
+  std::vector<double> z;  // coordinates at the origin
+  /// Stresses in the next tangents.
   StressForm::Stresses stresses = StressForm::Stresses::held;
 
   /// Returns the stress of a stiffness whose strain at the origin is `strain`. `change`
@@ -27,8 +28,8 @@ struct StressOrigin {
 /// State of a strand of redundant coordinates for its internal forces: all coordinates
 /// z = [held; q], those prescribed by the clamp first, their rates, and the clamp.
 struct Placement {
-  const RootPose& root;
-  In z, rate;
+  const RootPose& root;  // clamp
+  In z, rate;            // coordinates and their rates
   /// Origin of stresses in the second-order terms of tangents; null: this state.
   const StressOrigin* origin = nullptr;
 };
@@ -75,6 +76,7 @@ class StrandElimination;  // models/maximal/strand_elimination.h
 class Elasticity {
  public:
   virtual ~Elasticity() = default;
+  /// Returns the groups of coordinates.
   virtual std::vector<std::vector<int>> groups() const = 0;
   /// f += dE/dz + friction.
   virtual void add_force(const Placement& p, InOut f) noexcept = 0;
@@ -101,12 +103,14 @@ class Elasticity {
   virtual void carry(InOut /*z*/, InOut /*rate*/, InOut /*second*/) const {}
   /// Jumps of forces that rebase() has seen since reset().
   struct Jumps {
-    long count = 0;
+    long count = 0;         // number of jumps
     std::size_t joint = 0;  // of the first; joint k begins edge k
   };
+  /// Returns the jumps since reset().
   virtual Jumps jumps() const { return {}; }
   virtual void reset() {}                                    // undoes every rebase()
   virtual std::vector<double> memory() const { return {}; }  // as History::memory()
+  /// Restores what memory() returned.
   virtual void recall(In /*memory*/) {}
   /// Whether tangents look at Placement::origin.
   virtual bool takes_stresses() const { return false; }

@@ -14,6 +14,7 @@ namespace tress::models {
 /// dropped.
 class Groups {
  public:
+  /// Takes the groups; coordinates below `held` are prescribed.
   Groups(const std::vector<std::vector<int>>& groups, int held);
 
   /// Adds every pair of a group to `columns`, one list of rows per unprescribed
@@ -22,12 +23,15 @@ class Groups {
   /// Looks up the indices of all entries; call once.
   void bind(const Pattern& pattern);
 
+  /// Returns the number of coordinates of a group.
   std::size_t size(std::size_t group) const { return start_[group + 1] - start_[group]; }
+  /// Returns the coordinates of a group.
   std::span<const int> coordinates(std::size_t group) const {
     return std::span(coordinate_).subspan(start_[group], size(group));
   }
   /// Indices of the entries of a group's matrix, row by row; -1: dropped.
   const int* places(std::size_t group) const { return &place_[first_place_[group]]; }
+  /// Returns the number of groups.
   std::size_t count() const { return start_.size() - 1; }
 
  private:
@@ -41,6 +45,7 @@ class Groups {
 /// Adds matrices of groups to the values of a sparse matrix.
 class GroupSum {
  public:
+  /// Adds to `values`, the entries of the pattern given to bind().
   GroupSum(const Groups& groups, Out values) : groups_(groups), values_(values) {}
   /// `matrix` is (size x size), row-major.
   void add(std::size_t group, const double* matrix) {

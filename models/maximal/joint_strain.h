@@ -44,8 +44,9 @@ inline double wound(double twist, double near) {
 /// symmetric matrix over (u, w): six rows of one pack for u and one for w, whose last
 /// lanes are 0.
 struct TwoVectorForm {
-  Pack rows[6][2] = {};
+  Pack rows[6][2] = {};  // rows of the symmetric matrix
 
+  /// Returns an entry.
   double at(int i, int j) const { return rows[i][j / 3][j % 3]; }
 
   /// += factor ((w - u) . a) (x . b), x = u (side 0) or w (side 1).
@@ -95,6 +96,7 @@ struct TwoVectorForm {
 /// relative rotation only: d strain = gradient . (w+ - w-).
 struct JointStrain {
   JointStrain() = default;
+  /// Evaluates the strains between two frames.
   JointStrain(const Frame& minus, const Frame& plus)
       : c(1 + dot(minus.e0, plus.e0)),
         value(joint_strain(minus, plus)),
@@ -134,10 +136,10 @@ struct JointStrain {
     return form;
   }
 
-  double c = 2;
-  Vec value;
-  Vec k;  // half the curvature binormal
-  Vec twist, curvature1, curvature2;
+  double c = 2;                       // 1 + product of the tangents
+  Vec value;                          // twist and curvatures
+  Vec k;                              // half the curvature binormal
+  Vec twist, curvature1, curvature2;  // gradients of the three strains
 };
 
 }  // namespace tress::models

@@ -34,26 +34,26 @@ namespace tress::models {
 struct MaximalStrand {
   /// A point that carries mass and receives the loads of effects.
   struct MassPoint {
-    NodeMean at;
+    NodeMean at;          // the point as a mean of nodes
     double mass, length;  // kg, m
   };
 
-  bool clamped = true;
-  int nodes = 0;
+  bool clamped = true;                // whether node 0 is prescribed
+  int nodes = 0;                      // number of nodes
   std::vector<double> z, rate;        // at t = 0
   std::vector<double> z_typ, z_rate;  // typical sizes of z and its rate
   std::vector<double> inertia;        // inertia of the other coordinates, >= 0
-  std::vector<MassPoint> mass;
-  std::vector<NodeMean> shown;  // root and segments' ends: MaterialPoints
-  std::vector<double> edges;    // m, between nodes at rest; none: Elasticity::stretch
-  RootMotion root;
-  std::unique_ptr<Elasticity> elasticity;
-  Frame to_tip;  // from Elasticity::end_frame to the section at the tip, at rest
-  Effects effects;
+  std::vector<MassPoint> mass;        // points with mass
+  std::vector<NodeMean> shown;        // root and segments' ends: MaterialPoints
+  std::vector<double> edges;  // m, between nodes at rest; none: Elasticity::stretch
+  RootMotion root;            // motion of the root
+  std::unique_ptr<Elasticity> elasticity;  // internal forces
+  Frame to_tip;     // from Elasticity::end_frame to the section at the tip, at rest
+  Effects effects;  // effects on the mass points
   /// Constraints on q: particles are the nodes that are not prescribed, parameters the
   /// other coordinates.
   std::unique_ptr<ConstraintSet> constraints;
-  LinearKind solver = LinearKind::automatic;
+  LinearKind solver = LinearKind::automatic;  // solver of the sparse matrix
   Jacobian jacobian =
       Jacobian::exact;  // elastic: loads as if the strand's tangent were fixed
 };
@@ -78,6 +78,7 @@ class MaximalSystem final : public System,
                             private MaterialPoints,
                             private MovingHistory {
  public:
+  /// Takes the parts of a strand.
   explicit MaximalSystem(MaximalStrand strand);
 
   Layout layout() const override;

@@ -12,11 +12,13 @@ namespace tress::models {
 /// Position and motion of the root, clamped or free, at t = 0. The strand starts as a
 /// rigid body that moves with it.
 struct RootStart {
-  StrandPlace place;
+  StrandPlace place;   // place and frame of the root
   Vec velocity, spin;  // m/s; rad/s, world components
 
+  /// Returns the velocity of a place that moves with the root, m/s.
   Vec velocity_of(const Vec& x) const { return velocity + cross(spin, x - place.x); }
 };
+/// Returns the start of a strand's root.
 RootStart root_start(const Strand& strand);
 
 /// Common data of all models with nodes at the segments' ends. Beyond the middle of the
@@ -30,11 +32,11 @@ struct NodalStrand {
   /// strand is a chain.
   NodalStrand(const Strand& strand, const std::string& model, std::size_t others);
 
-  MaximalStrand parts;
-  RootStart root;
+  MaximalStrand parts;  // nodes, masses and root of the system
+  RootStart root;       // start of the root
   /// Frames of the edges: the material frame in the middle of the segment, with e0 turned
   /// onto the chord by the minimal rotation.
-  std::vector<Frame> initial, natural;
+  std::vector<Frame> initial, natural;  // frames of the edges, at t = 0 and at rest
 };
 
 /// Typical rate (1/s) of swinging and bending: sqrt(g/L + EI/(rho A L^4)), g = 10 m/s^2.
@@ -54,6 +56,7 @@ inline constexpr Parameter maximal_solver_parameter{
     .name = "solver",
     .help = "solver of the model's linear equations; auto: by their structure",
     .choices = "auto|banded|klu"};
+/// Returns the value of maximal_solver_parameter.
 LinearKind maximal_solver(const Parameters& parameters);
 
 }  // namespace tress::models

@@ -20,13 +20,13 @@ namespace tress::models {
 
 /// The parts of the system of kirchhoff_nodal.cpp.
 struct NodalParts {
-  StaggeredRod rod;
-  RootMotion root;
-  std::vector<double> node_length;  // length seen by effects, m
-  std::vector<double> start;        // curvatures at t = 0
-  double curvature = 1, rate = 1;   // typical sizes, 1/m and 1/s
-  Jacobian jacobian = Jacobian::exact;
-  Effects effects;
+  StaggeredRod rod;                     // discretisation
+  RootMotion root;                      // motion of the root
+  std::vector<double> node_length;      // length seen by effects, m
+  std::vector<double> start;            // curvatures at t = 0
+  double curvature = 1, rate = 1;       // typical sizes, 1/m and 1/s
+  Jacobian jacobian = Jacobian::exact;  // terms of the Jacobian
+  Effects effects;                      // effects on the nodes
 };
 
 /// Kirchhoff's equations in curvatures behind the contract of contract/system.h.
@@ -35,6 +35,7 @@ class NodalSystem final : public System,
                           private Energetics,
                           private MaterialPoints {
  public:
+  /// Takes the parts of a strand.
   explicit NodalSystem(NodalParts parts);
 
   Layout layout() const override { return {static_cast<int>(parts_.start.size()), 0}; }

@@ -12,10 +12,11 @@ namespace tress::models {
 
 /// A point of the strand as the weighted mean of up to four consecutive nodes.
 struct NodeMean {
-  int first = 0;  // node
-  int nodes = 1;
-  std::array<double, 4> weight{1};
+  int first = 0;                    // node
+  int nodes = 1;                    // number of nodes
+  std::array<double, 4> weight{1};  // weights of the nodes
 
+  /// Returns the mean of vectors at the nodes.
   Vec of(In values) const {  // (3 nodes)
     Vec sum;
     for (int k = 0; k < nodes; ++k) {
@@ -42,7 +43,9 @@ class PointDirections {
   void tangents(In x, Out t) const;
 
   // As in Groups, for S.
+  /// Adds the pairs of S that the tangents couple.
   void couple(std::vector<std::vector<int>>& columns) const { groups_.couple(columns); }
+  /// Looks up the entries of S.
   void bind(const Pattern& pattern) { groups_.bind(pattern); }
   /// s += sum_i w_i blocks_i dt_i/dz with w_i the weights of point i; blocks (9 points)
   /// row-major.

@@ -33,6 +33,7 @@ FrameOf<T> edge_frame(const Frame& reference, const Vec3<T>& e, const T& theta) 
 /// turns by w(dy) + Q(dy, dy)/2.
 struct EdgeTurn {
   EdgeTurn() = default;
+  /// Evaluates the rotation for an edge vector.
   EdgeTurn(const Vec& reference_tangent, const Vec& e)
       : a(reference_tangent),
         length(norm(e)),
@@ -77,10 +78,10 @@ struct EdgeTurn {
     h[3] += Pack(half.x, half.y, half.z, 0);
   }
 
-  Vec a;
-  double length = 1;
-  Vec t{1, 0, 0};
-  Vec c;
+  Vec a;              // reference tangent
+  double length = 1;  // length of the edge, m
+  Vec t{1, 0, 0};     // tangent
+  Vec c;              // vector c of the formula
 };
 
 /// Renews the reference of an edge that has turned by more than 60 degrees from it. Takes

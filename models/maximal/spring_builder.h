@@ -5,20 +5,25 @@
 
 namespace tress::models {
 
-/// Bending springs of a joint: mass_spring.cpp for the first two, lifted_curls.cpp.
+/// Bending springs of a joint: `angular` or `second_neighbour` (mass_spring.cpp), or
+/// `angle` (lifted_curls.cpp).
 enum class Bending { angular, second_neighbour, angle };
 
 /// The springs of one strand at its rest shape, with the stiffness of its sections.
 class SpringBuilder {
  public:
+  /// Begins without springs.
   SpringBuilder(const Strand& strand, const NodalStrand& nodal);
 
+  /// Adds springs along edges.
   void add_stretch();
   void add_bending(Bending bending);  // with a clamp's wall
+  /// Adds springs of altitudes, against torsion.
   void add_altitudes();
+  /// Adds springs of dihedral angles, against torsion.
   void add_dihedrals();
 
-  Springs springs;
+  Springs springs;  // springs so far
 
  private:
   template <class Strain>

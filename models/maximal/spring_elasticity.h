@@ -15,7 +15,7 @@ namespace tress::models {
 /// neighbouring edges.
 template <class Strain>
 struct Spring {
-  Strain strain;
+  Strain strain;          // strain of the edges
   std::size_t first = 0;  // edge
   double stiffness = 0;   // k: N/m, or N m if s is dimensionless
   double friction = 0;    // c: unit of k times s
@@ -41,8 +41,10 @@ enum class SpringJacobian { exact, filtered };
 
 class SpringChain;
 
+/// Internal forces of a strand of point masses and springs.
 class SpringElasticity final : public Elasticity, private StrainForm {
  public:
+  /// Takes the springs of a strand.
   SpringElasticity(Springs springs, SpringJacobian jacobian);
   ~SpringElasticity() override;
 
@@ -61,6 +63,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
     angles_.clear();
     jumps_ = {};
   }
+  /// Restores what keep() wrote.
   void recall(In /*memory*/) override { angles_.clear(); }
   StrandElimination* elimination() override;
   StrainForm* strain_form() override { return this; }

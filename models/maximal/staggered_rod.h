@@ -11,12 +11,13 @@ namespace tress::models {
 /// clamp) to n. Joint j turns edge j relative to edge j - 1, joint 0 relative to the
 /// clamp.
 struct StaggeredRod {
-  std::vector<double> length,
-      rotor;                 // per edge: m, and inertia about the tangent, kg m^2
-  std::vector<double> mass;  // per node, kg
-  std::vector<double> arc;   // arc length per joint, m
-  std::vector<RodJoint> joints;
+  std::vector<double> length;    // per edge, m
+  std::vector<double> rotor;     // per edge, inertia about the tangent, kg m^2
+  std::vector<double> mass;      // per node, kg
+  std::vector<double> arc;       // arc length per joint, m
+  std::vector<RodJoint> joints;  // joints, each before the edge of its number
 
+  /// Returns the number of edges.
   std::size_t edges() const { return length.size(); }
 };
 
@@ -44,6 +45,7 @@ FrameOf<T> cayley(const Vec3<T>& phi, const T& c) {
 template <class T>
 class StaggeredMotion {
  public:
+  /// Allocates for a rod.
   explicit StaggeredMotion(const StaggeredRod& rod)
       : x(rod.mass.size()),
         v(x.size()),
@@ -54,18 +56,24 @@ class StaggeredMotion {
         force_(x.size()),
         acceleration_(x.size()) {}
 
+  /// Computes frames, positions and velocities of a state.
   void place(const StaggeredRod& rod, const RootPose& root, std::span<const T> q,
              std::span<const T> rate) noexcept;
   /// Call after `place`, with `load` of the nodes set.
   void accelerate(const StaggeredRod& rod, const RootPose& root, std::span<T> a) noexcept;
 
+  /// Returns the tangent of an edge.
   const Vec3<T>& tangent(std::size_t edge) const { return edges_[edge].frame.e0; }
+  /// Returns the rate at which an edge rolls about its tangent.
   const T& roll(std::size_t edge) const { return edges_[edge].roll; }
+  /// Returns the strain of a joint.
   const Vec3<T>& strain(std::size_t joint) const { return joints_[joint].strain; }
+  /// Returns the strain rate of a joint.
   const Vec3<T>& strain_rate(std::size_t joint) const { return joints_[joint].rate; }
   /// After `accelerate`: force of the first edge on the clamp, and its moment in the
   /// clamp's frame.
   const Vec3<T>& root_force() const { return force_.front(); }
+  /// Returns the moment of the first edge on the clamp, N m.
   Vec3<T> root_moment() const { return moment(joints_.front(), 0.5); }
 
   std::vector<Vec3<T>> x, v;  // nodes: m, m/s; set by `place`

@@ -41,9 +41,12 @@ T strain_energy(const Part& part, const T* x) {
 /// A part at x, moving with `rate`.
 template <class Part>
 struct Strained {
+  /// Number of strains, and of coordinates in x.
   static constexpr int strains = Part::strains, size = Part::coordinates;
+  /// scalar: a number, or a pack of lanes.
   using T = std::remove_cvref_t<decltype(std::declval<Part>().stiffness[0])>;
 
+  /// Evaluates strains, stresses and rates of the part.
   Strained(const Part& of_part, const T* at, const T* moving)
       : part(of_part), x(at), rate(moving) {
     part.strain(x, value);
@@ -76,6 +79,7 @@ struct Strained {
     }
     take_stresses(elastic);
   }
+  /// Replaces the elastic stresses of second-order terms.
   void take_stresses(const T* elastic) {
     for (int k = 0; k < strains; ++k) {
       second_stress[k] += elastic[k] - part.stiffness[k] * value[k];
@@ -109,8 +113,9 @@ struct Strained {
     return sum;
   }
 
-  const Part& part;
-  const T *x, *rate;
+  const Part& part;   // the part
+  const T *x, *rate;  // coordinates and their rates
+  /// Strains, their derivatives, rates and stresses.
   T value[strains], gradient[strains][size], speed[strains], stress[strains];
   T second_stress[strains];  // of the tangent's terms of second order
 

@@ -32,10 +32,12 @@ class StrandElimination {
 /// amplifies roundings by entry over pivot: corrections keep half of their digits.
 class StrandPivots {
  public:
+  /// Notes a pivot and the entry that it is compared with.
   void operator()(double pivot, double entry) {
     constexpr double least = 1.5e-8;  // square root of a rounding
     kept_ = kept_ && std::abs(pivot) > least * std::abs(entry);
   }
+  /// Returns true if no pivot was lost.
   bool kept() const { return kept_; }
 
  private:
@@ -65,13 +67,16 @@ bool add_block(const double* b, Beyond& beyond) {
 /// Newton's method needs matrix and residual of the same.
 class LastPlacement {
  public:
+  /// Allocates for a number of coordinates; no placement is known.
   explicit LastPlacement(std::size_t coordinates) : z_(coordinates), rate_(coordinates) {}
 
+  /// Returns true if this is the placement, bit by bit.
   bool is(const Placement& p) const noexcept {
     return known_ && same(p.z, z_) && same(p.rate, rate_) && same(p.root.omega, omega_) &&
            same(p.root.frame.e0, frame_.e0) && same(p.root.frame.e1, frame_.e1) &&
            same(p.root.frame.e2, frame_.e2);
   }
+  /// Takes a placement.
   void take(const Placement& p) noexcept {
     std::ranges::copy(p.z, z_.begin());
     std::ranges::copy(p.rate, rate_.begin());
@@ -79,6 +84,7 @@ class LastPlacement {
     omega_ = p.root.omega;
     known_ = true;
   }
+  /// Forgets the placement.
   void forget() noexcept { known_ = false; }
 
  private:

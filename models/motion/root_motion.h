@@ -16,12 +16,14 @@ namespace tress::models {
 
 /// Values at one instant of a twice differentiable function of time.
 struct SignalValue {
+  /// The function and its derivatives by time.
   double value = 0, rate = 0, acceleration = 0;
 };
 /// The times at which it is only C^2, a third derivative jumps, are its breakpoints.
 class Signal {
  public:
   Signal() = default;
+  /// Takes the function; `breakpoints` in s.
   template <class F>
   requires std::convertible_to<F, std::function<SignalValue(double)>> &&
       (!std::same_as<std::remove_cvref_t<F>, Signal>)
@@ -30,7 +32,9 @@ class Signal {
     std::ranges::sort(breakpoints_);
   }
 
+  /// Returns false for the constant 0.
   explicit operator bool() const { return static_cast<bool>(value_); }
+  /// Evaluates the function at t (s).
   SignalValue operator()(double t) const { return value_(t); }
   const std::vector<double>& breakpoints() const { return breakpoints_; }  // ascending
 
@@ -50,6 +54,7 @@ Signal smooth_step(double height, double t0, double duration);
 /// else InputError), after a further speed duration/2. C^2: rate speed (1 - 3 x^2 + 2
 /// x^3).
 Signal stop(double speed, double t0, double duration);
+/// Returns the sum of two signals.
 Signal sum(Signal a, Signal b);
 /// Returns a motion to `height` and back, each in `duration`, from t = 0 on: two
 /// smooth_steps.
@@ -57,16 +62,16 @@ Signal there_and_back(double height, double duration);
 
 /// A cross-section of a strand in space: centre (m) and material frame, e0 the tangent.
 struct StrandPlace {
-  Vec x;
-  Frame frame;
+  Vec x;        // centre of the section
+  Frame frame;  // material frame
 };
 
 /// Position and motion of the clamp: position in the world (m), frame (e0 is the root
 /// tangent), and their first and second derivatives (angular ones in world components).
 struct RootPose {
-  Vec x, v, a;
-  Frame frame;
-  Vec omega, alpha;
+  Vec x, v, a;       // position, velocity, acceleration
+  Frame frame;       // material frame
+  Vec omega, alpha;  // angular velocity and acceleration
 };
 
 /// Prescribed rigid motion of a clamp: rotations about fixed world axes through one
@@ -79,16 +84,18 @@ struct RootPose {
 ///
 /// exact up to rounding; O(parts).
 struct RootMotion {
+  /// One translation or rotation.
   struct Part {
     Vec direction;  // translation: any length; rotation axis: not 0, normalised
-    Signal signal;
+    Signal signal;  // distance (m) or angle (rad) over time
   };
   Vec position;               // at rest, m
   Frame frame;                // at rest
   std::optional<Vec> centre;  // all axes pass through it, m; unless given, `position`
-  std::vector<Part> translations;
-  std::vector<Part> rotations;
+  std::vector<Part> translations;  // translations, after the rotations
+  std::vector<Part> rotations;     // rotations, the first one first
 
+  /// Returns true if nothing moves.
   bool fixed() const { return translations.empty() && rotations.empty(); }
   /// Returns the pose at time t (s); never allocates.
   RootPose at(double t) const;

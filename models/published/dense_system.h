@@ -26,6 +26,7 @@ namespace tress::models {
 template <int n, class Kernel>
 class DenseSystem : public System, public SparseForm {
  public:
+  /// Takes the equations.
   explicit DenseSystem(Kernel kernel, Jacobian jacobian = Jacobian::exact)
       : kernel_(std::move(kernel)), jacobian_(jacobian) {
     full_.rows = full_.cols = n;

@@ -11,12 +11,13 @@ namespace tress::models {
 
 /// One link of a planar loop: length * trig(angle) with angle q_i or q_i + q_j.
 struct LoopTerm {
+  /// Function of the angle: `cosine` or `sine`.
   enum class Trig { cosine, sine };
-  int constraint;
-  double length;  // m, signed
-  Trig trig;
-  int i;
-  int j = -1;  // -1: the angle is q_i alone
+  int constraint;  // index of the constraint
+  double length;   // m, signed
+  Trig trig;       // function of the angle
+  int i;           // coordinate of the angle
+  int j = -1;      // -1: the angle is q_i alone
 };
 
 /// Closure of planar linkages, g_k(q) = sum_terms length trig(q_i [+ q_j]) - target_k =
@@ -25,9 +26,11 @@ struct LoopTerm {
 /// full (n x n, compressed columns). Cost O(terms).
 class LoopClosure final : public ConstraintForm {
  public:
+  /// Takes the terms and targets (m) of all constraints.
   LoopClosure(int coordinates, std::span<const LoopTerm> terms,
               std::span<const double> targets, double typical_length);
 
+  /// Returns the number of constraints.
   int count() const { return static_cast<int>(targets_.size()); }
   const Pattern& pattern() const override { return pattern_; }
   void scale(Out g_typ) const override;

@@ -18,15 +18,15 @@ namespace tress::models {
 ///   longitudinal modes (7e3 and 2.5e4 rad/s, undamped in the problem) were damped in the
 ///   printed run. Radau IIA of order 5 shows the same loss at steps near 2e-5 s.
 struct PublishedEnd {
-  std::string_view model;  // catalogue id
-  double t;                // s
-  In q;                    // (n)
-  In v;                    // (n)
-  In a;                    // (n), empty where not printed
-  In lambda;               // (m), signs of r - G^T lambda = 0; empty without constraints
-  int digits_q;
-  int digits_v;
-  std::string_view source;
+  std::string_view model;   // catalogue id
+  double t;                 // s
+  In q;                     // (n)
+  In v;                     // (n)
+  In a;                     // (n), empty where not printed
+  In lambda;                // (m), signs of r - G^T lambda = 0; empty without constraints
+  int digits_q;             // correct digits of q
+  int digits_v;             // correct digits of v
+  std::string_view source;  // publication
 };
 
 /// The published end state of a model, or null.

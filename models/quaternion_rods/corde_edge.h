@@ -16,13 +16,16 @@ namespace tress::models {
 /// A Part of strained.h.
 template <class T>
 struct CordeEdgeOf {
+  /// Counts of strains, of coordinates in x, and of strains with friction.
   static constexpr int strains = 5, coordinates = 7, with_friction = 1;
+  /// Whether the first strain is a length (m).
   static constexpr bool stretch_is_length = true;
   T length;  // l at rest, m
   /// EA/l (N/m); l kappa three times, l nu (J).
   T stiffness[strains];
   T friction[strains];  // stretch only, N s/m
 
+  /// Evaluates the strains at x.
   template <class U>
   void strain(const U* x, U* s) const {
     const Vec3<U> e = load3(x);
@@ -109,6 +112,7 @@ struct CordeEdgeOf {
   };
 };
 
+/// Edge of one rod.
 using CordeEdge = CordeEdgeOf<double>;
 
 }  // namespace tress::models

@@ -13,12 +13,15 @@ namespace tress::models {
 /// R is the frame of q/|q|, so norm and shear are independent. A Part of strained.h.
 template <class T>
 struct CosseratEdgeOf {
+  /// Counts of strains, of coordinates in x, and of strains with friction.
   static constexpr int strains = 4, coordinates = 7, with_friction = 0;
+  /// Whether the first strain is a length (m).
   static constexpr bool stretch_is_length = false;
   T length;              // l at rest, m
   T stiffness[strains];  // l EA, l k GA twice, l nu (J)
   T friction[strains];   // J s: none
 
+  /// Evaluates the strains at x.
   template <class U>
   void strain(const U* x, U* s) const {
     const QuaternionOf<U> q = load_quaternion(x + 3);
@@ -105,6 +108,7 @@ struct CosseratEdgeOf {
   }
 };
 
+/// Edge of one rod.
 using CosseratEdge = CosseratEdgeOf<double>;
 
 }  // namespace tress::models

@@ -30,6 +30,7 @@ class OrientationStep {
   /// x, rate: both quaternions of the joint, of norm 1, and their rates.
   void add(const QuaternionJoint& joint, double h, const double* x, const double* rate,
            Side side);
+  /// Returns the orientation after the step.
   Quaternion taken() const;
 
  private:

@@ -16,23 +16,24 @@ namespace tress::models {
 /// stiffness of edges.
 template <class T>
 struct QuaternionElimination {
-  static constexpr int size = 7;
+  static constexpr int size = 7;  // unknowns of an edge
 
   /// Derivatives of the forces of an edge over (e, q), inertia of the quaternion among
   /// them, and of the joint before it over (p, q).
   struct Own {
-    T edge[size][size], joint[8][8];
+    T edge[size][size], joint[8][8];  // derivatives of the edge and of the joint
   };
+  /// Factors of an edge.
   struct Factor {
-    T matrix[size][size];  // factors, inverse pivots on the diagonal
-    T by_before[size][size];
-    T node[3][size];   // of the force on the node before, by (e, q)
-    T joint[4][4];     // of that on the quaternion before, by q
-    T solution[size];  // where the edge before does not move
+    T matrix[size][size];     // factors, inverse pivots on the diagonal
+    T by_before[size][size];  // change of the edge by the change before it
+    T node[3][size];          // of the force on the node before, by (e, q)
+    T joint[4][4];            // of that on the quaternion before, by q
+    T solution[size];         // where the edge before does not move
   };
   /// Matrix over the end of an edge and its quaternion.
   struct Beyond {
-    T matrix[size][size] = {};
+    T matrix[size][size] = {};  // entries by rows
 
     /// Adds the block of the node at the end: inertia and loads.
     void add_block(const Matrix3<T>& m) {
@@ -43,8 +44,9 @@ struct QuaternionElimination {
       }
     }
   };
+  /// Right-hand side at the end of an edge and its quaternion.
   struct Right {
-    T force[size] = {};
+    T force[size] = {};  // entries
   };
 
   /// `first`: nothing before the edge moves.

@@ -11,20 +11,25 @@ namespace tress::models {
 /// A Part of strained.h.
 template <class T>
 struct QuaternionJointOf {
+  /// Counts of strains, of coordinates in x, and of strains with friction.
   static constexpr int strains = 3, coordinates = 8, with_friction = 3;
+  /// Rest values and coefficients of each strain.
   T rest[strains], stiffness[strains], friction[strains];
 
   QuaternionJointOf() = default;
+  /// Takes the data of a joint.
   explicit QuaternionJointOf(const RodJoint& joint) {
     store3(joint.rest, rest);
     store3(joint.stiffness, stiffness);
     store3(joint.friction, friction);
   }
+  /// Evaluates the strains at x.
   template <class U>
   void strain(const U* x, U* s) const {
     store3(turn_between(load_quaternion(x), load_quaternion(x + 4)), s);
     for (int k = 0; k < strains; ++k) s[k] = s[k] - U(rest[k]);
   }
+  /// Evaluates the first derivatives of the strains by x.
   void gradient(const T* x, T (&g)[strains][coordinates]) const {
     T before[3][4], behind[3][4];
     turn_slope(T(-1) * load_quaternion(x + 4), before);
@@ -57,6 +62,7 @@ struct QuaternionJointOf {
   }
 };
 
+/// Joint of one rod.
 using QuaternionJoint = QuaternionJointOf<double>;
 
 }  // namespace tress::models

@@ -15,15 +15,18 @@ namespace tress::models {
 /// inertia of quaternions, 4 rho (I1 + I2 + rotary A l^2) l.
 template <class Edge>
 struct QuaternionRodKind {
-  std::string model;
+  std::string model;  // id of the model
+  /// Makes the edge of a segment.
   std::function<Edge(const Material&, const Segment&)> edge_of;
-  double rotary = 0;
+  double rotary = 0;  // factor of the inertia that edges add
 };
 /// Returns the kind with options of the model; null: default options.
 template <class Edge>
 QuaternionRodKind<Edge> rod_kind(const Parameters* options);
+/// Returns the kind of corde.
 template <>
 QuaternionRodKind<CordeEdge> rod_kind(const Parameters* options);
+/// Returns the kind of xpbd_cosserat.
 template <>
 QuaternionRodKind<CosseratEdge> rod_kind(const Parameters* options);
 
@@ -31,9 +34,9 @@ QuaternionRodKind<CosseratEdge> rod_kind(const Parameters* options);
 /// coordinates behind those of nodes. Joints are between edges; the clamp's comes first.
 template <class Edge>
 struct QuaternionStrandParts {
-  NodalStrand nodal;
-  std::vector<Edge> edges;
-  std::vector<QuaternionJoint> joints;
+  NodalStrand nodal;                    // nodes and root
+  std::vector<Edge> edges;              // edges from the root on
+  std::vector<QuaternionJoint> joints;  // joints from the root on
 };
 /// Throws InputError naming the model unless the strand is a chain.
 template <class Edge>

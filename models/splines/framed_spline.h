@@ -11,19 +11,21 @@ namespace tress::models {
 /// `clamped`, the first knot has the clamp's frame and no angle.
 class FramedSpline final : public Elasticity, private NaturalStrains {
  public:
+  /// Strains of a span.
   struct Span {
+    /// Quadrature point of a span.
     struct Point {
       std::array<double, 4> first, second;  // derivatives of the controls' weights
-      SplineBend bend;
+      SplineBend bend;                      // bending at the point
     };
     std::array<double, 4> start, end;  // first derivatives at the knots
-    SplineTwist twist;
-    std::array<Point, 2> points;
+    SplineTwist twist;                 // twist of the span
+    std::array<Point, 2> points;       // quadrature points
   };
   /// Control points (3 each) and frames at the knots, e0 along r'.
   struct Shape {
-    std::vector<double> controls;
-    std::vector<Frame> frames;
+    std::vector<double> controls;  // control points, m
+    std::vector<Frame> frames;     // frames at the knots
   };
   /// Sets `rest` of the strains to their values in the natural shape; the first
   /// references are the frames of the initial shape.
@@ -45,6 +47,7 @@ class FramedSpline final : public Elasticity, private NaturalStrains {
   void carry(InOut z, InOut rate, InOut second) const override;
   void reset() override;
   std::vector<double> memory() const override;
+  /// Restores what keep() wrote.
   void recall(In memory) override;
   NaturalStrains* natural_strains() override { return this; }
   bool takes_stresses() const override { return stretching_.takes_stresses(); }

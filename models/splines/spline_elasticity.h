@@ -30,6 +30,7 @@ inline Vec of_controls(const std::array<double, 4>& weight, const double* x) {
 /// Stretching and bending of a cubic spline, summed over quadrature points.
 class SplineElasticity final : public Elasticity {
  public:
+  /// Quadrature point.
   struct Point {
     std::size_t span;                     // its control points are span, ..., span + 3
     std::array<double, 4> first, second;  // derivatives of their weights

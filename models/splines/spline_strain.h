@@ -9,7 +9,9 @@
 /// edge_frame (rod_edge.h) of r' and the angle theta at the knot.
 namespace tress::models {
 
+/// Returns the number.
 inline double value_of(double x) { return x; }
+/// Returns the value without derivatives.
 template <int n, class T>
 double value_of(const Dual<n, T>& x) {
   return value_of(x.value);
@@ -19,11 +21,13 @@ double value_of(const Dual<n, T>& x) {
 /// less `rest`. The whole turns are those that bring it nearest to `near`. x = (r'-,
 /// theta-, r'+, theta+).
 struct SplineTwist {
-  static constexpr int strains = 1, coordinates = 8;
-  const Frame* reference = nullptr;  // of the knots, two
+  static constexpr int strains = 1, coordinates = 8;  // numbers of both
+  const Frame* reference = nullptr;                   // of the knots, two
+  /// Coefficients and rest value.
   double stiffness[1] = {}, friction[1] = {}, rest[1] = {};
   double near = 0;  // after the last accepted step
 
+  /// Evaluates the strains at x.
   template <class T>
   void strain(const T* x, T* s) const {
     s[0] = joint_strain(edge_frame(reference[0], load3(x), x[3]),
@@ -33,7 +37,9 @@ struct SplineTwist {
     const double now = value_of(s[0]);
     s[0] += T(wound(now, near) - now);
   }
+  /// Evaluates the first derivatives of the strains by x.
   void gradient(const double* x, double (&g)[1][8]) const;
+  /// Adds the second derivatives of the strains, weighted with `stress`.
   void add_second(const double* x, const double* stress, double (&h)[8][8]) const;
 };
 
@@ -46,11 +52,13 @@ struct SplineTwist {
 /// bending. Otherwise the error is the squared rotation between the frames. x = (r'-,
 /// theta-, r'+, theta+, r', r'').
 struct SplineBend {
-  static constexpr int strains = 2, coordinates = 14;
-  const Frame* reference = nullptr;  // of the knots, two
-  double part = 0;                   // fraction of the span before the point
+  static constexpr int strains = 2, coordinates = 14;  // numbers of both
+  const Frame* reference = nullptr;                    // of the knots, two
+  double part = 0;  // fraction of the span before the point
+  /// Coefficients and rest values.
   double stiffness[2] = {}, friction[2] = {}, rest[2] = {};
 
+  /// Evaluates the strains at x.
   template <class T>
   void strain(const T* x, T* s) const {
     const FrameOf<T> before = edge_frame(reference[0], load3(x), x[3]);
@@ -60,7 +68,9 @@ struct SplineBend {
     s[0] = dot(kappa, T(1 - part) * before.e1 + T(part) * behind.e1) - T(rest[0]);
     s[1] = dot(kappa, T(1 - part) * before.e2 + T(part) * behind.e2) - T(rest[1]);
   }
+  /// Evaluates the first derivatives of the strains by x.
   void gradient(const double* x, double (&g)[2][14]) const;
+  /// Adds the second derivatives of the strains, weighted with `stress`.
   void add_second(const double* x, const double* stress, double (&h)[14][14]) const;
 };
 

@@ -41,6 +41,7 @@ Vec stiffness(const Material& material, const CrossSection& section);
 /// Throw InputError naming `where` unless density, moduli and half-axes are positive,
 /// friction >= 0 and all numbers finite.
 void check(const Material& material, const std::string& where);
+/// Throws InputError naming `where` unless both half-axes are positive and finite.
 void check(const CrossSection& section, const std::string& where);
 
 }  // namespace tress::models

@@ -6,11 +6,11 @@ namespace tress::models {
 
 /// A strand that no elements are known of yet.
 struct UncutStrand {
-  double length;     // m
-  double weight;     // N/m
-  double stiffness;  // N m^2, of bending, the smaller one
-  Vec tangent;       // at the root; gravity is along -z
-  const Shape& natural;
+  double length;         // m
+  double weight;         // N/m
+  double stiffness;      // N m^2, of bending, the smaller one
+  Vec tangent;           // at the root; gravity is along -z
+  const Shape& natural;  // natural shape
 };
 
 /// Returns the number of elements of constant curvature for which the shape of a strand

@@ -13,21 +13,21 @@ namespace tress::models {
 
 /// One segment of a strand, which starts at the tip of `parent`, or at the root.
 struct Segment {
-  int parent = -1;    // index of an earlier segment, -1: the root
-  double length = 0;  // m
-  Frame mount;        // frame of this segment's start relative to the parent's tip
-  CrossSection section;
-  Vec natural;  // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
-  Vec initial;  // twist and curvatures at t = 0, 1/m
+  int parent = -1;       // index of an earlier segment, -1: the root
+  double length = 0;     // m
+  Frame mount;           // frame of this segment's start relative to the parent's tip
+  CrossSection section;  // section of the segment
+  Vec natural;           // twist and the two curvatures (about e0, e1, e2) at rest, 1/m
+  Vec initial;           // twist and curvatures at t = 0, 1/m
   // How far the two are at the tip from their means above, if they vary linearly; read by
   // models whose elements can (LinearStrain of strain.h).
-  Vec natural_half{}, initial_half{};
+  Vec natural_half{}, initial_half{};  // natural and initial change, 1/m
 };
 
 /// The root is clamped to a prescribed motion, or free to move from an initial state.
 struct FreeRoot {
   Vec position;  // m
-  Frame frame;
+  Frame frame;   // frame at the root
   Vec velocity;  // m/s
   Vec spin;      // rad/s, world components
 };
@@ -35,9 +35,9 @@ struct FreeRoot {
 /// A strand, or a tree of strands, the input of every strand model: material, segments,
 /// rest shape, and motion of the root.
 struct Strand {
-  Material material;
-  std::vector<Segment> segments;  // parents before children
-  RootMotion root;
+  Material material;                  // material of all segments
+  std::vector<Segment> segments;      // parents before children
+  RootMotion root;                    // motion of the clamp
   std::optional<FreeRoot> free_root;  // when set, `root` is not used
 
   double length() const;  // longest way from the root to a tip, m
@@ -47,6 +47,7 @@ struct Strand {
 /// The Darboux vector (twist, curvature about e1, curvature about e2) of a shape over arc
 /// length s in [0, length], 1/m.
 using Shape = std::function<Vec(double s)>;
+/// Returns the shape of constant Darboux vector (1/m).
 Shape uniform_shape(Vec darboux);
 /// Returns a helix of given radius and pitch (rise per turn, m). The curvature is
 /// radius/(radius^2 + c^2) about e1 and the twist c/(radius^2 + c^2) with c = pitch/(2
@@ -60,9 +61,9 @@ Shape wavy_shape(double amplitude, double wavelength);
 /// Discretisation of an unbranched strand: n segments, the last `grading` times as long
 /// as the first (geometric series).
 struct Discretisation {
-  int elements = 20;
+  int elements = 20;    // number of segments
   double length = 0.1;  // m
-  double grading = 1;
+  double grading = 1;   // ratio of the last length to the first
 };
 
 /// Makes a chain of segments. Natural shapes are averaged over each segment, and

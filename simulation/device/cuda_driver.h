@@ -12,9 +12,11 @@ namespace tress::simulation {
 /// has the library with its driver.
 struct CudaDriver {
   using Result = int;  // 0: done
+  /// Address on the device.
   using Pointer = unsigned long long;
   using Handle = struct Opaque*;  // of contexts, modules, functions, streams, events
 
+  /// Call of the driver, as in the CUDA Driver API Reference. @{
   Result (*cuInit)(unsigned flags);
   Result (*cuGetErrorName)(Result, const char** name);
   Result (*cuDeviceGetCount)(int* count);
@@ -43,6 +45,7 @@ struct CudaDriver {
                            unsigned blocks_z, unsigned threads_x, unsigned threads_y,
                            unsigned threads_z, unsigned shared_bytes, Handle stream,
                            void** arguments, void** extra);
+  /// @}
 };
 
 /// The device is not available or has failed; what() gives the reason.
@@ -54,12 +57,15 @@ struct DeviceFailure : std::runtime_error {
 /// the object. Throws DeviceFailure if there is none.
 class CudaDevice {
  public:
+  /// Opens the library, the first device and its primary context.
   CudaDevice();
   ~CudaDevice();
   CudaDevice(const CudaDevice&) = delete;
   CudaDevice& operator=(const CudaDevice&) = delete;
 
+  /// Returns the calls of the driver.
   const CudaDriver& driver() const { return driver_; }
+  /// Returns the device's name.
   const std::string& name() const { return name_; }
   /// Throws DeviceFailure unless `result` is that of a call that is done.
   void check(CudaDriver::Result result, const char* call) const;

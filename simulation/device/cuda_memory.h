@@ -8,6 +8,7 @@
 /// Resources of a device that their owners release. All calls throw DeviceFailure.
 namespace tress::simulation {
 
+/// Compiled kernels on a device.
 class CudaModule {
  public:
   /// The driver compiles the image, PTX, for the device.
@@ -18,6 +19,7 @@ class CudaModule {
   CudaModule(const CudaModule&) = delete;
   CudaModule& operator=(const CudaModule&) = delete;
 
+  /// Returns the kernel of this name.
   CudaDriver::Handle function(const char* name) const {
     CudaDriver::Handle found = nullptr;
     device_.check(device_.driver().cuModuleGetFunction(&found, module_, name),
@@ -35,6 +37,7 @@ class CudaEvent;
 /// Calls that are done one after the other, while those of other streams go on.
 class CudaStream {
  public:
+  /// Creates a stream that does not wait for the default stream.
   explicit CudaStream(const CudaDevice& device) : device_(device) {
     constexpr unsigned non_blocking = 1;
     device.check(device.driver().cuStreamCreate(&stream_, non_blocking),
@@ -48,7 +51,9 @@ class CudaStream {
   CudaStream(const CudaStream&) = delete;
   CudaStream& operator=(const CudaStream&) = delete;
 
+  /// Returns the driver's handle.
   CudaDriver::Handle handle() const { return stream_; }
+  /// Waits until all work of the stream is done.
   void synchronize() const {
     device_.check(device_.driver().cuStreamSynchronize(stream_), "cuStreamSynchronize");
   }
@@ -63,6 +68,7 @@ class CudaStream {
 /// All that a stream was given up to record().
 class CudaEvent {
  public:
+  /// Creates an event without times.
   explicit CudaEvent(const CudaDevice& device) : device_(device) {
     constexpr unsigned without_times = 2;
     device.check(device.driver().cuEventCreate(&event_, without_times), "cuEventCreate");
@@ -71,7 +77,9 @@ class CudaEvent {
   CudaEvent(const CudaEvent&) = delete;
   CudaEvent& operator=(const CudaEvent&) = delete;
 
+  /// Returns the driver's handle.
   CudaDriver::Handle handle() const { return event_; }
+  /// Records the work that the stream was given so far.
   void record(const CudaStream& stream) const {
     device_.check(device_.driver().cuEventRecord(event_, stream.handle()),
                   "cuEventRecord");
@@ -91,6 +99,7 @@ inline void CudaStream::wait(const CudaEvent& event) const {
 template <class T>
 class CudaArray {
  public:
+  /// Allocates `size` numbers in both memories.
   CudaArray(const CudaDevice& device, std::size_t size) : device_(device), size_(size) {
     const CudaDriver& driver = device.driver();
     device.check(driver.cuMemAlloc_v2(&there_, size * sizeof(T)), "cuMemAlloc");
@@ -107,10 +116,13 @@ class CudaArray {
   CudaArray(const CudaArray&) = delete;
   CudaArray& operator=(const CudaArray&) = delete;
 
+  /// Returns the numbers on the host.
   std::span<T> host() const { return {here_, size_}; }
+  /// Frees the memory on the host.
   void free_host() {
     if (here_ != nullptr) device_.driver().cuMemFreeHost(std::exchange(here_, nullptr));
   }
+  /// Returns the address of the numbers on the device.
   T* device() const { return reinterpret_cast<T*>(there_); }
 
   /// The first `count` of them.
@@ -119,7 +131,9 @@ class CudaArray {
                                                         stream.handle()),
                   "cuMemcpyHtoDAsync");
   }
+  /// Copies all numbers to the device, as the next work of the stream.
   void up(const CudaStream& stream) const { up(stream, size_); }
+  /// Copies all numbers to the host, as the next work of the stream.
   void down(const CudaStream& stream) const {
     device_.check(device_.driver().cuMemcpyDtoHAsync_v2(here_, there_, size_ * sizeof(T),
                                                         stream.handle()),

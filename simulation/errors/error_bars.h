@@ -16,12 +16,12 @@ constexpr double parted_from = 0.1;
 /// Largest and root mean square error of material points, over the length of their
 /// strand.
 struct PointErrors {
-  double largest = 0, rms = 0;
+  double largest = 0, rms = 0;  // errors over the length
 };
 
 /// Errors of one strand over the frames before its two runs part.
 struct StrandError {
-  PointErrors error;
+  PointErrors error;            // errors over all those frames
   double largest_at = 0;        // s
   std::optional<double> parts;  // s, the first frame at which they are apart
 };
@@ -29,7 +29,7 @@ struct StrandError {
 /// Estimated error of a run in time or in space [Richardson 1911]: its distance from a
 /// finer run, divided by the part of the error that the finer run lacks.
 struct ErrorBar {
-  std::vector<StrandError> strands;
+  std::vector<StrandError> strands;  // errors of each strand
   /// Errors at every frame over all strands that have not parted, until all have.
   std::vector<PointErrors> frames;
   /// Error of every material point at every frame of the scene, over the length of its
@@ -51,10 +51,11 @@ struct ErrorBar {
 /// (super_helix, articulated_chain, der) were run, in time with five methods each. Half
 /// of the runs exceed a bare estimate. tests/control/test_error_bound.cpp measures the
 /// shares.
-constexpr double time_bound = 1.5, space_bound = 1.5;
+constexpr double time_bound = 1.5;
+constexpr double space_bound = 1.5;  // factor for estimates in space
 /// The population in words, for where a bound is printed.
-constexpr std::string_view time_population = "90 runs of 6 clamped hairs",
-                           space_population = "14 runs of 6 clamped hairs";
+constexpr std::string_view time_population = "90 runs of 6 clamped hairs";
+constexpr std::string_view space_population = "14 runs of 6 clamped hairs";  // in words
 
 /// Estimates the error against a run with half the step, or with a tenth of the tolerance
 /// (of rtol and atol), whose own error is neglected. The scene's method is assumed to

@@ -12,17 +12,18 @@ namespace tress::simulation {
 /// numbers. Where the estimated error in space (error_bars.h) is above a strand's
 /// tolerance at some frame, the strand gets more, up to its `elements`.
 struct Pilot {
+  /// Result for one strand.
   struct OfStrand {
-    std::size_t strand;
-    int at_rest, elements;
+    std::size_t strand;       // index of the strand
+    int at_rest, elements;    // elements for its shape at rest, and those it gets
     double tolerance, error;  // m; the error is estimated
   };
 
-  Scene scene;  // with these elements, and no tolerance
-  std::vector<OfStrand> strands;
-  int tries = 0;      // pairs of runs
-  long elements = 0;  // of all their runs
-  double wall_s = 0;  // that they took
+  Scene scene;                    // with these elements, and no tolerance
+  std::vector<OfStrand> strands;  // results of all strands
+  int tries = 0;                  // pairs of runs
+  long elements = 0;              // of all their runs
+  double wall_s = 0;              // that they took
   std::string
       missing;  // why there is no estimate: a run failed; `scene` is the given one
 

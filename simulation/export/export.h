@@ -21,13 +21,13 @@ std::vector<DrawnLine> drawn_lines(const Scene& scene, const World& world,
 /// An animation of strands for other programs: frames of the lines' own points, written
 /// with intermediate points that make them curves.
 struct Animation {
-  const Scene& scene;
-  const std::vector<Reading>& series;
-  const std::vector<Reading>& channels;
-  std::span<const DrawnLine> lines;  // empty: not known
-  std::span<const Frame3d> frames;
-  const SmoothLines& curves;  // of the same lines
-  std::size_t guides = 0;     // lines that were simulated; 0: all
+  const Scene& scene;                    // scene that was run
+  const std::vector<Reading>& series;    // columns of the time series
+  const std::vector<Reading>& channels;  // numbers at every point
+  std::span<const DrawnLine> lines;      // empty: not known
+  std::span<const Frame3d> frames;       // frames in order of time
+  const SmoothLines& curves;             // of the same lines
+  std::size_t guides = 0;                // lines that were simulated; 0: all
 };
 
 /// Returns the text of <scene>.json for the report page: positions in 16 bits of their
@@ -39,7 +39,9 @@ std::string page_json(const Animation& animation, std::size_t most_bytes = 500'0
 /// float32) with every channel, radius and strand as point data and the time as field
 /// data. The .pvd lists them with their times [VTK file formats, XML].
 std::string vtp(const Animation& animation, const Frame3d& frame);
+/// Returns the list of the files of all frames.
 std::string pvd(const Animation& animation, const std::string& stem);
+/// Returns the name of a frame's .vtp.
 std::string vtp_name(const std::string& stem, std::size_t frame);
 
 /// Returns USD text with one animated BasisCurves, for Blender and Houdini [OpenUSD,
@@ -51,6 +53,7 @@ std::string usda(const Animation& animation);
 /// unit in its comment; thickness is the diameter. Throws InputError on a line of more
 /// than 65536 points.
 std::string hair(const Animation& animation, const Frame3d& frame);
+/// Returns the name of a frame's .hair.
 std::string hair_name(const std::string& stem, std::size_t frame);
 
 /// Returns binary glTF 2.0 [Khronos] of one mesh of lines, for viewers, engines and

@@ -29,9 +29,13 @@ class FullHair {
   /// guide is enough.
   FullHair(const Scene& scene, std::span<const int> guides, std::size_t hairs);
 
+  /// Returns the number of hairs between guides.
   std::size_t hairs() const { return hair_ ? hair_->hairs() : 0; }
+  /// Returns the numbers of points of all lines, given those of the guides.
   std::vector<int> lines(std::span<const int> guides) const;
+  /// Returns all lines that are drawn, given the guides.
   std::vector<DrawnLine> drawn(std::vector<DrawnLine> guides) const;
+  /// Returns frames with all hairs, given those of the guides.
   std::vector<Frame3d> frames(std::span<const Frame3d> guides) const;
 
  private:

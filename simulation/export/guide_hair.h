@@ -18,6 +18,7 @@ namespace tress::simulation {
 std::vector<Vec> scatter_roots(std::span<const Vec> guide_roots, std::size_t count,
                                std::uint64_t seed);
 
+/// Options of the interpolation.
 struct GuideHairOptions {
   /// 0: every hair is interpolated to its tip; 1: disjoint locks from the root on.
   double clumpiness = 0.5;
@@ -78,7 +79,9 @@ class GuideHair {
     std::array<std::size_t, 3> guide{};  // the own guide first
     std::array<double, 3> weight{};      // sum 1
   };
+  /// Returns the guides and weights of a hair.
   const Neighbours& neighbours(std::size_t hair) const { return neighbours_[hair]; }
+  /// Returns the number of hairs.
   std::size_t hairs() const { return hair_roots_.size(); }
 
   /// Lets every hair keep its own shape from now on. Its present difference from the

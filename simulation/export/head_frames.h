@@ -59,8 +59,11 @@ class HeadFrames {
   /// Returns the state of the file after the last sync().
   FileState state();
 
+  /// Returns the number of frames.
   std::size_t size() const { return sums_.size(); }
+  /// Returns the checksum of each frame.
   const std::vector<std::uint64_t>& sums() const { return sums_; }
+  /// Returns the time series' numbers of a frame.
   std::vector<double> series(std::size_t frame) const;
   /// (3 points) of the shown strands.
   std::vector<float> shown(std::size_t frame) const;

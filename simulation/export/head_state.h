@@ -25,6 +25,7 @@ struct HeadProgress {
 /// file in the same folder, which replaces the file at the end.
 class SavedHead {
  public:
+  /// Begins the file of a state: `kept` numbers for each of `strands` strands.
   SavedHead(const std::string& file, const RunKey& key, std::size_t strands,
             std::size_t kept, const HeadProgress& progress);
   /// Stores the data that the head keeps for the next strands.
@@ -49,6 +50,7 @@ class HeadToResume {
   HeadToResume(const std::string& file, const RunKey& key, std::size_t strands,
                std::size_t kept);
 
+  /// Returns the progress of the run at that state.
   const HeadProgress& progress() const { return progress_; }
   /// Returns what the head stored for the next `strands` strands.
   std::vector<double> take(std::size_t strands);

@@ -24,9 +24,12 @@ class Recording {
   Recording(std::string stem, const RunKey& key, const Readout& readout, bool resume);
   /// The state to continue from; frames() then ends with the frame of that state.
   const std::optional<Snapshot>& saved() const { return saved_; }
+  /// Returns the frames so far, including those of earlier runs.
   const std::vector<Frame3d>& frames() const { return frames_; }
 
+  /// Adds a frame and its line of the time series.
   void add(Frame3d frame);
+  /// Replaces the saved state.
   void save(const Snapshot& snapshot);
   /// The run is complete: removes the files that only a resumed run needs.
   void close();

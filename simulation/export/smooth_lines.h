@@ -34,6 +34,7 @@ class SmoothLines {
 
   /// Number of points of each line, including intermediate ones.
   const std::vector<int>& lines() const { return smooth_; }
+  /// Returns the number of points of all lines.
   std::size_t points() const { return points_; }
   /// Returns the positions of the drawn points, (3 points), m.
   std::vector<float> positions(const Frame3d& frame) const;

@@ -9,17 +9,20 @@ namespace tress::simulation {
 
 /// Provenance of this build, written into manifests and run keys.
 struct BuildFacts {
-  std::string_view version;
+  std::string_view version;      // version of tress
   std::string_view commit;       // of the tree that was compiled, or "unknown"
   std::string_view changes;      // checksum of its differences from the commit; "": none
   std::string_view source_tree;  // absolute path
-  std::string_view compiler, flags, type;
+  std::string_view compiler;     // name and version
+  std::string_view flags, type;  // of the compiler; CMake's build type
 
+  /// Returns true if the sources differ from the commit.
   bool dirty() const { return !changes.empty(); }
   /// The commit, and the changes where there are some.
   std::string code() const;
 };
 
+/// Returns the facts of this build.
 const BuildFacts& build_facts();
 
 /// Checksum of the file that this process runs, 16 hexadecimal digits; "unknown" where it

@@ -14,7 +14,9 @@ namespace tress::simulation {
 /// deliberate changes.
 class Checksum {
  public:
+  /// Adds bytes; returns the same object.
   Checksum& add(std::string_view bytes);
+  /// Returns the hash of all bytes so far.
   std::uint64_t value() const { return hash_; }
   std::string text() const;  // 16 hexadecimal digits
 
@@ -22,6 +24,7 @@ class Checksum {
   std::uint64_t hash_ = 14695981039346656037u;
 };
 
+/// Returns the checksum of bytes as text.
 std::string checksum(std::string_view bytes);
 
 /// The bytes, preceded by their checksum and a blank.

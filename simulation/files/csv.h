@@ -11,13 +11,13 @@ namespace tress::simulation {
 
 /// Position of a cell's start in a file, counted from 1.
 struct CellPlace {
-  int line = 1, column = 1;
+  int line = 1, column = 1;  // line and column
 };
 
 /// A table as read: every line has the number of cells of the header.
 struct CsvTable {
-  std::vector<std::string> header;
-  std::vector<Row> rows;
+  std::vector<std::string> header;  // names of the columns
+  std::vector<Row> rows;            // lines below the header
   /// Positions of all cells, header first: those of rows[i] are places[i + 1].
   std::vector<std::vector<CellPlace>> places;
 };
@@ -29,14 +29,17 @@ std::string csv_line(std::span<const std::string> cells);
 /// Header and rows; status "ok" is written where a row has no other status.
 std::string to_csv(std::span<const std::string> header, std::span<const Row> rows);
 
-/// Limits of a table that is read; in memory it is a hundred times as large.
-constexpr std::size_t most_table_bytes = 16 << 20, most_columns = 128;
+/// Limit of a table that is read; in memory it is a hundred times as large.
+constexpr std::size_t most_table_bytes = 16 << 20;
+/// Limit of the columns of a table that is read.
+constexpr std::size_t most_columns = 128;
 
 /// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
 /// unclosed quote, a line of the wrong length, a repeated column name or more than
 /// most_columns columns.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
+/// Reads and parses a file. Throws InputError as parse_csv().
 CsvTable read_csv(const std::string& file);
 
 }  // namespace tress::simulation

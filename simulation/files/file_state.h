@@ -10,13 +10,13 @@ namespace tress::simulation {
 
 /// Bytes of a file.
 struct FileRange {
-  std::uint64_t begin, size;
+  std::uint64_t begin, size;  // first byte, and number of bytes
 };
 
 /// State of a file, except for ranges that its writer never changes: enough to restore
 /// it, whatever happened to the rest since. It is small where those ranges are large.
 struct FileState {
-  std::uint64_t length = 0;
+  std::uint64_t length = 0;       // number of bytes of the file
   std::vector<FileRange> ranges;  // that may change, ascending
   std::string bytes;              // theirs, one after the other
 };

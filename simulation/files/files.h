@@ -18,6 +18,7 @@ class File {
   ~File();
   File(const File&) = delete;
   File& operator=(const File&) = delete;
+  /// Returns the descriptor of the operating system.
   int descriptor() const { return descriptor_; }
 
  private:
@@ -31,11 +32,13 @@ void write_all(int descriptor, std::string_view text, const std::string& file);
 /// The new content of a file, written in pieces to a temporary neighbour.
 class Replacement {
  public:
+  /// Opens the neighbour of `file`. Throws InputError if that fails.
   explicit Replacement(std::string file);
   ~Replacement();  // without keep(): the file stays as it was
   Replacement(const Replacement&) = delete;
   Replacement& operator=(const Replacement&) = delete;
 
+  /// Appends bytes to the new content.
   void write(std::string_view bytes);
   /// Writes over the first bytes.
   void write_over(std::string_view bytes);

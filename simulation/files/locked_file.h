@@ -17,12 +17,14 @@ class LockedFile {
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
 
+  /// Returns the descriptor of the operating system.
   int descriptor() const { return descriptor_; }
   /// The whole content. Reads through the same descriptor: closing another one would
   /// release the lock.
   std::string read() const;
   /// Keeps the first `bytes` bytes; later writes follow them.
   void truncate(std::size_t bytes) const;
+  /// Deletes the file.
   void remove() const;
 
  private:

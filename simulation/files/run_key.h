@@ -16,6 +16,7 @@ class RunKey {
   /// Contains version, commit, build and checksum of this program: no two builds continue
   /// each other's runs.
   RunKey();
+  /// Adds a name and its value; returns the same object.
   RunKey& add(std::string name, std::string value);
   std::string line() const;  // without newline
 

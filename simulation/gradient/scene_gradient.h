@@ -22,9 +22,9 @@ struct StrandGradient {
 /// Derivatives of a scene's run. Those of strands that choose their steps are of the run
 /// with its accepted steps frozen, which also end at frames.
 struct SceneGradient {
-  std::vector<SceneParameter> parameters;
-  bool damped = false;  // how it began
-  std::vector<StrandGradient> strands;
+  std::vector<SceneParameter> parameters;  // parameters in the order of [gradient]
+  bool damped = false;                     // how it began
+  std::vector<StrandGradient> strands;     // derivatives of each strand
 };
 
 /// Throws InputError if the scene has no [gradient], or its run no derivatives.

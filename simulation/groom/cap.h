@@ -11,12 +11,14 @@ namespace tress::simulation {
 /// (rad, in (0, pi]) of a unit vector.
 class Cap {
  public:
+  /// Takes lengths in m; `axis` is the unit vector in the space of u.
   Cap(Vec centre, Vec half_axes, Vec axis, double angle);
 
   double area() const { return area_; }  // m^2, by the midpoint rule
 
+  /// Point of the cap.
   struct Place {
-    Vec x, normal;
+    Vec x, normal;  // point (m), and the unit normal there
   };
   /// Returns a place by shares of area: the share `along` lies nearer to the axis, and
   /// the share `around` of the area equally near lies before the place. Both in [0, 1).

@@ -10,8 +10,10 @@
 
 namespace tress::simulation {
 
-/// Curves of USD's BasisCurves [OpenUSD, UsdGeomBasisCurves].
+/// Curves of USD's BasisCurves [OpenUSD, UsdGeomBasisCurves]: `linear`, or cubic with one
+/// of the bases `bezier`, `bspline` and `catmull_rom`.
 enum class CurveBasis { linear, bezier, bspline, catmull_rom };
+/// Returns the basis of these words of USD; none if there is no such basis.
 std::optional<CurveBasis> curve_basis(std::string_view type, std::string_view basis);
 
 /// Returns the number of points of points_on() for this number of control points; 0:

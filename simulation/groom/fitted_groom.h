@@ -18,20 +18,24 @@ struct GroomFit {
   bool by_turning = true;    // where elements end; false: equal ones
   Between between = Between::helices;  // from what a distance counts
 
+  /// Returns true if a tolerance is set.
   bool has_tolerance() const { return tolerance_m > 0 || tolerance_rel > 0; }
   double tolerance(double length) const;  // over the length; 0: none
 };
 
+/// Strand of a file as a chain of elements.
 struct FittedStrand {
   std::size_t number = 0;   // in the file, from 0
   std::size_t points = 0;   // there
   double turning = 0;       // rad
   int by_rule = 0;          // elements_by_turning() for its tolerance; 0: none
   bool rule_holds = false;  // these are enough
-  HelixChain chain;
-  FitError error;  // m
+  HelixChain chain;         // fitted chain
+  FitError error;           // m
 
+  /// Returns the length of the chain, m.
   double length() const { return chain.joint.back(); }
+  /// Returns the number of elements.
   int elements() const { return static_cast<int>(chain.darboux.size()); }
 };
 
@@ -40,10 +44,11 @@ struct FittedStrand {
 /// the tolerance or has `elements`.
 FittedStrand fitted(const PlacedGroom& groom, std::size_t k, const GroomFit& fit);
 
+/// Strands of a file that were fitted.
 struct FittedGroom {
-  std::string file;
-  std::vector<std::string> notes;  // of the file and its fit
-  std::vector<FittedStrand> strands;
+  std::string file;                   // name of the file
+  std::vector<std::string> notes;     // of the file and its fit
+  std::vector<FittedStrand> strands;  // strands that were taken
 };
 
 /// Fits `count` strands of a groom, evenly spread, on several threads; results do not

@@ -36,7 +36,7 @@ struct HelixChain {
 /// Weights that let a fit trade distance for strains that vary little: of squares of
 /// angles (rad^-2), relative to squares of distances over the length.
 struct FitWeights {
-  double jump = 2e-6, twist = 1e-6;
+  double jump = 2e-6, twist = 1e-6;  // weights of jumps between elements, and of twist
 };
 
 /// Fits the chain next to a curve, with joints at these arc lengths. It minimises
@@ -63,9 +63,11 @@ std::vector<Vec> places_on(const HelixChain& chain, std::span<const double> arcs
 /// from a chain. Points are compared at the same arc length, with the chain or with the
 /// straight edges between its joints.
 struct FitError {
-  double rms = 0, largest = 0;
+  double rms = 0, largest = 0;  // root mean square over the length, largest; m
 };
+/// Lines between joints that a fit is compared with: `helices` or straight `edges`.
 enum class Between { helices, edges };
+/// Computes the distance of a chain from a curve.
 FitError distance(const SpaceCurve& curve, const HelixChain& chain, Between between);
 
 }  // namespace tress::simulation

@@ -11,27 +11,28 @@ namespace tress::simulation {
 
 /// Units that files have.
 struct FileUnit {
-  std::string_view name;
-  double metres;
+  std::string_view name;  // name in scenes
+  double metres;          // metres per unit
 };
+/// All units, by name.
 inline constexpr FileUnit file_units[] = {
     {"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"inch", 0.0254}};
 
 /// Settings that place a file's strands in a scene.
 struct GroomPlacing {
-  std::optional<double> metres;  // per unit; none: as the file says, or a guess
-  std::optional<FileAxis> up;    // likewise
-  Vec position;                  // of the file's origin, m
-  BadStrands bad = BadStrands::refuse;
-  std::size_t every = 1;  // take every n-th strand
+  std::optional<double> metres;         // per unit; none: as the file says, or a guess
+  std::optional<FileAxis> up;           // likewise
+  Vec position;                         // of the file's origin, m
+  BadStrands bad = BadStrands::refuse;  // treatment of strands that cannot be simulated
+  std::size_t every = 1;                // take every n-th strand
 };
 
 /// In m, z up, thinned; with what a user should know of guesses and strands left out, one
 /// sentence each.
 struct PlacedGroom {
-  std::string file;
-  Polylines lines;
-  std::vector<std::string> notes;
+  std::string file;                // name of the file
+  Polylines lines;                 // strands, in m
+  std::vector<std::string> notes;  // remarks for the user, one sentence each
 };
 
 /// Places a groom in the axes and units of tress. The axis that points up becomes z by a

@@ -15,7 +15,7 @@ struct FileAxis {
   bool back;  // its negative direction
 };
 
-/// Treatment of strands that cannot be simulated.
+/// Treatment of strands that cannot be simulated: `refuse` the file, or `drop` them.
 enum class BadStrands { refuse, drop };
 
 /// Settings for reading a file.
@@ -27,14 +27,14 @@ struct GroomReading {
 
 /// Strands as they are in a file, in its units and axes.
 struct GroomFile {
-  Polylines lines;
+  Polylines lines;               // strands in the order of the file
   std::optional<double> metres;  // per unit, where the file says
   std::optional<FileAxis> up;    // where it says
   // What the format takes where a file does not say; none: nothing.
-  std::optional<double> format_metres;
-  std::optional<FileAxis> format_up;
-  bool text = false;               // Polylines::places are lines, not bytes
-  std::vector<std::string> notes;  // for the user, one sentence each
+  std::optional<double> format_metres;  // metres per unit of the format
+  std::optional<FileAxis> format_up;    // axis that points up in the format
+  bool text = false;                    // Polylines::places are lines, not bytes
+  std::vector<std::string> notes;       // for the user, one sentence each
 };
 
 /// Reads a file in the format of its ending:
@@ -57,10 +57,15 @@ struct GroomFile {
 GroomFile read_groom(const std::string& file, const GroomReading& reading = {});
 
 // One format each.
+/// Reads Yuksel's .hair.
 GroomFile read_hair(ByteStream& from);
+/// Reads counted strands of `floats` numbers a point: .data, .bin.
 GroomFile read_counted(ByteStream& from, int floats);
+/// Reads .ply, with `strand_points` points a strand unless the file has curves.
 GroomFile read_ply(ByteStream& from, int strand_points);
+/// Reads the BasisCurves of a .usda.
 GroomFile read_usda(ByteStream& from, const GroomReading& reading);
+/// Reads the lines of a .vtp.
 GroomFile read_vtp(ByteStream& from);
 
 }  // namespace tress::simulation

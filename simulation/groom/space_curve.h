@@ -25,13 +25,16 @@ class SpaceCurve {
 
   /// u of each point (m), and the arc length there.
   std::span<const double> knots() const { return knots_; }
+  /// Returns the arc length at point i, m.
   double arc_of_point(std::size_t i) const {
     return arc_[i * static_cast<std::size_t>(fine_)];
   }
+  /// Returns the length of the curve, m.
   double length() const { return arc_.back(); }
   /// u where the arc length is s; linear within a part.
   double parameter(double s) const;
 
+  /// Returns the position at u.
   Vec position(double u) const;
   /// Returns the derivative dx/du.
   Vec rate(double u) const;
@@ -40,6 +43,7 @@ class SpaceCurve {
 
   /// u and s at the ends of all parts.
   std::span<const double> parameters() const { return u_; }
+  /// Returns s at the ends of all parts, m.
   std::span<const double> arcs() const { return arc_; }
 
  private:

@@ -9,25 +9,30 @@
 
 namespace tress::simulation {
 
-/// Why USD does not render a prim [OpenUSD, UsdPrimDefaultPredicate, UsdGeomImageable].
+/// Reason for which USD does not render a prim [OpenUSD, UsdPrimDefaultPredicate,
+/// UsdGeomImageable]: it is `inactive`, `undefined`, `abstract` or `invisible`, or its
+/// purpose is `guide` or `proxy`. `no`: it is rendered.
 enum class Hidden { no, inactive, undefined, abstract, invisible, guide, proxy };
 
 /// The attributes of one BasisCurves.
 struct UsdCurveSet {
-  CurveBasis basis = CurveBasis::bezier;
-  bool pinned = false;
+  CurveBasis basis = CurveBasis::bezier;  // basis of the curves
+  bool pinned = false;  // whether curves begin and end at their outer control points
   std::vector<std::size_t> counts;  // of the points of each curve
-  std::vector<Vec> points;
-  int line = 0;  // of the points
+  std::vector<Vec> points;          // control points of all curves
+  int line = 0;                     // of the points
 };
 
 /// Curves of a stage, in the order of their prims. Properties that surround a prim act on
 /// the curve sets that were added within it, which are known where the prim ends.
 class UsdCurves {
  public:
+  /// Names the file of `from` in messages.
   explicit UsdCurves(ByteStream& from) : from_(from) {}
 
+  /// Returns the number of sets.
   std::size_t size() const { return sets_.size(); }
+  /// Adds a set at the end.
   void add(const UsdCurveSet& set);
   /// The sets from `first` on lie within a prim with this map, which alone places them if
   /// `reset`.

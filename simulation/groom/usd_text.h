@@ -11,13 +11,16 @@ namespace tress::simulation {
 /// line where the text ends or is not what they read.
 class UsdText {
  public:
+  /// Reads from `from`, which must outlive it.
   explicit UsdText(ByteStream& from) : from_(from) {}
 
   /// Skips blanks and comments; the next character, -1 at the end.
   int next();
+  /// Skips blanks and takes this character.
   void expect(char c);
   /// A name with its colons, dots and []; empty if none begins here.
   std::string word();
+  /// Returns the text between quotes.
   std::string quoted();
   /// Any value: a number, a word, a text, a path, a list, a dictionary.
   void skip_value();
@@ -34,6 +37,7 @@ class UsdText {
     expect(']');
   }
 
+  /// Returns the file that is read.
   ByteStream& from() { return from_; }
 
   /// Metadata in parentheses: use(key) reads the value after the = or returns false.

@@ -10,9 +10,11 @@ namespace tress::simulation {
 
 /// x -> linear x + shift.
 struct Affine {
+  /// Linear part.
   Mat3 linear = identity();
-  Vec shift;
+  Vec shift;  // part that moves the origin
 
+  /// Returns the image of x.
   Vec operator()(const Vec& x) const { return linear * x + shift; }
   /// The map that applies `inner` first.
   friend Affine operator*(const Affine& outer, const Affine& inner) {

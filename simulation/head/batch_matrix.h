@@ -10,13 +10,14 @@ namespace tress::simulation {
 
 /// Support of a model's strands as one batch, with an integrator and effects.
 struct BatchCase {
+  /// Support of the strands as a batch.
   enum class Way {
     none,        // the integrator does not drive the model
     lanes,       // in SIMD lanes
     replicated,  // each as a system of its own (ReplicatedHead)
     refused      // they are no batch
   };
-  Way way = Way::none;
+  Way way = Way::none;      // how strands run
   std::string scene = {};   // a small one, as text; empty: none
   std::string reason = {};  // why there are no lanes, or no batch
 };

@@ -12,7 +12,7 @@ namespace tress::simulation {
 /// most.
 class CellSet {
  public:
-  static constexpr double most_cells = 128;
+  static constexpr double most_cells = 128;  // Bound of the cells along a side.
 
   CellSet() = default;
   /// `all`: what it may hold.
@@ -20,9 +20,12 @@ class CellSet {
 
   /// Safe for several threads at once.
   void mark(const models::Box& box);
+  /// Returns true if a marked cell touches the box.
   bool holds_some(const models::Box& box) const;
 
+  /// Returns the box of all that the set may hold.
   const models::Box& all() const { return box_; }
+  /// Returns the marks of all cells, to be exchanged between ranks.
   std::vector<char>& marks() { return marks_; }
 
  private:

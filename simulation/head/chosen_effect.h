@@ -11,13 +11,16 @@ namespace tress::simulation {
 /// An effect on a strand that may give way to another one of its kind between steps.
 class ChosenEffect final : public models::Effect {
  public:
+  /// Acts as `usual` until another effect is chosen.
   explicit ChosenEffect(std::unique_ptr<const models::Effect> usual)
       : usual_(std::move(usual)) {}
 
   /// Null: the usual one again.
   void choose(std::unique_ptr<const models::Effect> other) { other_ = std::move(other); }
 
+  /// Returns the name of the effect that acts now.
   std::string_view name() const override { return now().name(); }
+  /// Returns the needs of the effect that acts now.
   models::Needs needs() const override { return now().needs(); }
   void add_load(double t, const models::Points& p, InOut f) const noexcept override {
     now().add_load(t, p, f);

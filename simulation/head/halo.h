@@ -38,7 +38,7 @@ class Halo {
 
   /// Root and tips at t, and the results of Head::ahead(), by the numbers of own strands.
   struct Places {
-    In x, ahead, bulge;
+    In x, ahead, bulge;  // positions (m), and the results of Head::ahead()
   };
   /// Prepares a step from t to t + h; returns whether claims were rebuilt.
   bool look(double t, double h, const Places& places, const models::Loop& loop);
@@ -56,6 +56,7 @@ class Halo {
     double claim_s = 0, exchange_s = 0;  // exchange_s: packing, waiting, unpacking
     double meet_s = 0;                   // to list what touches strands that are sent
   };
+  /// Returns the work since the run began.
   const Work& work() const { return work_; }
 
  private:

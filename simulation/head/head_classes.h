@@ -9,8 +9,8 @@ namespace tress::simulation {
 /// A scene's strands of one number of elements, as a scene of their own:
 /// <name>.<elements>.
 struct HeadClass {
-  int elements;
-  SceneOutline outline;
+  int elements;          // number of elements of each strand
+  SceneOutline outline;  // scene of these strands
 };
 
 /// Returns whether strands may differ in their numbers of elements: their tables do, or

@@ -9,15 +9,17 @@
 
 namespace tress::simulation {
 
-/// Device that takes the steps of a batch: `automatic` is a GPU if one supports the
-/// batch.
+/// Device that takes the steps of a batch: `cpu`, `gpu`, or `automatic`, which is a GPU
+/// if one supports the batch.
 enum class DeviceChoice { cpu, gpu, automatic };
+/// Words of device_choice().
 constexpr const char* device_choices = "cpu|gpu|auto";
 /// One of these words.
 DeviceChoice device_choice(std::string_view word);
 
+/// Device that was chosen.
 struct ChosenDevice {
-  std::string name = "cpu";  // or that of the GPU
+  std::string name = "cpu";  // or the name of the GPU
   std::string why_not = {};  // automatic, on the processor: what speaks against a GPU
 };
 /// Moves the steps of the batch to the device. Throws InputError, which names the place

@@ -23,7 +23,9 @@ class HeadDivision {
                int rank);
 
   std::size_t strands() const { return owner_.size(); }  // of the head
+  /// Returns the number of ranks.
   int ranks() const { return ranks_; }
+  /// Returns the rank that owns a strand.
   int owner(std::size_t strand) const { return owner_[strand]; }
   /// Numbers of this rank's own strands, by their places.
   std::span<const std::size_t> own() const { return own_; }

@@ -28,6 +28,7 @@ class HeadGuard {
                      double t) = 0;
   /// Whether a step of h that has come to t must be judged.
   virtual bool due(double t, double h) const = 0;
+  /// Judges the strands of a block, whose first place is `first`, at t (s).
   virtual void judge(const models::Head& head, std::size_t block, std::size_t first,
                      double t) = 0;
   /// Returns the finding of the last judge(); empty: nothing.
@@ -36,7 +37,9 @@ class HeadGuard {
   /// Returns how many numbers of a strand judge() changes, in addition to those of the
   /// batch.
   virtual std::size_t kept() const = 0;
+  /// Writes what judge() changes for one strand.
   virtual void keep(std::size_t place, std::span<double> to) const = 0;
+  /// Restores what keep() wrote.
   virtual void recall(std::size_t place, std::span<const double> from) = 0;
 };
 

@@ -29,11 +29,13 @@ class HeadRun {
           std::unique_ptr<models::StrandInteraction> interaction = {});
   /// Constructs a run by the ranks for which the batch was made; they must outlive it.
   HeadRun(SceneHead made, int threads, Ranks& ranks);
+  /// Constructs a run on this process alone.
   HeadRun(SceneHead made, int threads) : HeadRun(std::move(made), threads, alone_) {}
 
   /// Steps are taken on the first device from now on; its name. Throws InputError if the
   /// head is refused, DeviceFailure if there is no device for it.
   const std::string& move_to_device();
+  /// Returns true after move_to_device().
   bool on_device() const { return device_ != nullptr; }
   /// Whether strands are stepped in SIMD lanes, else each as a system of its own.
   bool lanes() const { return lanes_; }
@@ -52,7 +54,9 @@ class HeadRun {
   const std::vector<models::HeadLoss>& lost() const { return lost_; }
 
   // Of this rank's own strands, by their places: see HeadDivision.
+  /// Returns the division of strands among ranks.
   const HeadDivision& division() const { return *division_; }
+  /// Returns the batch of own strands.
   const Head& head() const { return *head_; }
   /// Returns the batch for changes of its state.
   Head& change() {
@@ -61,13 +65,17 @@ class HeadRun {
   }
   /// Root and tips of elements (m), strand after strand.
   void positions(double t, std::vector<double>& x);
+  /// Computes the energies of own strands, J.
   void energies(double t, std::vector<models::HeadEnergy>& each);
   /// Returns the number of HeadGuard::potentials() of each strand; none without a scene.
   std::size_t effects() const { return guard_ ? guard_->effects() : 0; }
+  /// Computes the potentials of effects on own strands, strand after strand, J.
   void potentials(double t, std::vector<double>& each);
 
   // Of strands of all ranks; all call these with the same strands, ascending numbers.
+  /// Numbers of strands in the whole batch, ascending.
   using Numbers = std::span<const std::size_t>;
+  /// Returns the number of strands of all ranks.
   std::size_t strands() const { return division_->strands(); }
   /// Reads `each` numbers of every strand of an own block.
   using Read = std::function<void(std::size_t block, std::span<double> to)>;
@@ -75,11 +83,14 @@ class HeadRun {
   /// rank; other ranks get nothing.
   void collect(Numbers strands, std::size_t each, const Read& read,
                std::vector<double>& all);
+  /// Collects root and tips (m) of these strands on the first rank.
   void positions(double t, Numbers strands, std::vector<double>& x);
   /// Returns how many numbers keep() and recall() transfer per strand: those of the batch
   /// and of the guard. The first rank's numbers are recalled.
   std::size_t kept() const { return head_->kept() + (guarded_ ? guard_->kept() : 0); }
+  /// Collects what these strands keep on the first rank.
   void keep(Numbers strands, std::vector<double>& kept);
+  /// Restores what keep() collected, from the first rank.
   void recall(Numbers strands, std::vector<double>& kept);
   /// Calls use(strands) for all strands, `chunk` at a time.
   void by_chunks(std::size_t chunk, const std::function<void(Numbers)>& use) const;
@@ -92,7 +103,9 @@ class HeadRun {
   double stepping_s();
   /// Returns the halo, with the cost of other ranks' strands; null: none touch its own.
   const Halo* halo() const { return halo_.get(); }
+  /// Returns the threads.
   Crew& crew() { return crew_; }
+  /// Returns the processes.
   Ranks& ranks() { return *ranks_; }
 
  private:

@@ -32,6 +32,7 @@ class LaneGuard final : public HeadGuard {
   /// other than gravity and drag do no work in the frame of the head.
   LaneGuard(const Scene& scene, const HeadOptions& options, bool at_rest);
 
+  /// Allocates memory for a number of strands.
   void reserve(std::size_t strands) { strands_.reserve(strands); }
   /// The strand at the next place, with the effects on it alone.
   void add(const Strand& strand, models::Effects own);
@@ -42,19 +43,26 @@ class LaneGuard final : public HeadGuard {
   void start(const models::Head& head, std::size_t block, std::size_t first,
              double t) override;
   bool due(double t, double h) const override;
+  /// Judges the strands of a block at t (s).
   void judge(const models::Head& head, std::size_t block, std::size_t first,
              double t) override;
   std::string_view verdict(std::size_t place) const override {
     return strands_[place].verdict;
   }
   std::size_t kept() const override { return EnergyAccount::remembered; }
+  /// Writes the account of a strand.
   void keep(std::size_t place, std::span<double> to) const override;
+  /// Restores what keep() wrote.
   void recall(std::size_t place, std::span<const double> from) override;
 
-  static constexpr std::string_view
-      too_much_energy = "it had more energy than it can have",
-      too_fast = "it was faster than its energy allows",
-      off_length = "a piece was off its length by more than half of it";
+  /// Verdict of the bound of energy.
+  static constexpr std::string_view too_much_energy =
+      "it had more energy than it can have";
+  /// Verdict of the bound of speed.
+  static constexpr std::string_view too_fast = "it was faster than its energy allows";
+  /// Verdict of the bound of stretch.
+  static constexpr std::string_view off_length =
+      "a piece was off its length by more than half of it";
 
  private:
   struct OfStrand {

@@ -9,10 +9,10 @@ namespace tress::simulation {
 
 /// Options of a batch's steps, in addition to the strands' own.
 struct HeadOptions : models::LaneOptions {
-  HeadMethod method = HeadMethod::linearly_implicit_euler;
+  HeadMethod method = HeadMethod::linearly_implicit_euler;  // method of the steps
   // As Options::newton_tolerance, at least what numbers resolve, and newton_iterations.
-  double newton_tolerance = 1e-10;
-  int newton_iterations = 20;
+  double newton_tolerance = 1e-10;  // bound of the last correction over typical sizes
+  int newton_iterations = 20;       // bound of the corrections
   /// Tolerance of a strand's step error, as Options::tolerance; 0: equal steps. With
   /// tr_bdf2 every strand takes its own steps with this error control. Newton's tolerance
   /// follows from it. See integrators/block/controlled_blocks.h.
@@ -66,6 +66,7 @@ std::unique_ptr<models::Head> spring_head(const HeadOptions& options,
 /// Throws InputError as above.
 std::unique_ptr<models::Head> corde_head(const HeadOptions& options,
                                          const models::HeadPack& pack);
+/// Makes a batch of xpbd_cosserat: see corde_head().
 std::unique_ptr<models::Head> cosserat_head(const HeadOptions& options,
                                             const models::HeadPack& pack);
 

@@ -13,7 +13,7 @@ namespace tress::simulation {
 
 /// Why a scene does not run as asked for, and what would make it so.
 struct NoHead {
-  std::string reason, remedy;
+  std::string reason, remedy;  // cause and remedy for messages
 };
 
 /// Why the strands of a scene do not run in SIMD lanes with such numbers: the part of the
@@ -30,7 +30,9 @@ std::optional<NoHead> no_head(const SceneOutline& outline,
 /// Returns whether a scene in lanes has springs; the next two: rods with a quaternion for
 /// every edge, rigid links. Otherwise it has super-helices.
 bool steps_springs(const Scene& scene);
+/// Returns whether a scene in lanes has rods with a quaternion for every edge.
 bool steps_quaternions(const Scene& scene);
+/// Returns whether a scene in lanes has rigid links.
 bool steps_chains(const Scene& scene);
 /// Whether nodes carry mass and edges between them stretch.
 bool steps_edges(const Scene& scene);

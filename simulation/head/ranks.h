@@ -17,18 +17,21 @@ namespace tress::simulation {
 /// bytes: all processes run on machines of one kind.
 class Ranks {
  public:
+  /// Numbers for each rank.
   using Sizes = std::span<const std::size_t>;
   /// Data sent to another rank, or received from it.
   struct Message {
-    int rank;
-    std::span<std::byte> bytes;
+    int rank;                    // rank of the other process
+    std::span<std::byte> bytes;  // content
   };
 
   virtual ~Ranks() = default;
 
   virtual int rank() const = 0;  // of this process, from 0
+  /// Returns the number of processes.
   virtual int size() const = 0;
   virtual int on_this_machine() const = 0;  // of them, this one included
+  /// Returns true on the process that writes files.
   bool first() const { return rank() == 0; }
 
   /// The largest of what the ranks give.
@@ -80,6 +83,7 @@ class Ranks {
   /// The job's exit code.
   [[noreturn]] virtual void end_all(int code) = 0;
 
+  /// Returns the bytes of an array.
   template <class T>
   static std::span<std::byte> bytes_of(std::span<T> x) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -116,6 +120,7 @@ bool started_as_rank();
 class OneRank final : public Ranks {
  public:
   int rank() const override { return 0; }
+  /// Returns 1, this process.
   int size() const override { return 1; }
   int on_this_machine() const override { return 1; }
   double largest(double x) override { return x; }

@@ -27,6 +27,7 @@ class ReplicatedHead final : public models::Head {
   ReplicatedHead(const Scene& scene, int elements);
 
   void reserve(std::size_t strands) override { strands_.reserve(strands); }
+  /// The calls of the base class too.
   using Head::add;
   void add(const Strand& strand, Effects own) override {
     add({strand, std::move(own)}, strands_.size());
@@ -38,13 +39,17 @@ class ReplicatedHead final : public models::Head {
   /// potentials of effects where the models have them act. Must not outlive this.
   std::unique_ptr<HeadGuard> guard();
 
+  /// Returns the number of strands.
   std::size_t strands() const override { return strands_.size(); }
+  /// Returns the number of strands: each is a block.
   std::size_t blocks() const override { return strands_.size(); }
   std::size_t bytes() const override { return bytes_; }
+  /// Returns memory for the calls of one thread.
   std::unique_ptr<Scratch> scratch() const override;
   /// Advances to t + h, in the number of steps that the integrator needs.
   void step(std::size_t block, double t, double h, Scratch& scratch) override;
   std::size_t blocks_at_once() const override { return 1; }
+  /// Returns true if the strand has failed.
   bool lost(std::size_t strand) const override { return strands_[strand].run.stays(); }
   std::vector<models::HeadLoss> losses(std::size_t known) const override {
     return losses_.after(known);
@@ -52,7 +57,9 @@ class ReplicatedHead final : public models::Head {
   void lose(std::size_t strand) override;
 
   std::size_t numbers() const override { return 3 * (elements_ + 1); }
+  /// Returns 1 for every block.
   std::size_t strands_of(std::size_t /*block*/) const override { return 1; }
+  /// Computes root and tips of a strand, m.
   void positions(std::size_t block, double t, std::span<double> x) const override;
   void motion(std::size_t block, double t, std::span<double> x,
               std::span<double> v) const override;
@@ -64,7 +71,9 @@ class ReplicatedHead final : public models::Head {
 
   std::size_t kept() const override;
   std::size_t kept_of_state() const override { return 2 * coordinates_; }
+  /// Writes the state of a strand.
   void keep(std::size_t block, std::span<double> x) const override;
+  /// Restores what keep() wrote; integrators start again.
   void recall(std::size_t block, std::span<const double> x) override;
 
  private:

@@ -22,14 +22,15 @@ namespace tress::simulation {
 /// needs. `threads` threads pass twice over the strands, a thousand at a time.
 struct SceneHead {
   std::unique_ptr<models::StrandInteraction> interaction;  // or null; outlives the head
-  std::unique_ptr<Head> head;
-  std::unique_ptr<HeadGuard> guard;              // null: a head of no scene
-  bool guarded = false;                          // whether it judges the steps
-  bool lanes = true;                             // else a ReplicatedHead
+  std::unique_ptr<Head> head;                              // batch of the strands
+  std::unique_ptr<HeadGuard> guard;                        // null: a head of no scene
+  bool guarded = false;                                    // whether it judges the steps
+  bool lanes = true;                                       // else a ReplicatedHead
   std::shared_ptr<const HeadDivision> division;  // null: all strands, in their order
   std::unique_ptr<Halo> halo;   // null: no other rank's strands may touch these
   std::vector<HeldShape> held;  // of a rest that is inverse, by places
 };
+/// Makes the strands of this process alone, in the order of the scene.
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);
 /// Makes a batch of the strands that a scene holds: the guides of a groom, or those left
 /// by only(). no_head() must accept the scene that they come from.

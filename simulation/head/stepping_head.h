@@ -12,6 +12,7 @@ namespace tress::simulation {
 /// threads and blocks in a call.
 std::unique_ptr<models::Head> stepping_head(
     std::unique_ptr<models::LaneKernel<double>> kernel, const HeadOptions& options);
+/// Makes such a batch in single precision.
 std::unique_ptr<models::Head> stepping_head(
     std::unique_ptr<models::LaneKernel<float>> kernel, const HeadOptions& options);
 

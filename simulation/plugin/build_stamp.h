@@ -17,6 +17,7 @@ namespace tress::simulation {
 /// the library is opened.
 class BuildStamp {
  public:
+  /// Composes the stamp of the code that is compiled.
   constexpr BuildStamp() {
     add("tress plug-in|");
     field("version", interface_version);
@@ -54,6 +55,7 @@ class BuildStamp {
            sizeof(integrators::IntegratorEntry)});
   }
 
+  /// Returns the stamp.
   constexpr std::string_view text() const { return {text_, size_}; }
 
  private:

@@ -8,6 +8,7 @@
 
 namespace tress::simulation {
 
+/// Plug-in that was loaded.
 struct LoadedPlugin {
   std::string file;                                       // as it was given
   std::string checksum;                                   // of its bytes

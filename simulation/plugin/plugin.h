@@ -12,9 +12,10 @@ namespace tress::simulation {
 /// Contents of a plug-in: entries of the catalogues. Texts and tables that they name must
 /// live as long as the library.
 struct Plugin {
-  std::vector<models::ModelEntry> models;
+  std::vector<models::ModelEntry> models;  // entries of the catalogue of models
+  /// Entries of the list of integrators.
   std::vector<integrators::IntegratorEntry> integrators;
-  std::vector<models::EffectEntry> effects;
+  std::vector<models::EffectEntry> effects;  // entries of the catalogue of effects
 };
 
 }  // namespace tress::simulation

@@ -19,6 +19,7 @@ class DenseStatics {
   /// The residual that constraints do not take up, Z^T r, for the present natural
   /// strains.
   Eigen::VectorXd residual();
+  /// Returns Z^T K Z.
   const Eigen::MatrixXd& stiffness();
   /// Z^T K (to - from), of two states.
   Eigen::VectorXd pull(In from, In to);

@@ -22,7 +22,9 @@ struct HeldShape {
   /// Offsets for Body::with_offsets() of a body, by its index among make_effects().
   std::vector<std::pair<std::size_t, std::vector<double>>> offsets;
 
+  /// Returns true if the strand would fall with its own moduli.
   bool would_fall() const { return !(least_factor < 1); }
+  /// Returns true if the strand falls with its moduli raised by `factor`.
   bool falls() const { return !(least_factor < factor); }
 };
 

@@ -9,6 +9,7 @@ namespace tress::simulation {
 /// Location of errors of rest = "inverse" that have no place in a file.
 inline constexpr const char* inverse_rest = "rest = \"inverse\"";
 
+/// Returns the coordinates of the initial state.
 std::vector<double> coordinates_at_start(const System& system);
 
 /// The changes of natural strains that answer a residual: for strains that are

@@ -49,18 +49,25 @@ class EnergyAccount {
   /// and elastic energy (J), which counts as error, not gain.
   static double share(double kinetic, double elastic);
 
+  /// Starts the account with the first measure; slack in J.
   void start(double t, const EnergyMeasure& begin, double slack);
+  /// Adds the work of the interval since the last measure.
   void gather(double t, const EnergyMeasure& now);
   double seen() const { return seen_; }  // s, when gathered last
+  /// Returns the energy above that of the start, J.
   double gain(const EnergyMeasure& now) const;
+  /// Returns the bound of gain(), J.
   double allowed() const;
   /// Bound of the speed of a point (m/s) of a strand of so much mass (kg).
   double fastest(double mass) const;
 
   /// All data gathered since start(); another account that recalls them goes on there.
   static constexpr std::size_t remembered = 7;
+  /// Numbers of an account.
   using Memory = std::array<double, remembered>;
+  /// Returns what start() and gather() have found.
   Memory memory() const;
+  /// Restores what memory() returned.
   void recall(In memory);
 
  private:

@@ -16,12 +16,14 @@ namespace tress::simulation {
 
 /// A physically impossible state found by a guard.
 struct Breach {
+  /// Bound that is broken: `not_finite` numbers, `stretch`, `speed` or `energy`.
   enum class Kind { not_finite, stretch, speed, energy };
-  Kind kind;
+  Kind kind;          // which bound
   std::string what;   // "a piece is stretched by 6.6 of its length (at most 0.5)"
   std::string where;  // "strand 0, element 7"; empty: the system as a whole
   double t;           // s
 
+  /// Returns what, where and when in one line.
   std::string message() const;
 };
 
@@ -58,6 +60,7 @@ class Guard {
   bool operator()(double t, In q, In v);
   /// Checks this state unconditionally.
   bool judge(double t, In q, In v);
+  /// Returns the first violation; none if all states were possible.
   const std::optional<Breach>& breach() const { return breach_; }
   /// Returns the dissipation of the method until the last check. Meaningless where
   /// impulses or other strands act.
@@ -67,8 +70,11 @@ class Guard {
   /// constructed system continue from there.
   static constexpr std::size_t remembered =  // numbers
       EnergyAccount::remembered + DissipationMeter::remembered;
+  /// Numbers of a guard.
   using Memory = std::array<double, remembered>;
+  /// Returns all data gathered since start().
   Memory memory() const;
+  /// Restores what memory() returned.
   void recall(In memory);
 
  private:

@@ -13,6 +13,7 @@ namespace tress::simulation {
 /// guard each: none may have the energy that only the others could gain.
 class Guards {
  public:
+  /// Numbers of all guards, one after the other.
   using Memory = std::vector<double>;
 
   /// One guard for the whole: a strand, a mechanism, or strands whose contacts have
@@ -31,12 +32,15 @@ class Guards {
   }
 
   // As those of Guard.
+  /// Starts all guards from a state.
   void start(double t, In q, In v) {
     for (Part& part : parts_) part.guard.start(t, part.of(q), part.of(v));
   }
+  /// Checks a state as Guard does, for every guard.
   bool operator()(double t, In q, In v) {
     return all([&](Part& part) { return part.guard(t, part.of(q), part.of(v)); });
   }
+  /// Checks a state for every guard unconditionally.
   bool judge(double t, In q, In v) {
     return all([&](Part& part) { return part.guard.judge(t, part.of(q), part.of(v)); });
   }
@@ -46,13 +50,16 @@ class Guards {
         parts_, [](const Part& part) { return part.guard.breach().has_value(); });
     return (broken == parts_.end() ? parts_.front() : *broken).guard.breach();
   }
+  /// Returns the sum of the dissipation of all guards.
   MethodDissipation dissipation() const {
     MethodDissipation sum;
     for (const Part& part : parts_) sum += part.guard.dissipation();
     return sum;
   }
 
+  /// Returns the number of entries of memory().
   std::size_t remembered() const { return Guard::remembered * parts_.size(); }
+  /// Returns all data gathered since start().
   Memory memory() const {
     Memory all;
     for (const Part& part : parts_) {
@@ -61,6 +68,7 @@ class Guards {
     }
     return all;
   }
+  /// Restores what memory() returned.
   void recall(In memory) {
     for (Part& part : parts_) {
       part.guard.recall(memory.first(Guard::remembered));

@@ -9,7 +9,7 @@ namespace tress::simulation {
 
 /// A force of contact on a strand.
 struct ContactForce {
-  std::size_t strand;
+  std::size_t strand;  // index of the strand
   std::size_t effect;  // in the scene's order
   Vec place;           // m
   Vec force;           // N
@@ -20,6 +20,7 @@ struct ContactForce {
 /// has them act are available on demand. One per strand.
 class Metered final : public Effect {
  public:
+  /// Meters this effect.
   explicit Metered(std::shared_ptr<const Effect> effect) : effect_(std::move(effect)) {}
 
   double last() const { return last_->potential; }  // J
@@ -28,9 +29,12 @@ class Metered final : public Effect {
   /// Returns the places (m) of the last query that recorded forces, 3 numbers each;
   /// forces() returns the forces (N).
   In places() const { return last_->places; }
+  /// Returns the forces of the last query that recorded them (N), 3 numbers each.
   In forces() const { return last_->forces; }
 
+  /// Returns the name of the effect.
   std::string_view name() const override { return effect_->name(); }
+  /// Returns the needs of the effect.
   Needs needs() const override { return effect_->needs(); }
   void add_load(double t, const Points& p, InOut f) const noexcept override {
     effect_->add_load(t, p, f);
@@ -74,6 +78,7 @@ class Metered final : public Effect {
     metered->holds_ = std::move(own);
     return metered;
   }
+  /// Returns the multipliers of the effect; null if it has none.
   Multipliers* multipliers() override {
     return holds_ == nullptr ? nullptr : holds_->multipliers();
   }

@@ -13,7 +13,9 @@ struct MethodDissipation {
   double dissipated = 0;  // by the method; < 0: created
   double available = 0;   // largest energy above the lowest potential, and work put in
 
+  /// Returns the part of the available energy that the method dissipated.
   double share() const { return available > 0 ? dissipated / available : 0; }
+  /// Adds the energies of another system.
   MethodDissipation& operator+=(const MethodDissipation& other) {
     dissipated += other.dissipated;
     available += other.available;
@@ -26,6 +28,7 @@ struct MethodDissipation {
 /// integral is taken by the trapezoidal rule over the intervals between two calls.
 class DissipationMeter {
  public:
+  /// Starts the account; power in W.
   void start(const Energy& energy, double power) {
     began_ = total_ = energy.total();
     lowest_ = energy.potential;
@@ -43,14 +46,17 @@ class DissipationMeter {
     lowest_ = std::min(lowest_, energy.potential);
     largest_ = std::max(largest_, total_ - lowest_);
   }
+  /// Returns the dissipation since start().
   MethodDissipation dissipation() const {
     return {began_ + passed_ - total_, largest_ + given_};
   }
 
   static constexpr std::size_t remembered = 7;  // numbers
+  /// Returns all data gathered since start().
   std::array<double, remembered> memory() const {
     return {began_, total_, lowest_, largest_, passed_, given_, power_};
   }
+  /// Restores what memory() returned.
   void recall(In memory) {
     std::size_t k = 0;
     for (double* const value :

@@ -12,6 +12,7 @@ struct ScaleNumbers {
   double inertia_bending;  // rho a S L^3/(EI), a the rms acceleration of the root
   double twist_bending;    // GJ/(EI)
 };
+/// Computes the numbers of the scene's first strand.
 ScaleNumbers scale_numbers(const Scene& scene);
 
 /// Load of one of the scene's effects, rms over all points at all frames of a run, over

@@ -11,7 +11,7 @@ namespace tress::simulation {
 /// One column of the time series, or one number per material point for pictures.
 struct Reading {
   std::string name;  // with its unit
-  std::string help;
+  std::string help;  // meaning
 };
 
 /// One instant of a scene for output and display.
@@ -32,10 +32,14 @@ class Readout {
   /// A line is a strand, or a chain of segments of a tree, which begins at the point of
   /// attachment.
   const std::vector<int>& lines() const { return lines_; }
+  /// Returns the number of points that are drawn.
   std::size_t points() const { return drawn_.size(); }
 
+  /// Returns the columns of the time series.
   const std::vector<Reading>& series() const { return series_; }
+  /// Returns the numbers at every point.
   const std::vector<Reading>& channels() const { return channels_; }
+  /// Reads the present state of a world.
   Frame3d read(World& world);
   /// The next World counts its steps from 0.
   void restart() {

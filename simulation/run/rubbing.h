@@ -27,18 +27,22 @@ class Rubbing final : public StrandCoupling {
   /// after impulses.
   void add(System& strands, Integrator& method, const Options& options) override;
 
+  /// Takes the positions of points before a step.
   void before_step(In x, const Loop& loop) override;
   /// Need not be called: if system k touched others in the last step, finds how it
   /// responds to forces.
   void prepare(std::size_t k, double h) override;
   Status after_step(double t, double h, In x, In u, const Loop& loop) override;
   std::span<const std::size_t> moved() const override { return friction_.touching(); }
+  /// Returns what ended the last after_step(); empty if it ended well.
   std::string failure() const override { return failure_; }
 
+  /// Returns the friction between strands.
   const StrandFriction& friction() const { return friction_; }
   /// Sweeps, and steps that ended before the law held, since restore().
   Stats stats() const override { return stats_; }
   std::vector<double> memory() const override { return friction_.memory(); }
+  /// Restores the multipliers; starts without any if `memory` is empty.
   void restore(In memory) override;
 
  private:

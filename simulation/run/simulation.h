@@ -16,20 +16,22 @@ namespace tress::simulation {
 std::unique_ptr<System> make_model(std::string_view id,
                                    const ModelSettings& settings = {});
 
+/// Coordinates and rates of a system.
 struct State {
-  std::vector<double> q, v;
+  std::vector<double> q, v;  // coordinates (n), rates (n)
 };
 
+/// Returns the state from System::initial_state().
 State initial_state(const System& system);
 
 /// Result of a run; the state is the one at `t`.
 struct Simulation {
-  Status status;
-  std::string failure;
-  double t;
-  State state;
-  Stats stats;
-  Limit limit;  // of Options that ended it, if any
+  Status status;        // `ok` if all stops were reached
+  std::string failure;  // what ended the run; empty if it ended well
+  double t;             // time of the state, s
+  State state;          // state at `t`
+  Stats stats;          // work done
+  Limit limit;          // of Options that ended it, if any
 };
 
 /// One run of the system, which is reset first, from `start` at t = 0 through all `stops`

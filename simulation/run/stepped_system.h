@@ -21,24 +21,26 @@ void add_work(const Stats& from, Stats& to);
 /// the scene's step resumes. This may happen a hundred times; beyond that, the step is
 /// too long for the scene. stats().rejected counts every failed attempt.
 struct SteppedSystem {
+  /// Takes a system; an integrator and a guard may follow.
   explicit SteppedSystem(std::unique_ptr<System> made) : system(std::move(made)) {}
 
-  std::unique_ptr<System> system;
+  std::unique_ptr<System> system;          // equations
   std::unique_ptr<Integrator> integrator;  // null before take_method()
-  std::optional<Guards> guard;
+  std::optional<Guards> guard;             // check of the steps; none: not checked
   /// Effects of its first strand, of the second ...
   std::vector<std::shared_ptr<const Metered>> meters;
 
-  Status status = Status::ok;
+  Status status = Status::ok;  // result of the last advance()
   // The state after the last successful step.
-  double t = 0;
-  std::vector<double> q, v;
-  double indicator = 0;
+  double t = 0;              // time, s
+  std::vector<double> q, v;  // coordinates, rates
+  double indicator = 0;      // largest error indicator so far
 
   /// The state of the model and an integrator at t = 0.
   struct State {
     std::vector<double> q, v, memory;  // memory: System::memory()
   };
+  /// Returns the initial state.
   State initial_state() const;
   /// A new integrator, to be started.
   void take_method(std::string_view method, const Options& options);
@@ -55,6 +57,7 @@ struct SteppedSystem {
   /// Stores a state.
   void keep(double at, In new_q, In new_v);
 
+  /// Returns true if the guard has found a violation.
   bool breached() const { return guard && guard->breach(); }
   /// Returns the reason of the failure: the guard's finding, or the integrator's message.
   /// Contains no remedy.
@@ -64,8 +67,11 @@ struct SteppedSystem {
   /// Returns the counts since start().
   Stats stats() const;
   // What readouts see.
+  /// Returns the coordinates that readouts see.
   In seen_q() const { return stays_ ? In(q) : integrator->q(); }
+  /// Returns the rates that readouts see.
   In seen_v() const { return stays_ ? In(v) : integrator->v(); }
+  /// Returns true if the system has failed and stays where it is.
   bool stays() const { return stays_; }
 
  private:

@@ -27,6 +27,7 @@ class StrandCoupling {
   virtual void add(System& /*system*/, Integrator& /*method*/,
                    const Options& /*options*/) {}
 
+  /// Takes the positions of points before a step.
   virtual void before_step(In /*x*/, const Loop& /*loop*/) {}
   /// System k has advanced by h: a chance to do what costs least while it is near in
   /// memory. Safe for different ones at once.
@@ -38,6 +39,7 @@ class StrandCoupling {
   }
   /// Strands, ascending, that after_step() has given a new state.
   virtual std::span<const std::size_t> moved() const { return {}; }
+  /// Returns what ended the last after_step(); empty if it ended well.
   virtual std::string failure() const { return {}; }
   /// Takes the points from which strands see each other in the next step.
   virtual void exchange(In /*x*/, In /*u*/, const Loop& /*loop*/) {}
@@ -46,12 +48,14 @@ class StrandCoupling {
   virtual Stats stats() const { return {}; }
   /// All that steps change; restore() goes on from there, or starts if it is empty.
   virtual std::vector<double> memory() const { return {}; }
+  /// Restores what memory() returned, or starts if it is empty.
   virtual void restore(In /*memory*/) {}
 };
 
 /// Strands see the others where they were at the start of the step.
 class LaggedInteraction final : public StrandCoupling {
  public:
+  /// Constructs the interaction with these arguments.
   template <class... Parts>
   explicit LaggedInteraction(Parts&&... parts) : law(std::forward<Parts>(parts)...) {}
 
@@ -60,13 +64,14 @@ class LaggedInteraction final : public StrandCoupling {
   }
   void exchange(In x, In u, const Loop& loop) override { law.update(x, u, loop); }
 
-  models::StrandInteraction law;
+  models::StrandInteraction law;  // Forces between strands that touch.
 };
 
 /// The control mesh of a wisp: its springs pull where strands were at the start of the
 /// step.
 class MeshCoupling final : public StrandCoupling {
  public:
+  /// Constructs the mesh with these arguments.
   template <class... Parts>
   explicit MeshCoupling(Parts&&... parts) : mesh(std::forward<Parts>(parts)...) {}
 
@@ -75,9 +80,10 @@ class MeshCoupling final : public StrandCoupling {
   }
   void exchange(In x, In u, const Loop& /*loop*/) override { mesh.update(x, u); }
   std::vector<double> memory() const override { return mesh.memory(); }
+  /// Restores what memory() returned.
   void restore(In memory) override { mesh.recall(memory); }
 
-  models::ControlMesh mesh;
+  models::ControlMesh mesh;  // Springs between strands.
 };
 
 }  // namespace tress::simulation

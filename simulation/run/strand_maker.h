@@ -23,10 +23,13 @@ struct StrandToMake {
 /// for a World and for a batch of strands. Keeps no reference to the scene.
 class StrandMaker {
  public:
+  /// Reads the scene's model, method, options and effects.
   explicit StrandMaker(const Scene& scene);
 
   const Effects& effects() const { return effects_; }  // make_effects()
+  /// Returns the integrator of the scene.
   const IntegratorEntry& method() const { return *method_; }
+  /// Returns the integrator's options.
   const Options& options() const { return options_; }
 
   /// Makes a strand as a system of its own, without integrator. `number`: the strand's

@@ -28,12 +28,15 @@ double seconds_of(F&& f) {
 /// machine hardly lengthens. Only for work that stays on this thread.
 class ThreadTimer {
  public:
-  static constexpr double short_s = 0.02;
+  static constexpr double short_s = 0.02;  // Length of a short span, s.
 
+  /// Starts the clock.
   ThreadTimer() : wall_(Clock::now()), processor_s_(processor_s()) {}
+  /// Returns the wall time since construction, s.
   double wall_s() const {
     return std::chrono::duration<double>(Clock::now() - wall_).count();
   }
+  /// Returns the time since construction, s.
   double seconds() const {
     const double wall = wall_s();
     return wall < short_s ? wall : processor_s() - processor_s_;
@@ -50,9 +53,10 @@ class ThreadTimer {
 /// Times of repeated calls, in s. Tables show the median: the minimum is an unusually
 /// fast run, and one interruption distorts the mean.
 struct Timing {
-  double median_s = 0, min_s = 0;
-  int repeats = 0;
+  double median_s = 0, min_s = 0;  // median and least time, s
+  int repeats = 0;                 // number of calls
 };
+/// Returns the median and the least of times (s).
 Timing summarize(const std::vector<double>& seconds);
 
 /// Calls f `repeats` times, at least once.

@@ -20,6 +20,7 @@ struct TipPaths {
 /// Limits at which a run is abandoned, checked after every frame.
 struct RunLimit {
   double iterations_per_step = std::numeric_limits<double>::infinity();  // Newton's, mean
+  /// Wall time of the run.
   double wall_s = std::numeric_limits<double>::infinity();
   double own_s = std::numeric_limits<double>::infinity();  // of ThreadTimer
   /// Whether the tips so far show that the run is of no use; empty: never.

@@ -24,12 +24,13 @@ namespace tress::simulation {
 /// State of a scene between two steps. New worlds of the same scene that are given the
 /// same snapshot continue identically, bit by bit.
 struct Snapshot {
+  /// State of one strand.
   using OfStrand = SteppedSystem::State;
-  double t = 0;  // s
-  std::vector<OfStrand> strands;
-  std::vector<double> guards;  // their Guards::memory(); empty: they start here
+  double t = 0;                   // s
+  std::vector<OfStrand> strands;  // states of all strands
+  std::vector<double> guards;     // their Guards::memory(); empty: they start here
   std::vector<std::vector<double>> couplings;  // StrandCoupling::memory() of each
-  std::vector<FailedStrand> lost;
+  std::vector<FailedStrand> lost;              // strands that have failed
 
   /// Adds the strands of one system: parts of q and v with these numbers of coordinates,
   /// and parts of its memory.
@@ -39,15 +40,16 @@ struct Snapshot {
 
 /// Exchanges between strands whose intervals error control chose.
 struct Exchanges {
-  long accepted = 0, rejected = 0;
-  StepControl::Shortest shortest;  // interval; its cause may be a strand that failed
+  long accepted = 0, rejected = 0;  // numbers of intervals
+  StepControl::Shortest shortest;   // interval; its cause may be a strand that failed
 };
+/// Adds the counts, and takes the shorter of the shortest intervals.
 void add_exchanges(const Exchanges& from, Exchanges& to);
 
 /// J, of all strands; `elastic` is the potential not due to effects, for a mechanism all.
 struct Energies {
-  double kinetic = 0, elastic = 0;
-  std::vector<double> effects;  // of make_effects(), in the scene's order
+  double kinetic = 0, elastic = 0;  // energies, J
+  std::vector<double> effects;      // of make_effects(), in the scene's order
 };
 
 /// Constructed scene: systems and integrators of its strands, its effects, and the
@@ -68,17 +70,22 @@ class World {
   /// `held`: that of an earlier world of the same scene, recomputed if empty.
   explicit World(const Scene& scene, int threads = 1, std::vector<HeldShape> held = {});
 
+  /// Continues from a snapshot.
   void restore(const Snapshot& snapshot);
+  /// Returns the present state.
   Snapshot snapshot();
 
   /// Advances all strands to t_end, as SteppedSystem. Not ok: failure() reports what
   /// happened, where and when. Where failed strands stay, always ok: see lost().
   Status advance(double t_end);
+  /// Returns the time of the state, s.
   double time() const { return t_; }
+  /// Returns what ended the last advance(); empty if it ended well.
   const std::string& failure() const { return failure_; }
   /// Strands that have failed and stay where they were at the start of their last
   /// advance(), in the order in which they did. Energies leave them out.
   const std::vector<FailedStrand>& lost() const { return lost_; }
+  /// Returns true if the strand has failed and stays where it is.
   bool lost(std::size_t strand) const { return stay_ && bodies_[strand].stays(); }
   /// Returns the dissipation of all strands. Empty without guards, or where energy
   /// changes by other means than power: impulses of rigid contact and of friction between
@@ -92,6 +99,7 @@ class World {
   double error_indicator() const;
   /// Work of all strands since restore(), and its cost as defined by total_work().
   Stats stats() const;
+  /// Returns the cost of stats() as defined by total_work().
   double work() const;
   /// Steps of each strand since restore(); strands of one system share theirs.
   std::vector<long> steps() const;
@@ -101,7 +109,9 @@ class World {
   /// Returns the held shape of each strand; empty unless the scene's rest is inverse.
   const std::vector<HeldShape>& held() const { return held_; }
 
+  /// Returns the number of strands.
   std::size_t strands() const { return points_.size(); }
+  /// Returns the number of systems; several strands may be one.
   std::size_t systems() const { return bodies_.size(); }
   /// Returns the energies of the systems' Energetics.
   Energies energies();
@@ -110,8 +120,11 @@ class World {
   std::vector<ContactForce> contact_forces();
   double stretch();  // largest |length/rest - 1|, 0 if not available
   // Null if the scene names none.
+  /// Returns the forces between strands that touch.
   const StrandInteraction* interaction() const { return interaction_; }
+  /// Returns the control mesh of a wisp.
   const ControlMesh* mesh() const { return mesh_; }
+  /// Returns the friction between strands.
   const StrandFriction* friction() const { return friction_; }
   /// The point that point i is attached to, -1: none.
   const std::vector<int>& before() const { return before_; }

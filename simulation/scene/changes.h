@@ -16,10 +16,10 @@ namespace tress::simulation {
 /// Model, integrator and options of a scene, without its discretisation in space and
 /// time.
 struct Method {
-  const ModelEntry* model = nullptr;
-  ModelSettings options;  // of the model, if not the default
-  std::string integrator;
-  Formulation formulation = Formulation::parametric;
+  const ModelEntry* model = nullptr;                  // entry of the catalogue of models
+  ModelSettings options;                              // of the model, if not the default
+  std::string integrator;                             // id of the integrator
+  Formulation formulation = Formulation::parametric;  // form of the constraints
 
   /// The option value of a choice of the model; empty if it has no such choice.
   std::string_view word(std::string_view choice) const;
@@ -41,6 +41,7 @@ Scene with_elements_of_strands(Scene scene, std::span<const int> elements);
 /// rest: mesh = "rest", or "rest_linear" where the scene's model is super_clothoid.
 /// Only of [strand] tables, without points.
 Scene with_elements_at_rest(Scene scene, int elements);
+/// Returns whether with_elements_at_rest() accepts the scene.
 bool may_cut_at_rest(const Scene& scene);
 /// Returns the scene with twice the elements in every strand.
 Scene with_twice_the_elements(Scene scene);
@@ -72,12 +73,14 @@ Scene refined(Scene scene);
 
 /// A removable part of a scene: an effect it names, or a mode of its model.
 struct Ingredient {
-  std::string name;
+  std::string name;  // name of the effect or mode
+  /// Returns the scene without it.
   std::function<Scene(const Scene&)> without;
   /// The scene with only this effect. Empty for modes.
   std::function<Scene(const Scene&)> alone;
 };
 
+/// Returns all removable parts of a scene.
 std::vector<Ingredient> ingredients(const Scene& scene);
 
 }  // namespace tress::simulation

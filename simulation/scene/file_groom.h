@@ -10,6 +10,7 @@ namespace tress::simulation {
 
 // [groom] file = "...": the strands of a file, each fitted by elements.
 
+/// Returns the keys of [groom] that apply to files.
 std::span<const Parameter> file_groom_parameters();
 
 /// The strands of the table's file, in m and z up; null: it names none. Throws InputError
@@ -22,6 +23,8 @@ void refuse_file_keys(const Table& groom);
 /// Returns the number of strands of the file that the table takes.
 std::size_t file_strands(const Table& groom, const PlacedGroom& file);
 
+/// Fits `count` strands of the file by the table's settings. Throws InputError with the
+/// location of an invalid key.
 std::shared_ptr<const FittedGroom> fit_file_groom(const Table& groom,
                                                   const PlacedGroom& file,
                                                   std::size_t count);

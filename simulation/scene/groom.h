@@ -28,6 +28,7 @@ class Groom {
   Groom(const Table& table, const Table* own_material, const Common& common,
         std::size_t most);
 
+  /// Returns the number of strands.
   std::size_t count() const { return count_; }
   /// Strand i < count() draws its length, curl and phase from this stream of the seed.
   /// Safe for several threads. Throws InputError if an element winds too far.

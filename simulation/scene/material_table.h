@@ -11,15 +11,17 @@ namespace tress::simulation {
 
 /// The contents of [material].
 struct StrandMaterial {
-  Material material;
-  CrossSection section;
+  Material material;                       // density, moduli and friction
+  CrossSection section;                    // shape and size of the section
   double curl_radius = 0, curl_pitch = 0;  // of the helix at rest, m; radius 0: straight
 
+  /// Returns the weight per length at 9.81 m/s^2, N/m.
   double weight() const {  // N/m
     return earth_gravity * material.density * section.area();
   }
 };
 
+/// Returns the keys of [material].
 std::span<const Parameter> material_table_parameters();
 
 /// Throws InputError on a table that gives shear_modulus_pa and poisson_ratio.

@@ -10,6 +10,7 @@ namespace tress::simulation {
 
 /// [root]: the common motion of all roots.
 std::span<const Parameter> root_table_parameters();
+/// Returns which keys apply to which motion.
 std::span<const Use> root_uses();
 
 /// A rigid motion that maps the rest position x to `position + frame x`; its own rest

@@ -19,17 +19,18 @@ class StrandSeries;
 
 /// One [effects.id] that a scene names.
 struct EffectChoice {
-  const EffectEntry* entry = nullptr;
-  Parameters parameters;
+  const EffectEntry* entry = nullptr;  // entry of the catalogue of effects
+  Parameters parameters;               // values of its parameters
 };
 
-/// Natural strains of strands: those of their tables, or such that the shapes at t = 0
-/// are at rest (simulation/rest). Those that would fall nevertheless are made stiffer,
-/// fall, or are left out.
+/// Natural strains of strands: those of their tables (`natural`), or such that the shapes
+/// at t = 0 are at rest (`inverse`, simulation/rest).
 enum class RestStrains { natural, inverse };
+/// Treatment of strands that would fall with inverse natural strains: they are made
+/// stiffer (`stiffen`), fall (`keep`), or are left out (`drop`).
 enum class Unstable { stiffen, keep, drop };
-/// Effect of a failed strand: it ends the run, or stays where it is while the others go
-/// on.
+/// Effect of a failed strand: it ends the run (`end_run`), or stays where it is while the
+/// others go on (`stay`).
 enum class FailedStrands { end_run, stay };
 
 /// The contents of a scene file, checked and complete: everything a run needs, with
@@ -39,12 +40,12 @@ struct Scene {
   std::string title;   // one line
   std::string source;  // origin of the scene
 
-  const ModelEntry* model = nullptr;
+  const ModelEntry* model = nullptr;  // entry of the catalogue of models
   /// The model's own options; for a model with its own geometry (no `strands`) all of its
   /// parameters.
   Parameters model_options{{}, "model"};
-  std::string integrator;
-  Options options;  // options.step: s
+  std::string integrator;  // id of the integrator
+  Options options;         // options.step: s
 
   /// Ready to simulate: material, discretisation, shapes, and the root's rest position
   /// and motion, which is `head` for all of them.
@@ -60,19 +61,23 @@ struct Scene {
   /// Effects on each strand, then the effect between strands.
   std::vector<EffectChoice> effects;
 
-  double duration = 0;    // s
-  double frame_rate = 0;  // 1/s, of the series and the geometry
-  double checkpoint = 0;  // s between saved states; 0: none
-  std::uint64_t seed = 1;
-  bool guard = true;  // impossible states end the run (simulation/run/guard.h)
-  RestStrains rest = RestStrains::natural;
-  Unstable unstable = Unstable::stiffen;
-  FailedStrands failed_strands = FailedStrands::end_run;
+  double duration = 0;     // s
+  double frame_rate = 0;   // 1/s, of the series and the geometry
+  double checkpoint = 0;   // s between saved states; 0: none
+  std::uint64_t seed = 1;  // seed of all random numbers
+  bool guard = true;       // impossible states end the run (simulation/run/guard.h)
+  RestStrains rest = RestStrains::natural;  // natural strains
+  Unstable unstable = Unstable::stiffen;    // treatment of strands that fall
+  FailedStrands failed_strands = FailedStrands::end_run;  // treatment of failed strands
 
   // Of effects between strands; null if the scene names none.
+  /// Returns the parameters of forces between strands that touch.
   const Parameters* interaction() const { return parameters_of("strand_interaction"); }
+  /// Returns the parameters of friction between strands.
   const Parameters* friction() const { return parameters_of("strand_friction"); }
+  /// Returns the parameters of the control mesh.
   const Parameters* mesh() const { return parameters_of("control_mesh"); }
+  /// Returns true if one of these effects is named.
   bool strands_touch() const {
     return interaction() != nullptr || friction() != nullptr || mesh() != nullptr;
   }
@@ -83,6 +88,7 @@ struct Scene {
   /// The first frame is 0, at t = 0; the last is at the end, which may cut the last
   /// interval short.
   std::size_t last_frame() const;
+  /// Returns the time of a frame, s.
   double time_of(std::size_t frame) const {
     return std::min(static_cast<double>(frame) / frame_rate, duration);
   }
@@ -107,6 +113,7 @@ std::vector<Scene> read_scenes(const std::vector<std::string>& files);
 /// Read a scene, or its outline, from a text; `file` is its name in messages, and files
 /// that the scene names are relative to its folder.
 Scene parse_scene(const std::string& text, const std::string& file);
+/// Reads the outline of a scene from a text; see parse_scene().
 SceneOutline parse_outline(const std::string& text, const std::string& file);
 
 /// Lengths of the segments of each strand, root to tip, m. Throws InputError, naming the

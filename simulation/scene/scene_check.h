@@ -13,8 +13,8 @@ struct ScenePlaces {
   std::string model, integrator;     // file:line:column of the ids
   std::string tolerance;             // empty: the step is given
   std::vector<std::string> strands;  // of each strand's table
-  std::vector<std::string> effects;
-  std::string rest, failed_strands;
+  std::vector<std::string> effects;  // of each effect's table
+  std::string rest, failed_strands;  // of the keys in [simulation]
 };
 
 /// The natural strains of a system for rest = "inverse". Throws InputError with `where`

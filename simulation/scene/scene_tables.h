@@ -28,9 +28,9 @@ std::span<const Use> integrator_uses();
 
 /// Description of one table of a scene.
 struct TableEntry {
-  std::string name;     // "strand"
-  std::string summary;  // one line
-  std::span<const Parameter> parameters;
+  std::string name;                       // "strand"
+  std::string summary;                    // one line
+  std::span<const Parameter> parameters;  // keys of the table
   std::string_view choice = {};    // the key whose value decides which others apply,
   std::span<const Use> uses = {};  // and which these are
   bool needed = false;             // in a scene of one strand

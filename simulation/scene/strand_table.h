@@ -14,10 +14,10 @@ namespace tress::simulation {
 
 /// Data common to all strands of a scene.
 struct Common {
-  const Table& material;
-  const RootMotion& head;
-  const std::optional<FreeRoot>& free_root;
-  std::uint64_t seed;
+  const Table& material;                     // the scene's [material]
+  const RootMotion& head;                    // motion of all roots
+  const std::optional<FreeRoot>& free_root;  // root that moves freely, if it does
+  std::uint64_t seed;                        // seed of all random numbers
 };
 
 /// The keys for discretisation, shape and initial state that [strand] and [groom] share.
@@ -25,6 +25,7 @@ std::vector<Parameter> cut_parameters();
 
 /// [strand]: one strand with the position of its root.
 std::span<const Parameter> strand_table_parameters();
+/// Returns which keys of [strand] apply to which shape.
 std::span<const Use> strand_uses();
 
 /// Throws InputError with the location of an invalid key. `stream` distinguishes the

@@ -15,9 +15,9 @@ namespace tress::simulation {
 
 /// One [strand] or [groom] of a scene, with its own material if it has one.
 struct StrandSource {
-  Table table;
-  std::optional<Table> material;
-  bool groom = false;
+  Table table;                    // the table as read
+  std::optional<Table> material;  // its own [material], if it has one
+  bool groom = false;             // whether it is a [groom]
   /// The strands of a groom's file; null: it makes them up.
   std::shared_ptr<const PlacedGroom> file = {};
 };
@@ -25,13 +25,14 @@ struct StrandSource {
 /// The tables, as read, from which the strands of a scene are made, and [gradient], which
 /// names numbers of them.
 struct StrandTables {
-  Table material, root;
-  std::vector<StrandSource> sources;  // each [strand], then each [groom]
-  std::optional<Table> gradient = {};
+  Table material, root;                // the scene's [material] and [root]
+  std::vector<StrandSource> sources;   // each [strand], then each [groom]
+  std::optional<Table> gradient = {};  // the scene's [gradient], if it has one
 };
 
+/// Strands of a scene, divided into elements.
 struct CutStrands {
-  std::vector<Strand> strands;
+  std::vector<Strand> strands;      // strands that are simulated
   std::vector<std::size_t> source;  // of every strand, its index in StrandTables
   std::vector<Strand> followers;    // of grooms with guides, all others
   std::vector<std::shared_ptr<const FittedGroom>> fitted;  // of grooms from files
@@ -40,9 +41,11 @@ struct CutStrands {
 /// Limits of a scene that is read whole, and of one whose strands are made one at a
 /// time.
 struct StrandLimits {
-  std::size_t strands, elements;
+  std::size_t strands, elements;  // bounds of strands and of their elements
 };
+/// Limits of a scene that is read whole.
 inline constexpr StrandLimits held_at_once{10'000, 200'000};
+/// Limits of a scene whose strands are made one at a time.
 inline constexpr StrandLimits made_singly{1'000'000, 20'000'000};
 
 /// The strands that the tables describe, made one at a time, by any number of threads.
@@ -57,7 +60,9 @@ class StrandSeries {
   StrandSeries(const StrandSeries&) = delete;
   StrandSeries& operator=(const StrandSeries&) = delete;
 
+  /// Returns the number of strands.
   std::size_t size() const { return some_.empty() ? first_.back() : some_.size(); }
+  /// Returns the number of elements of all strands.
   std::size_t elements() const { return elements_; }
   /// Throws InputError with the location of an invalid key.
   Strand strand(std::size_t k) const;
@@ -65,6 +70,7 @@ class StrandSeries {
   std::size_t source(std::size_t k) const;
   /// First strand of each of these tables, and the end; for a series of all.
   std::span<const std::size_t> first() const { return first_; }
+  /// Makes all strands.
   CutStrands all() const;
   /// The fits of all grooms from files.
   std::vector<std::shared_ptr<const FittedGroom>> fitted() const;

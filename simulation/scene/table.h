@@ -12,7 +12,7 @@ namespace tress::simulation {
 
 /// The keys that apply to one value of a table's choice, separated by '|'.
 struct Use {
-  std::string_view word, keys;
+  std::string_view word, keys;  // value of the choice, and the keys that apply to it
 };
 
 /// One table of a scene: the defaults and the values given by the scene, each with its
@@ -22,12 +22,17 @@ class Table {
   /// `place`: file:line:column.
   Table(std::span<const Parameter> declared, std::string name, std::string place);
 
+  /// Returns the keys that the table may have.
   std::span<const Parameter> declared() const { return declared_; }
+  /// Returns the values of all keys.
   const Parameters& values() const { return values_; }
+  /// Returns the name of the table.
   const std::string& name() const { return name_; }
+  /// Returns the location of the table.
   const std::string& place() const { return place_; }
   /// Location of the value of `key`; of the table if the scene does not give it.
   const std::string& place(std::string_view key) const;
+  /// Returns true if the scene gives the key.
   bool given(std::string_view key) const { return given_.contains(key); }
   /// Text of a given key, as in the scene.
   const std::string& text(std::string_view key) const;

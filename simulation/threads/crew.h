@@ -12,6 +12,7 @@ namespace tress::simulation {
 /// A crew of one calls in turn.
 class Crew {
  public:
+  /// Starts a crew of this many threads, at most the number of processors.
   explicit Crew(int threads);
   ~Crew();
   Crew(const Crew&) = delete;
@@ -24,6 +25,7 @@ class Crew {
   /// for memory that calls overwrite.
   void run(std::size_t count,
            const std::function<void(std::size_t i, std::size_t worker)>& work);
+  /// Returns the number of threads.
   std::size_t workers() const { return workers_; }
 
  private:

@@ -12,6 +12,7 @@ namespace tress::models {
 /// middle, and the additional motion of the ends.
 struct PieceMotion {
   PieceMotion() = default;
+  /// Takes the two ends at the start and at the end of the step, m.
   PieceMotion(const Vec& from0, const Vec& to0, const Vec& from1, const Vec& to1);
   Vec middle, half, moved;  // m
   double turned = 0;        // m

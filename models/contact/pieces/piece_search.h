@@ -21,6 +21,7 @@ namespace tress::models {
 /// Use: begin(), then find(), and place() and find() again while forces are computed.
 class PieceSearch {
  public:
+  /// Data of a strand that searches need.
   struct Strand {
     int points;      // >= 2
     double radius;   // m
@@ -28,8 +29,8 @@ class PieceSearch {
   };
   /// Two pieces, the first before the second, and where they touch.
   struct Found {
-    int first, second;
-    PieceTouch at;
+    int first, second;  // numbers of the pieces
+    PieceTouch at;      // places on both pieces
   };
   /// thickness: distance of axes that touch, m; 0: the sum of radii. own: parts of one
   /// strand touch each other too.
@@ -44,21 +45,27 @@ class PieceSearch {
   const std::vector<Found>& find(const Loop& loop,
                                  const std::function<bool(int, int)>& wider);
 
+  /// Returns the number of pieces of all strands.
   std::size_t pieces() const { return strand_.size(); }
+  /// Returns the strand of a piece.
   std::size_t strand_of(int piece) const {
     return strand_[static_cast<std::size_t>(piece)];
   }
+  /// Returns the number of a strand's first point.
   std::size_t first_point(std::size_t strand) const { return first_[strand]; }
   /// Number of points of a strand.
   std::size_t points(std::size_t strand) const {
     return first_[strand + 1] - first_[strand];
   }
+  /// Returns the number of a strand's piece.
   int piece_of(std::size_t strand, std::size_t segment) const {
     return static_cast<int>(first_[strand] - strand + segment);
   }
   /// Points at the start of the step, at its end without forces, and with them.
   In from() const { return from_; }
+  /// Returns the points at the end of the step without forces.
   In to() const { return to_; }
+  /// Returns the points at the end of the step with the forces.
   In now() const { return now_; }
   /// Returns whether forces have moved a strand since the last find().
   bool moved(std::size_t strand) const { return moved_[strand] != 0; }
@@ -72,7 +79,9 @@ class PieceSearch {
   double thickness(int first, int second) const;
   /// Returns the distance of two pieces along the normal, less their thickness, m.
   double gap(const Found& pair, In x) const;
+  /// Returns the gap at the start of the step, m.
   double gap_before(const Found& pair) const { return gap(pair, from_); }
+  /// Returns the gap at the end of the step, with the forces, m.
   double gap_now(const Found& pair) const { return gap(pair, now_); }
   /// Returns the overlap of two touching pieces at the end of the step, with the forces,
   /// m. It exceeds their thickness if they have passed through each other.

@@ -10,19 +10,32 @@ namespace tress::models {
 template <class Kind>
 class ExactElement {
  public:
+  /// Kernel of the sweeps along a strand.
   using Kernel = ReducedKernel<Kind>;
+  /// scalar: a number, or a pack of lanes.
   using T = typename Kind::Real;
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Data of an element that steps do not change.
   using Material = ReducedMaterial<T>;
+  /// Motion of a frame.
   using Motion = ReducedMotion<T>;
+  /// Elimination of an element.
   using Elimination = ExactElimination<T>;
+  /// Factors of an element.
   using Factors = typename Elimination::Factors;
+  /// Column of an element's matrix.
   using Column = typename Elimination::Column;
+  /// Columns of an element.
   using Columns = typename Elimination::Columns;
+  /// Columns of displacements.
   using Places = typename Elimination::Places;
+  /// Response of all that hangs on a tip.
   using Hanging = typename Elimination::Hanging;
 
+  /// Prepares the equations of an element at a state.
   ExactElement(const Kernel& kernel, const Material& m, Weights w, const Vec& q,
                const Vec& v, const Vec& a)
       : kernel_(kernel), m_(m), pos_(w.pos), element_(m, w, q, v, a) {}

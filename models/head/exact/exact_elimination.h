@@ -11,15 +11,18 @@ namespace tress::models {
 template <class T>
 class ExactElimination {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Motion of a frame.
   using Motion = ReducedMotion<T>;
 
   /// Factors of an element between sweeps.
   struct Factors {
-    Motion start;
-    Matrix rotation;  // of its tip
-    Vec position;
+    Motion start;                 // motion of the start
+    Matrix rotation;              // of its tip
+    Vec position;                 // place of the tip
     Matrix slope, turn;           // rows of J: J^T, in the components of the start
     Matrix of_omega, of_turning;  // omega in the acceleration of the tip
     std::array<Matrix, 4> tip;    // B
@@ -28,7 +31,7 @@ class ExactElimination {
     Matrix force, moment;         // Y
     Vec u;                        // H'^-1 (b - J beta)
     // Where loads feel displacements, in these lanes 1 and else 0.
-    T placed;
+    T placed;                          // 1 in lanes that feel displacements
     Matrix shift, rotated;             // their part of B
     std::array<Matrix, 2> z_of_place;  // and of z
   };
@@ -36,27 +39,30 @@ class ExactElimination {
   /// Column of states or unknowns: the wrench about the element's start, and the force on
   /// the unknowns.
   struct Column {
-    Matrix force, moment, own;
+    Matrix force, moment, own;  // by the entries of the column
   };
+  /// States of a start: `velocity`, `omega`, `acceleration`, `alpha`.
   enum State { velocity, omega, acceleration, alpha };
+  /// Columns of an element.
   struct Columns {
-    Column x;
-    std::array<Column, 4> state;
-    Vec force, moment, unknown;  // of the residual
+    Column x;                     // column of the unknowns
+    std::array<Column, 4> state;  // columns of the states
+    Vec force, moment, unknown;   // of the residual
   };
   using Places = std::array<Column, 2>;  // of displacements (d, phi)
   struct Wrench {
-    Matrix force, moment;
+    Matrix force, moment;  // force and moment
   };
   /// On a tip, in its components.
   struct Hanging {
     std::array<Wrench, 4> state;  // L
     Vec force, moment;            // of the residual
-    Vec beta_force, beta_moment;
+    Vec beta_force, beta_moment;  // wrench of the residual after elimination
     T placed;                     // as Factors::placed
     std::array<Wrench, 2> place;  // L of displacements
   };
 
+  /// Adds the rotor at a tip.
   static void add_rotor(const T& rotor, const Motion& tip, Hanging& h) {
     const Vec& w = tip.omega;
     h.moment = h.moment + rotor_moment(rotor, w, tip.alpha);
@@ -119,12 +125,14 @@ class ExactElimination {
   static void put(const T& some, const M& from, M& to) {
     to = where_less(T(0), some, from, to);
   }
+  /// Sets a column in lanes where `some` > 0.
   static void put(const T& some, const Column& from, Column& to) {
     put(some, from.force, to.force);
     put(some, from.moment, to.moment);
     put(some, from.own, to.own);
   }
 
+  /// Eliminates the unknowns of an element.
   static void eliminate(const Columns& all, bool twist, Factors& e, Hanging& h) {
     e.pivot = inverse(all.x.own, twist);
     e.force = all.x.force * e.pivot;
@@ -138,6 +146,7 @@ class ExactElimination {
     h.force = all.force;
     h.moment = all.moment;
   }
+  /// Eliminates the displacements.
   static void eliminate(const Places& places, const T& pos, Factors& e, Hanging& h) {
     h.placed = e.placed;
     e.shift = pos * e.slope;

@@ -34,12 +34,19 @@ namespace tress::models {
 template <class Kind>
 class ExactKernel {
  public:
+  /// Kernel of the sweeps along a strand.
   using Kernel = ReducedKernel<Kind>;
+  /// scalar: a number, or a pack of lanes.
   using T = typename Kind::Real;
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Data of an element that steps do not change.
   using Material = ReducedMaterial<T>;
+  /// Motion of a frame.
   using Motion = ReducedMotion<T>;
+  /// Elimination of an element.
   using Elimination = ExactElimination<T>;
+  /// Working memory of one thread.
   using Scratch = typename Kernel::Scratch;
   using Factors = typename Elimination::Factors;  // of an element, between sweeps
 

@@ -28,8 +28,8 @@ HelixFunctions<Varied<T>> varied_functions(const HelixFunctions<T>& f,
 /// derivatives along the unknowns at weights w.
 template <class T>
 struct VariedTip {
-  VariedVec<T> position, velocity, acceleration;
-  VariedVec<T> turning, spinning;  // angular velocity, its rate
+  VariedVec<T> position, velocity, acceleration;  // motion of the tip
+  VariedVec<T> turning, spinning;                 // angular velocity, its rate
   Matrix3<Varied<T>> slope, turn;  // d position/d unknowns; turning = turn rates
   Matrix3<T> rotation;             // from the components of the tip
 };
@@ -37,15 +37,15 @@ struct VariedTip {
 /// A point seen likewise.
 template <class T>
 struct VariedPoint {
-  VariedVec<T> position, velocity;
-  Matrix3<Varied<T>> slope;
+  VariedVec<T> position, velocity;  // motion of the point
+  Matrix3<Varied<T>> slope;         // d position/d unknowns
 };
 
 /// Wrench of inertia and drag on an element about its start, in the components of the
 /// start.
 template <class T>
 struct VariedWrench {
-  VariedVec<T> force, moment, unknown;
+  VariedVec<T> force, moment, unknown;  // force, moment, and forces on the unknowns
 };
 
 /// Sums over the length of an element of w, P its points, d_j = dP/dq_j, P' = sum q_j'

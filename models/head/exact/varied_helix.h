@@ -11,10 +11,14 @@ namespace tress::models {
 template <class T>
 class VariedElement<HelixKind<T>> {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Data of an element that steps do not change.
   using Material = ReducedMaterial<T>;
 
+  /// Prepares an element at a state.
   VariedElement(const Material& m, Weights w, const Vec& q, const Vec& rate,
                 const Vec& acceleration)
       : m_(m),
@@ -25,6 +29,7 @@ class VariedElement<HelixKind<T>> {
         second_(varied_alike(acceleration, T(w.acc))),
         element_(varied_alike(q, T(w.pos)), rate_) {}
 
+  /// Returns the motion of the tip.
   VariedTip<T> tip() const {
     const HelixFunctions<Varied<T>> f =
         varied_functions(functions_.at(m_.length), along_);
@@ -42,6 +47,7 @@ class VariedElement<HelixKind<T>> {
     return tip;
   }
 
+  /// Returns the motion of the point at an arc length.
   VariedPoint<T> point(const T& arc) const {
     const HelixFunctions<Varied<T>> f = varied_functions(functions_.at(arc), along_);
     const Matrix3<Varied<T>> slope = element_.slope(f);

@@ -11,10 +11,14 @@ namespace tress::models {
 template <class T>
 class VariedElement<ChainKind<T>> {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Data of an element that steps do not change.
   using Material = ReducedMaterial<T>;
 
+  /// Prepares a link at a state.
   VariedElement(const Material& m, Weights w, const Vec& q, const Vec& rate,
                 const Vec& acceleration)
       : m_(m) {
@@ -48,8 +52,10 @@ class VariedElement<ChainKind<T>> {
     tip_.slope = tip_.slope.transposed();
   }
 
+  /// Returns the motion of the tip.
   const VariedTip<T>& tip() const { return tip_; }
 
+  /// Returns the motion of the point at an arc length.
   VariedPoint<T> point(const T& arc) const {
     const Matrix3<Varied<T>> rows{
         {arc * slope_.row[0], arc * slope_.row[1], arc * slope_.row[2]}};
@@ -57,6 +63,7 @@ class VariedElement<ChainKind<T>> {
   }
   /// Transforms from the components of the element's axes to those of its start.
   Vec in_start(const Vec& x) const { return tip_.rotation * x; }
+  /// Transforms a matrix from the components of the link's axes to those of its start.
   Matrix in_start(const Matrix& m) const {
     return tip_.rotation * m * tip_.rotation.transposed();
   }

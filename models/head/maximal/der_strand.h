@@ -38,12 +38,14 @@ struct DerEdge {
 
   /// Number of values per lane that steps change.
   static constexpr std::size_t kept = 6;
+  /// Writes what steps change, of a lane.
   void keep(int lane, double* to) const {
     for (const Vec3<T>* x : {&tangent, &direction}) {
       store3(lane_of(*x, lane), to);
       to += 3;
     }
   }
+  /// Restores what keep() wrote.
   void recall(int lane, const double* from) {
     set_lane(tangent, lane, load3(from));
     set_lane(direction, lane, load3(from + 3));
@@ -78,22 +80,30 @@ struct DerEdge {
 template <class T, bool exact>
 class DerStrand {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
 
-  static constexpr int per_element = 4;
+  static constexpr int per_element = 4;  // unknowns of an edge
 
+  /// Elimination by the kind of Jacobian.
   using Elimination =
       std::conditional_t<exact, DerExactElimination<T>, DerStiffElimination<T>>;
+  /// Forces of edges and joints.
   using Forces = DerForces<T, exact>;
+  /// An edge with the residual of its node.
   struct Placed : Elimination::Placed {
     Vec force;  // residual of the node at its end, without those of edges
     T turning;  // inertia times theta''
   };
+  /// Factors of an element.
   using Factor = typename Elimination::Factor;
 
+  /// Makes strands of this number of edges under gravity.
   DerStrand(int edges, const Vec& gravity) : n_(edges), gravity_(gravity) {}
 
+  /// Returns the number of unknowns.
   int unknowns() const { return per_element * n_; }
 
   /// correction = S^-1 r at (q, v, a). Returns its size per lane: the largest of

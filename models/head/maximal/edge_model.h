@@ -22,13 +22,18 @@ namespace tress::models {
 template <class Pack, int per_element>
 class EdgeModel {
  public:
+  /// scalar: a number, or a pack of lanes.
   using Real = Pack;
+  /// Vector of these scalars.
   using V = Vec3<Real>;
+  /// Frame and motion of the root.
   using Clamp = LaneClamp<Real>;
-  static constexpr bool straight = true;
+  static constexpr bool straight = true;  // whether elements are straight
+  /// Remedy of errors.
   static constexpr const char* use_others =
       "use super_helix, or run the strands one by one";
 
+  /// Reads the options common to all such models.
   explicit EdgeModel(const LaneOptions& options)
       : n_(static_cast<std::size_t>(options.elements)),
         drag_(options.drag),
@@ -53,17 +58,22 @@ class EdgeModel {
                  tau / unit_mass);
     set_lane(to.material.rate, lane, typical_rate(strand) * tau);
   }
+  /// Returns the mass of a strand, in units of the batch.
   template <class Strand>
   double mass(const Strand& strand, int lane) const {
     return static_cast<double>(n_) * lane_of(strand.material.mass, lane);
   }
 
+  /// Returns the length of an edge.
   template <class Strand>
   Real element_length(const Strand& strand) const {
     return strand.material.length;
   }
+  /// Returns the number of edges.
   std::size_t elements() const { return n_; }
+  /// Returns the number of unknowns.
   std::size_t unknowns() const { return per_element * n_; }
+  /// Returns the unit of unknown k, m or 1.
   double unit(const HeadUnits& units, std::size_t k) const {
     return k % per_element < 3 ? units.length : 1;
   }
@@ -92,6 +102,7 @@ class EdgeModel {
            std::max(1.0, w.vel / (w.pos * lane_of(strand.material.rate, lane)));
   }
 
+  /// Returns frame and motion of the root for a motion of the head.
   template <class Strand>
   TRESS_FLATTEN Clamp clamp(const Strand& strand, const RootPose& pose) const {
     const V from = frame_of(pose.frame) * strand.root.from, omega(pose.omega);
@@ -109,6 +120,7 @@ class EdgeModel {
     const V moved = V(to.x - from.x) + frame_of(turned) * strand.root.from;
     store3(load3(q_bar) - moved, q_bar);
   }
+  /// Calls use(i, velocity) for root and ends of edges.
   template <class Strand, class Use>
   TRESS_FLATTEN void velocities(const Strand& strand, const RootPose& pose,
                                 const Real* /*q*/, const Real* v, Use use) const {
@@ -119,6 +131,7 @@ class EdgeModel {
       use(i + 1, at);
     }
   }
+  /// Calls use(i, position) for root and ends of edges.
   template <class Strand, class Use>
   TRESS_FLATTEN void positions(const Strand& strand, const Frame& head, const Real* q,
                                Use use) const {

@@ -15,8 +15,8 @@ namespace tress::models {
 /// Load of effects on the node at an edge's end: PointLoad or ExactLoad.
 template <class T, template <class> class Load>
 struct NodeLoad {
-  Load<T> load;
-  T some;  // 1 in lanes with a load, 0 in others
+  Load<T> load;  // load on the node
+  T some;        // 1 in lanes with a load, 0 in others
 };
 
 /// Loads of bodies on the nodes of strands of edges, side by side; a node only if it is
@@ -24,9 +24,12 @@ struct NodeLoad {
 template <class T, template <class> class Load>
 class NodeLoads {
  public:
+  /// Vector of these scalars.
   using Vec3T = Vec3<T>;
+  /// Load on one node.
   using OfNode = NodeLoad<T, Load>;
 
+  /// Allocates for a number of edges.
   explicit NodeLoads(std::size_t edges) : loads_(edges), x_(edges), v_(edges) {}
 
   /// Computes the loads on the ends of edges; null: none. PointLoads are for the motion

@@ -17,13 +17,13 @@ namespace tress::models {
 /// Data common to all edges of a strand, in consistent units.
 template <class T, template <class> class EdgeOf>
 struct QuaternionMaterial {
-  T length;   // of an edge
-  T mass;     // of an edge
-  T drag;     // force on an edge per velocity
-  T stretch;  // force per lengthening of an edge
-  T rate;     // typical: speeds are of the order of `rate` lengths
-  T inertia;  // of a quaternion
-  EdgeOf<T> edge;
+  T length;        // of an edge
+  T mass;          // of an edge
+  T drag;          // force on an edge per velocity
+  T stretch;       // force per lengthening of an edge
+  T rate;          // typical: speeds are of the order of `rate` lengths
+  T inertia;       // of a quaternion
+  EdgeOf<T> edge;  // strains of an edge, with coefficients
 
   /// Returns the mass of the node at the end of edge i of n over that of an edge.
   static T part(int i, int n) { return T(i + 1 < n ? 1 : 0.5); }
@@ -33,15 +33,17 @@ struct QuaternionMaterial {
 template <class T>
 struct QuaternionElement : QuaternionJointOf<T> {
   static constexpr std::size_t kept = 0;  // what steps change, of a lane
+  /// Writes what steps change, of a lane.
   void keep(int /*lane*/, double* /*to*/) const {}
+  /// Restores what keep() wrote.
   void recall(int /*lane*/, const double* /*from*/) {}
 };
 
 /// The frame of a strand at its root and its motion, in axes as those of the edges.
 template <class T>
 struct QuaternionClamp {
-  QuaternionOf<T> frame;
-  Vec3<T> v, omega;
+  QuaternionOf<T> frame;  // frame at the root
+  Vec3<T> v, omega;       // velocity and angular velocity
 };
 
 /// Rods of models/quaternion_rods/quaternion_rod.h (clamped, edges of equal length) for
@@ -55,20 +57,29 @@ struct QuaternionClamp {
 template <class T, template <class> class EdgeOf>
 class QuaternionStrand {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Data of an element that steps do not change.
   using Material = QuaternionMaterial<T, EdgeOf>;
+  /// Data of an element that steps change.
   using Element = QuaternionElement<T>;
+  /// Frame and motion of the root.
   using Clamp = QuaternionClamp<T>;
+  /// Elimination of an element.
   using Elimination = QuaternionElimination<T>;
+  /// Factors of an element.
   using Factor = typename Elimination::Factor;
+  /// Load of effects on a point.
   using Load = NodeLoad<T, ExactLoad>;
-  static constexpr int per_element = Elimination::size;
+  static constexpr int per_element = Elimination::size;  // unknowns of an edge
 
   /// Elastic stresses of an edge and the joint before it.
   struct Stresses {
+    /// Stresses of the strains.
     T edge[EdgeOf<T>::strains], joint[QuaternionJointOf<T>::strains];
   };
 
+  /// Makes strands of this number of edges under gravity.
   QuaternionStrand(int edges, const Vec& gravity) : n_(edges), gravity_(gravity) {}
 
   /// correction = S^-1 r at (q, v, a), with the loads of effects on the ends of edges, or

@@ -35,10 +35,12 @@ struct SpringMaterial {
 /// Strain at rest of the joint before an edge; of the wall, about its axes e1 and e2.
 template <class T>
 struct SpringEdge {
-  T rest, about_e2;
+  T rest, about_e2;  // rest values
 
   static constexpr std::size_t kept = 0;  // what steps change, of a lane
+  /// Writes what steps change, of a lane.
   void keep(int /*lane*/, double* /*to*/) const {}
+  /// Restores what keep() wrote.
   void recall(int /*lane*/, const double* /*from*/) {}
 };
 
@@ -57,20 +59,28 @@ struct SpringEdge {
 template <class T, bool exact>
 class SpringStrand {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
 
-  static constexpr int per_element = 3;
+  static constexpr int per_element = 3;  // unknowns of an edge
 
+  /// Elimination by the kind of Jacobian.
   using Elimination =
       std::conditional_t<exact, SpringExactElimination<T>, SpringStiffElimination<T>>;
+  /// An edge with the residual of its node.
   struct Placed : Elimination::Placed {
     Vec force;  // residual of the node at its end, springs left out
   };
+  /// Factors of an element.
   using Factor = typename Elimination::Factor;
+  /// Load of bodies by the kind of Jacobian.
   using Load = std::conditional_t<exact, NodeLoad<T, ExactLoad>, NodeLoad<T, PointLoad>>;
+  /// Forces of edges and joints.
   using Forces = SpringForces<T, exact>;
 
+  /// Makes strands of this number of edges under gravity.
   SpringStrand(int edges, const Vec& gravity) : n_(edges), gravity_(gravity) {}
 
   /// correction = S^-1 r at (q, v, a), with the loads of effects on the ends of edges, or

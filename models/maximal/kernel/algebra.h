@@ -27,6 +27,7 @@ void add_product(Symmetric3<T>& s, const T& w, const Vec3<T>& x, const Vec3<T>& 
   s.xz += z.x * y.z + z.z * y.x;
   s.yz += z.y * y.z + z.z * y.y;
 }
+/// Returns s - w x x^T.
 template <class T>
 Symmetric3<T> less_square(const Symmetric3<T>& s, const T& w, const Vec3<T>& x) {
   Symmetric3<T> all = s;
@@ -37,6 +38,7 @@ Symmetric3<T> less_square(const Symmetric3<T>& s, const T& w, const Vec3<T>& x) 
 /// Takes no notice of pivots. The System of one strand has Pivots that do
 /// (strand_elimination.h): it can solve its equations in another way.
 struct AnyPivots {
+  /// Accepts the pivot.
   template <class T>
   void operator()(const T& /*pivot*/, const T& /*entries*/) const {}
 };

@@ -8,13 +8,13 @@ namespace tress::models {
 /// frame.
 template <class T>
 struct DerPlaced {
-  FrameOf<T> frame;
-  T length, inverse_length;
-  Vec3<T> p;        // dtheta = p . omega
-  Matrix3<T> turn;  // from the frame to that of the edge before
-  Vec3<T> moment;   // of the joint on the edge
-  T tension;
-  Symmetric3<T> stiff;  // K: w (edge - edge before) . K (edge - edge before)
+  FrameOf<T> frame;          // frame of the edge
+  T length, inverse_length;  // length and its inverse
+  Vec3<T> p;                 // dtheta = p . omega
+  Matrix3<T> turn;           // from the frame to that of the edge before
+  Vec3<T> moment;            // of the joint on the edge
+  T tension;                 // force along the edge
+  Symmetric3<T> stiff;       // K: w (edge - edge before) . K (edge - edge before)
 
   /// Returns the force on the edge's end, in world components, that is work-conjugate to
   /// its tension and a moment on the edge. It satisfies moment . omega = force . de +
@@ -34,14 +34,14 @@ struct DerPlaced {
 /// before, and of the moment on the edge before: ow, oo.
 template <class T>
 struct DerExactPlaced : DerPlaced<T> {
-  Matrix3<T> ww, wo, ow, oo;
+  Matrix3<T> ww, wo, ow, oo;  // derivatives, as above
 };
 
 /// Rotation of an edge and its lengthening.
 template <class T>
 struct DerChange {
-  Vec3<T> omega;
-  T sigma;
+  Vec3<T> omega;  // rotation, in components of the edge's frame
+  T sigma;        // lengthening
 };
 /// Computes the change of an edge whose start moves by x while the edge before rotates by
 /// `before`; the first edge has none before it.
@@ -58,32 +58,39 @@ DerChange<T> der_change(const DerPlaced<T>& e, const Factor& f, bool first,
 ///     sigma = by (own_sigma - sigma_x . x - sigma_omega . omega).
 template <class T>
 struct DerStiffElimination {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Symmetric matrix of these scalars.
   using Symmetric = Symmetric3<T>;
+  /// Geometry and stresses at a state.
   using Placed = DerPlaced<T>;
 
+  /// Factors of an edge.
   struct Factor {
-    Symmetric pivot;  // inverse, of omega
-    Matrix of_x, of_turn;
-    Vec sigma_x, sigma_omega;
-    T by;  // inverse pivot of sigma
-    Vec own;
-    T own_sigma;
+    Symmetric pivot;           // inverse, of omega
+    Matrix of_x, of_turn;      // omega by x and by the rotation of the edge before
+    Vec sigma_x, sigma_omega;  // sigma by x and by omega
+    T by;                      // inverse pivot of sigma
+    Vec own;                   // omega of the residual
+    T own_sigma;               // sigma of the residual
   };
 
   /// Quadratic form of all that follows an edge, by the position x of its start and the
   /// rotation w of the edge before. Before eliminate() it includes the inertia of the
   /// node at the edge's end.
   struct Beyond {
-    Symmetric xx{}, ww{};
-    Matrix xw{};
+    Symmetric xx{}, ww{};  // blocks on the diagonal
+    Matrix xw{};           // block of x and w
 
+    /// Adds the mass of the node at the edge's end.
     void add_inertia(const T& mass) {
       xx.xx += mass;
       xx.yy += mass;
       xx.zz += mass;
     }
+    /// Adds the derivatives of loads on that node.
     void add_block(const Symmetric& of_load) { xx = xx + of_load; }
   };
 
@@ -150,29 +157,36 @@ struct DerStiffElimination {
 /// Elimination of an edge with second derivatives; those of friction are not symmetric.
 template <class T>
 struct DerExactElimination {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Geometry and stresses at a state.
   using Placed = DerExactPlaced<T>;
 
+  /// Factors of an edge.
   struct Factor {
-    Matrix pivot;
-    Matrix of_x, of_turn;
-    Vec sigma_x, sigma_omega;
-    T by;
-    Vec own;
-    T own_sigma;
+    Matrix pivot;              // inverse, of omega
+    Matrix of_x, of_turn;      // omega by x and by the rotation of the edge before
+    Vec sigma_x, sigma_omega;  // sigma by x and by omega
+    T by;                      // inverse pivot of sigma
+    Vec own;                   // omega of the residual
+    T own_sigma;               // sigma of the residual
     Matrix to_x, to_turn;      // by omega
     Vec x_sigma, omega_sigma;  // by sigma
   };
 
+  /// Matrix of all that follows an edge.
   struct Beyond {
-    Matrix xx{}, ww{}, xw{}, wx{};
+    Matrix xx{}, ww{}, xw{}, wx{};  // blocks of x and w
 
+    /// Adds the mass of the node at the edge's end.
     void add_inertia(const T& mass) {
       xx.row[0].x += mass;
       xx.row[1].y += mass;
       xx.row[2].z += mass;
     }
+    /// Adds the derivatives of loads on that node.
     void add_block(const Matrix& of_load) { xx = xx + of_load; }
   };
 
@@ -223,6 +237,7 @@ struct DerExactElimination {
     ww = e.turn * (e.oo + e.ow * f.of_turn) * turn_back;
   }
 
+  /// Eliminates the residual of an edge.
   static void reduce(const Placed& e, Factor& f, const Vec& force, const Vec& moment,
                      const T& tension, Vec& f_x, Vec& f_omega) {
     f_x = f_x + force;

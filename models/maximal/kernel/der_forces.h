@@ -21,8 +21,8 @@ FrameOf<T> der_frame(const Vec3<T>& tangent, const Vec3<T>& direction, const Vec
 /// Motion of an edge: spin in components of its frame, and rate of its length.
 template <class T>
 struct DerMotion {
-  Vec3<T> spin;
-  T lengthening;
+  Vec3<T> spin;   // angular velocity
+  T lengthening;  // rate of the length
 };
 
 /// Edges and joints of a discrete rod at a state: moments and tensions and, with_tangent,
@@ -31,9 +31,13 @@ struct DerMotion {
 template <class T, bool exact>
 class DerForces {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Geometry and stresses at a state.
   using Placed = std::conditional_t<exact, DerExactPlaced<T>, DerPlaced<T>>;
+  /// Motion of a frame.
   using Motion = DerMotion<T>;
 
   /// Begins an edge. Returns its motion.
@@ -65,7 +69,7 @@ class DerForces {
   /// lengthen. They then turn less at the same rates. Elimination omits it, as it is
   /// small compared with the stiffness against lengthening.
   struct ByLengthening {
-    Vec own, before;
+    Vec own, before;  // on the edge, and on the edge before
   };
 
   /// Moment of that joint at this strain, less that at rest. `edge_before`: null at the

@@ -10,10 +10,14 @@ namespace tress::models {
 /// models/maximal/joint_strain.h with all products written out.
 template <class T>
 struct DerJoint {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Symmetric matrix of these scalars.
   using Symmetric = Symmetric3<T>;
 
+  /// Evaluates the strains for the rotation between the edges.
   explicit DerJoint(const Matrix& r)
       : by(T(1) / (T(1) + r.row[0].x)),
         value{arc_tangent(r.row[2].y - r.row[1].z, r.row[1].y + r.row[2].z),
@@ -24,8 +28,8 @@ struct DerJoint {
                    -(by * r.row[2].y) + value.y * k.z},
         curvature2{-(by * r.row[0].z), -(by * r.row[1].z) + value.z * k.y,
                    by * (r.row[0].x + r.row[1].y) + value.z * k.z} {}
-  T by;
-  Vec value, k, twist, curvature1, curvature2;
+  T by;                                         // 1/(1 + cosine of the angle)
+  Vec value, k, twist, curvature1, curvature2;  // strains; half the binormal; gradients
 
   /// stiffness and damping, times the slopes of the strains.
   Symmetric stiff(const Vec& weight) const {
@@ -72,9 +76,10 @@ struct DerJoint {
 ///       + 2 sigma/L omega . (m_t b/(1 + a . t) - m + m_t t).
 template <class T>
 struct DerEdgeForm {
-  Symmetric3<T> omega;
-  Vec3<T> sigma;  // of sigma and omega
+  Symmetric3<T> omega;  // part of omega and omega
+  Vec3<T> sigma;        // of sigma and omega
 
+  /// Evaluates the form.
   DerEdgeForm(const Vec3<T>& p, const T& inverse_length, const Vec3<T>& moment) {
     // b beside = (0, p_y, p_z).
     const Vec3<T> b{T(0), p.y, p.z};

@@ -13,9 +13,11 @@ struct SpringPlaced : SpringDirection<T> {
   Vec3<T> rate;  // of the edge, seen from the root
   Vec3<T> own;   // residual of the springs by its change (along t, m1, m2)
 };
+/// An edge and the joint before it, with symmetric derivatives.
 template <class T>
 struct SpringStiffPlaced : SpringPlaced<T> {
   T along, across;  // stiffness against it: by stretching
+  /// Stiffness of the joint.
   TurnForm<T> before,
       after;      // of the joint before it: by the turns of the edge before and its
   T mixed[2][2];  // [before][after]
@@ -23,9 +25,9 @@ struct SpringStiffPlaced : SpringPlaced<T> {
 /// Derivatives of the springs' residuals, rows and columns along t, m1, m2.
 template <class T>
 struct SpringExactPlaced : SpringPlaced<T> {
-  Matrix3<T> own_by_own;
+  Matrix3<T> own_by_own;  // derivatives of its residual by its own change
   // Of the moments on it by the edge before, and the other way round: their rows m1, m2.
-  Vec3<T> by_before[2], on_before[2];
+  Vec3<T> by_before[2], on_before[2];  // rows of the joint's blocks
 };
 
 /// Elimination of an edge with a symmetric matrix. Everything beyond an edge is, after
@@ -37,36 +39,43 @@ struct SpringExactPlaced : SpringPlaced<T> {
 /// edge, 1e5 times the others, enters one pivot and no sum.
 template <class T>
 struct SpringStiffElimination {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Quadratic form of two turns.
   using Form = TurnForm<T>;
+  /// Geometry and stresses at a state.
   using Placed = SpringStiffPlaced<T>;
+  /// Factors of an edge.
   struct Factor {
     Vec along, one, two;  // A Y + C: forces by changes of the edge
     Vec left1, left2;     // of the turns' forces once the length has answered
     T by_along, w1, w2;   // pivots, and what is left of the turns
-    Form turns;
-    Vec own;
+    Form turns;           // pivots of the turns
+    Vec own;              // change by the residual
   };
   /// A, C, D of everything beyond an edge; before eliminate() with the inertia and load
   /// of the node at its end.
   struct Beyond {
-    Symmetric3<T> of_x{};
-    Vec c1{}, c2{};
-    Form of_y{};
+    Symmetric3<T> of_x{};  // block A
+    Vec c1{}, c2{};        // columns of C
+    Form of_y{};           // block D
 
+    /// Adds the mass of the node at the edge's end.
     void add_inertia(const T& mass) {
       of_x.xx += mass;
       of_x.yy += mass;
       of_x.zz += mass;
     }
+    /// Adds the derivatives of loads on that node.
     void add_block(const Symmetric3<T>& of_load) { of_x = of_x + of_load; }
   };
   /// f, g.
   struct Right {
-    Vec f{};
-    T g1{0}, g2{0};
+    Vec f{};         // force on the start
+    T g1{0}, g2{0};  // moments on the edge before
   };
 
+  /// Eliminates an edge with all that follows.
   template <class Pivots>
   static void eliminate(const Placed& e, bool first, Beyond& beyond, Factor& factor,
                         Pivots&& pivots) {
@@ -162,28 +171,35 @@ struct SpringStiffElimination {
 ///     A x + C y - f,    E x + D y - g.
 template <class T>
 struct SpringExactElimination {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
+  /// Geometry and stresses at a state.
   using Placed = SpringExactPlaced<T>;
+  /// Factors of an edge.
   struct Factor {
     Matrix pivot;            // inverse
     Matrix of_x, of_before;  // change of the edge by both
     Matrix to_x;             // force by its change
-    Vec own;
+    Vec own;                 // change by the residual
   };
   /// A, D, C, E; the first rows of D and E are 0.
   struct Beyond {
-    Matrix of_x{}, of_y{}, xy{}, yx{};
+    Matrix of_x{}, of_y{}, xy{}, yx{};  // blocks of the matrix
 
+    /// Adds the mass of the node at the edge's end.
     void add_inertia(const T& mass) {
       of_x.row[0].x += mass;
       of_x.row[1].y += mass;
       of_x.row[2].z += mass;
     }
+    /// Adds the derivatives of loads on that node.
     void add_block(const Matrix& of_load) { of_x = of_x + of_load; }
   };
+  /// f, g.
   struct Right {
-    Vec f{}, g{};
+    Vec f{}, g{};  // force on the start, moments on the edge before
   };
 
   /// `along`: stiffness against stretching times `pos`, the weight of positions;
@@ -222,6 +238,7 @@ struct SpringExactElimination {
     }
   }
 
+  /// Eliminates the residual of an edge.
   static void reduce(const Placed& e, bool first, Factor& factor, const Vec& force,
                      const Vec& springs, Right& right) {
     right.f = right.f + force;
@@ -231,6 +248,7 @@ struct SpringExactElimination {
     right.g = {T(0), -dot(e.on_before[0], factor.own), -dot(e.on_before[1], factor.own)};
   }
 
+  /// Returns the change of an edge.
   static Vec change(const Placed& /*e*/, const Factor& factor, bool first, const Vec& x,
                     const Vec& before) {
     const Vec own = factor.own - factor.of_x * x;

@@ -20,7 +20,9 @@ struct SpringStiffness {
 template <class T, bool exact>
 class SpringForces {
  public:
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
+  /// Geometry and stresses at a state.
   using Placed = std::conditional_t<exact, SpringExactPlaced<T>, SpringStiffPlaced<T>>;
 
   /// Begins an edge: its direction, and its spring.
@@ -74,6 +76,7 @@ class SpringForces {
     add(clamp.e2, rest2);
   }
 
+  /// Adds the spring of the joint between two edges.
   template <bool with_tangent>
   static void hinge(const SpringStiffness<T>& m, const T& rest, Weights w, Placed& before,
                     Placed& e) {

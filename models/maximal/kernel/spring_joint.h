@@ -17,7 +17,7 @@ inline constexpr double hinge_delta = 1e-6;
 template <class T>
 struct SpringDirection {
   FrameOf<T> frame;  // t, m1, m2
-  T inverse_length;
+  T inverse_length;  // 1/|edge|
 
   /// Points along the edge. Returns its length.
   T point(const Vec3<T>& edge) {
@@ -42,29 +42,33 @@ struct SpringDirection {
 /// A symmetric form of two turns.
 template <class T>
 struct TurnForm {
-  T xx{}, xy{}, yy{};
+  T xx{}, xy{}, yy{};  // entries of the form
 };
 
 /// Curvature binormal 2 t0 x t1/(1 + t0 . t1), and its derivative by a turn of one edge
 /// that moves the end of its direction along m.
 template <class T>
 struct SpringBinormal {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
 
+  /// Evaluates the binormal of two directions.
   SpringBinormal(const Vec& before, const Vec& after)
       : t0(before),
         t1(after),
         by(T(1) / (T(1) + dot(t0, t1))),
         value((T(2) * by) * cross(t0, t1)) {}
+  /// Returns the derivative by a turn of the first edge along m.
   Vec by_before(const Vec& m) const {
     return (T(2) * by) * cross(m, t1) - (by * dot(m, t1)) * value;
   }
+  /// Returns the derivative by a turn of the second edge along m.
   Vec by_after(const Vec& m) const {
     return (T(2) * by) * cross(t0, m) - (by * dot(t0, m)) * value;
   }
-  Vec t0, t1;
-  T by;
-  Vec value;
+  Vec t0, t1;  // directions of the edges
+  T by;        // 1/(1 + t0 . t1)
+  Vec value;   // curvature binormal
 };
 
 /// Computes the change of the strain rate s' of a joint by its edge's own rate. Strains s
@@ -100,8 +104,10 @@ TurnForm<T> second_by_one(const T (&c)[2], const T (&g)[2], const T& straight) {
 /// The strain |(kb, delta)| of a joint between two edges.
 template <class T>
 struct SpringHinge {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
 
+  /// Evaluates the strain of two edges.
   SpringHinge(const SpringDirection<T>& edge0, const SpringDirection<T>& edge1)
       : before(edge0),
         after(edge1),
@@ -117,13 +123,15 @@ struct SpringHinge {
     }
   }
 
+  /// Returns the strain.
   T value() const { return (dot(kb.value, kb.value) + delta_squared()) * by_value; }
   /// d kb/dm . d kb/dm of turns k of edge i and l of edge j.
   T metric(int i, int k, int j, int l) const { return dot(slope[i][k], slope[j][l]); }
 
+  /// Second derivatives of a strain by turns.
   struct Second {
-    TurnForm<T> by_before, by_after;
-    T mixed[2][2];  // [before][after]
+    TurnForm<T> by_before, by_after;  // by the turns of one edge
+    T mixed[2][2];                    // [before][after]
   };
   /// Computes the second derivative of d . kb with d along kb, and the changes of kb
   /// across d.
@@ -156,43 +164,50 @@ struct SpringHinge {
     return all;
   }
 
+  /// Returns the square of hinge_delta.
   static T delta_squared() { return T(hinge_delta * hinge_delta); }
 
-  const SpringDirection<T>&before, &after;
-  SpringBinormal<T> kb;
-  T by_value;
-  Vec slope[2][2];  // of kb, [edge][turn]
-  Vec direction;    // of kb, shorter than 1 by delta
-  T g[2][2];        // of the strain
+  const SpringDirection<T>& before;  // first edge
+  const SpringDirection<T>& after;   // second edge
+  SpringBinormal<T> kb;              // binormal of the joint
+  T by_value;                        // 1/value()
+  Vec slope[2][2];                   // of kb, [edge][turn]
+  Vec direction;                     // of kb, shorter than 1 by delta
+  T g[2][2];                         // of the strain
 };
 
 /// Two strains of the joint between a wall and the first edge: components of kb along
 /// axes of the wall.
 template <class T>
 struct SpringWall {
+  /// Vector of these scalars.
   using Vec = Vec3<T>;
 
+  /// Evaluates the binormal of a wall and an edge.
   SpringWall(const Vec& tangent, const SpringDirection<T>& edge)
       : after(edge),
         kb(tangent, edge.frame.e0),
         slope{edge.inverse_length * kb.by_after(edge.frame.e1),
               edge.inverse_length * kb.by_after(edge.frame.e2)} {}
 
+  /// One component.
   struct Strain {
-    T value, g[2];
+    T value, g[2];  // strain, and its derivatives by the edge's turns
   };
+  /// Returns the component along an axis of the wall.
   Strain along(const Vec& axis) const {
     return {dot(axis, kb.value), {dot(axis, slope[0]), dot(axis, slope[1])}};
   }
+  /// Returns its second derivatives by the edge's turns.
   TurnForm<T> second(const Strain& of) const {
     const T by = kb.by * after.inverse_length;
     const T c[] = {by * dot(kb.t0, after.frame.e1), by * dot(kb.t0, after.frame.e2)};
     return second_by_one(c, of.g, by * after.inverse_length * of.value);
   }
 
-  const SpringDirection<T>& after;
-  SpringBinormal<T> kb;
-  Vec slope[2];
+  const SpringDirection<T>& after;  // the first edge
+  SpringBinormal<T> kb;             // binormal of the joint
+  Vec slope[2];                     // its derivatives by the edge's turns
 };
 
 /// Derivatives of a joint's moments by changes of an edge: with the weights of the strain
@@ -201,7 +216,7 @@ struct SpringWall {
 ///     k ds/dm ds/dy + stress d^2s/(dm dy) + friction ds/dm d(s')/dy.
 template <class T>
 struct SpringMoment {
-  T k, stress, friction;
+  T k, stress, friction;  // weights
 
   /// A row, of the moment by g; `own`: derivatives of s by the edge's turns.
   Vec3<T> row(const T& g, const T (&own)[2], const T& second1, const T& second2,
