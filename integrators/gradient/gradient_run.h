@@ -76,4 +76,8 @@ class GradientRun {
   Stats stats_;
 };
 
+/// Returns the system. Throws InputError where its run by this method has no_gradient(),
+/// or has a tolerance.
+System& with_gradient(System& system, const GradientRun::Method& method);
+
 }  // namespace tress::integrators
