@@ -70,20 +70,41 @@ GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
       dq_(parameters.size() * q_.size()),
       dv_(dq_) {}
 
-Status GradientRun::start() {
-  for (System* system : {&system_, exact_.get()}) system->reset();
+template <class Visit>
+void GradientRun::each_system(const Visit& visit) {
+  for (System* system : {&system_, exact_.get()}) visit(*system);
   for (const VariedSystem& one : varied_) {
-    for (const auto& system : one.systems) system->reset();
+    for (const auto& system : one.systems) visit(*system);
   }
+}
+
+Status GradientRun::start() {
+  each_system([](System& system) { system.reset(); });
   t_ = 0;
-  failure_.clear();
-  stats_ = {};
   system_.initial_state(q_, v_);
   variational_.initial_state(dq_, dv_);
   if (watched_.history() != nullptr) {
     static_cast<void>(static_cast<System&>(watched_).accept(t_, q_, v_));
     static_cast<void>(static_cast<System&>(variational_).accept(t_, dq_, dv_));
   }
+  return set_off();
+}
+
+Status GradientRun::start(const State& from) {
+  each_system([&](System& system) {
+    system.reset();
+    system.recall(from.memory);
+  });
+  t_ = from.t;
+  q_ = from.q, v_ = from.v;
+  dq_ = from.dq, dv_ = from.dv;
+  return set_off();
+}
+
+/// With the start that the method asks for.
+Status GradientRun::set_off() {
+  failure_.clear();
+  stats_ = {};
   damping_ = method_.start == GradientStart::damped;
   if (!damping_) return begin(method_.id, method_.options);
   return begin(DampedStart::method, DampedStart::options(method_.options));

@@ -43,6 +43,14 @@ class GradientRun {
 
   /// Starts at t = 0 from initial_state().
   Status start();
+  /// A state on the way of a run of an equal system, and its derivatives there.
+  struct State {
+    double t = 0;
+    std::vector<double> q, v;
+    std::vector<double> memory;  // System::memory()
+    std::vector<double> dq, dv;  // parameter after parameter
+  };
+  Status start(const State& from);
   Status advance(double t_end);
   double time() const { return t_; }
   In q() const { return q_; }
@@ -57,6 +65,9 @@ class GradientRun {
   const Stats& stats() const { return stats_; }
 
  private:
+  template <class Visit>
+  void each_system(const Visit& visit);
+  Status set_off();
   Status advance_by(Integrator& run, Integrator& columns, double t_end);
   Status begin(std::string_view method, const Options& options);
   void keep(const Integrator& run, const Integrator& columns);

@@ -32,41 +32,17 @@ Parameters exact_options(const Scene& scene) {
   return options;
 }
 
-std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand,
-                                  const Parameters& options) {
-  return scene.model->on_strand(scene.strands[strand], options, make_effects(scene));
-}
-
-std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
-                                         std::span<const SceneParameter> parameters) {
-  std::vector<RunParameter> all;
-  for (const SceneParameter& parameter : parameters) {
-    all.emplace_back([&scene, strand, &parameter](double s) {
-      Scene changed = scene;
-      parameter.change(changed, s);
-      return system_of(changed, strand, exact_options(changed));
-    });
-  }
-  return all;
-}
-
-bool damped(const Scene& scene, std::span<const SceneParameter> parameters) {
-  const std::string_view start = scene.tables->gradient->values().word("start");
-  if (start != "auto") return start == "damped";
-  return std::ranges::any_of(parameters, &SceneParameter::moves_rest);
-}
-
-/// Ends of steps: those at which frames are, with their number.
+/// End of a step, and whether points are asked for there.
 struct Stop {
   double t;
-  bool frame;
+  bool asked;
 };
 
-/// Of a fixed step: the frames.
-std::vector<Stop> stops_at_frames(const Scene& scene) {
+/// Of a fixed step.
+std::vector<Stop> stops_at(std::span<const double> times) {
   std::vector<Stop> stops;
-  for (std::size_t f = 1; f <= scene.last_frame(); ++f) {
-    stops.push_back({scene.time_of(f), true});
+  for (const double t : times) {
+    if (t > 0) stops.push_back({t, true});
   }
   return stops;
 }
@@ -78,26 +54,27 @@ std::vector<double> points_at(System& system, double t, In q) {
   return x;
 }
 
-/// A run with a tolerance: its accepted steps, which are cut at frames, and its points
-/// there.
+/// A run with a tolerance: its accepted steps, which are cut at the times asked for, and
+/// its points there.
 struct Accepted {
   std::vector<Stop> stops;
   std::vector<std::vector<double>> points;
   std::string unfinished;
 };
 
-Accepted accepted_steps(const Scene& scene, std::size_t strand) {
-  const auto system = system_of(scene, strand, scene.model_options);
+Accepted accepted_steps(const Scene& scene, std::size_t strand,
+                        std::span<const double> times) {
+  const auto system = system_of(scene, strand);
   std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q);
   system->initial_state(q, v);
   system->accept(0, q, v);
   const auto run = integrators::make_integrator(scene.integrator, *system, scene.options);
   Accepted accepted;
   Status s = run->start(0, q, v);
-  for (const Stop& frame : stops_at_frames(scene)) {
+  for (const Stop& asked : stops_at(times)) {
     if (s == Status::ok) {
-      s = run->advance(frame.t, [&](double t, In, In) {
-        accepted.stops.push_back({t, t == frame.t});
+      s = run->advance(asked.t, [&](double t, In, In) {
+        accepted.stops.push_back({t, t == asked.t});
         return true;
       });
     }
@@ -105,7 +82,7 @@ Accepted accepted_steps(const Scene& scene, std::size_t strand) {
       accepted.unfinished = run->failure();
       return accepted;
     }
-    accepted.points.push_back(points_at(*system, frame.t, run->q()));
+    accepted.points.push_back(points_at(*system, asked.t, run->q()));
   }
   return accepted;
 }
@@ -147,58 +124,98 @@ GradientRun::Method method_of(const Scene& scene, bool with_damping, int parts) 
   return method;
 }
 
+}  // namespace
+
+std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
+  return scene.model->on_strand(scene.strands[strand], scene.model_options,
+                                make_effects(scene));
+}
+
+std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand) {
+  return scene.model->on_strand(scene.strands[strand], exact_options(scene),
+                                make_effects(scene));
+}
+
+std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
+                                         std::span<const SceneParameter> parameters) {
+  std::vector<RunParameter> all;
+  for (const SceneParameter& parameter : parameters) {
+    all.emplace_back([&scene, strand, &parameter](double s) {
+      Scene changed = scene;
+      parameter.change(changed, s);
+      return exact_system_of(changed, strand);
+    });
+  }
+  return all;
+}
+
+bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters) {
+  if (start != "auto") return start == "damped";
+  return std::ranges::any_of(parameters, &SceneParameter::moves_rest);
+}
+
+std::vector<double> times_of_frames(const Scene& scene) {
+  std::vector<double> times;
+  for (std::size_t f = 0; f <= scene.last_frame(); ++f) times.push_back(scene.time_of(f));
+  return times;
+}
+
 StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
-                               const SceneGradient& whole, int parts) {
+                               const GradientTask& task) {
   StrandGradient found;
-  found.by.resize(whole.parameters.size());
+  found.by.resize(task.parameters.size());
   const bool chosen = scene.options.tolerance > 0;
   Accepted accepted;
-  if (chosen) accepted = accepted_steps(scene, strand);
+  if (chosen) accepted = accepted_steps(scene, strand, task.times);
   found.unfinished = accepted.unfinished;
   const std::vector<Stop> stops =
-      chosen ? divided(accepted.stops, parts) : stops_at_frames(scene);
-  const auto system = system_of(scene, strand, scene.model_options);
-  GradientRun run(*system, system_of(scene, strand, exact_options(scene)),
-                  run_parameters(scene, strand, whole.parameters),
-                  method_of(scene, whole.damped, parts));
-  const auto add_frame = [&] {
+      chosen ? divided(accepted.stops, task.parts) : stops_at(task.times);
+  const auto system = system_of(scene, strand);
+  GradientRun run(*system, exact_system_of(scene, strand),
+                  run_parameters(scene, strand, task.parameters),
+                  method_of(scene, task.damped, task.parts));
+  const auto add_points = [&] {
     found.points.push_back(points_at(*system, run.time(), run.q()));
     for (std::size_t k = 0; k < found.by.size(); ++k) {
       std::vector<double> dx(found.points.back().size());
       run.points_by(k, dx);
-      for (double& entry : dx) entry /= whole.parameters[k].measure;
+      for (double& entry : dx) entry /= task.parameters[k].measure;
       found.by[k].push_back(std::move(dx));
     }
   };
   Status s = run.start();
-  if (s == Status::ok) add_frame();
+  const bool from_start = !task.times.empty() && task.times.front() <= 0;
+  if (s == Status::ok && from_start) add_points();
   for (const Stop& stop : stops) {
     if (s == Status::ok) s = run.advance(stop.t);
     if (s != Status::ok) break;
-    if (stop.frame) add_frame();
+    if (stop.asked) add_points();
   }
   if (s != Status::ok) found.unfinished = run.failure();
   found.not_smooth = not_smooth(*system);
-  for (std::size_t f = 1; f < found.points.size() && chosen; ++f) {
+  const std::size_t first = from_start ? 1 : 0;
+  for (std::size_t f = first; f < found.points.size() && chosen; ++f) {
     found.moved =
-        std::max(found.moved, farthest(found.points[f], accepted.points[f - 1]) /
+        std::max(found.moved, farthest(found.points[f], accepted.points[f - first]) /
                                   scene.strands[strand].length());
   }
   return found;
 }
 
-}  // namespace
-
 void check_gradient(const Scene& scene) {
   const std::string where = "--gradient";
+  refuse_if(scene.model->on_strand != nullptr && !scene.tables->gradient,
+            fmt::format("scene {} has no [gradient]", scene.name), where,
+            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
+  const bool names_them = scene.tables != nullptr && scene.tables->gradient;
+  check_derivatives(scene, names_them ? scene.tables->gradient->place() : where);
+}
+
+void check_derivatives(const Scene& scene, const std::string& place) {
   refuse_if(scene.model->on_strand == nullptr,
             fmt::format("gradients are of strands, and {} brings its own shape",
                         scene.model->id),
-            where, "use a scene with [strand] or [groom]");
-  refuse_if(!scene.tables->gradient,
-            fmt::format("scene {} has no [gradient]", scene.name), where,
-            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
-  const std::string& place = scene.tables->gradient->place();
+            place, "use a scene with [strand] or [groom]");
   refuse_if(scene.strands_touch(),
             "no gradient of strands that touch: each is differentiated by itself", place,
             "leave out effects between strands");
@@ -206,7 +223,7 @@ void check_gradient(const Scene& scene) {
             "no gradient with rest = \"inverse\", whose natural strains follow from the "
             "parameters",
             place, "leave out rest");
-  const auto system = system_of(scene, 0, exact_options(scene));
+  const auto system = exact_system_of(scene, 0);
   const std::string reason =
       integrators::no_gradient(scene.integrator, *system, scene.options);
   refuse_if(!reason.empty(), "no gradient: " + reason, place, "change the scene");
@@ -215,9 +232,11 @@ void check_gradient(const Scene& scene) {
 SceneGradient scene_gradient(const Scene& scene, int parts) {
   SceneGradient all;
   all.parameters = gradient_parameters(scene);
-  all.damped = damped(scene, all.parameters);
+  all.damped =
+      starts_damped(scene.tables->gradient->values().word("start"), all.parameters);
+  const GradientTask task{all.parameters, all.damped, times_of_frames(scene), parts};
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
-    all.strands.push_back(strand_gradient(scene, k, all, parts));
+    all.strands.push_back(strand_gradient(scene, k, task));
   }
   return all;
 }
