@@ -42,13 +42,14 @@ AdjointRun::AdjointRun(System& system, std::unique_ptr<System> exact,
 Status AdjointRun::start() {
   system_.reset();
   failure_.clear();
+  frames_moved_ = false;
   events_.clear();
   parts_.clear();
   stops_.clear();
   std::vector<double> q(n_), v(n_);
   system_.initial_state(q, v);
   if (system_.accept(0, q, v)) {
-    return fail(Status::fatal, "no adjoint: reference frames move at the start");
+    return frames_have_moved();
   }
   damping_ = method_.start == GradientStart::damped;
   const Status s = begin(damping_ ? 0 : 1, 0, q, v);
@@ -107,6 +108,14 @@ void AdjointRun::stop() {
 Status AdjointRun::fail(Status s, std::string why) {
   failure_ = std::move(why);
   return s;
+}
+
+Status AdjointRun::frames_have_moved() {
+  frames_moved_ = true;
+  return fail(
+      Status::fatal,
+      "reference frames moved, whose motion has no transposed derivative: use the "
+      "derivatives forward in time");
 }
 
 std::size_t AdjointRun::record_bytes() const { return tape_.doubles() * sizeof(double); }
@@ -234,7 +243,7 @@ Status AdjointRun::back(const Operation& operation) {
     return all_zero(one[operation.first]);
   };
   if (operation.kind == Kind::accept || operation.kind == Kind::carry) {
-    return fail(Status::fatal, "no adjoint: reference frames moved");
+    return frames_have_moved();
   }
   if (std::ranges::all_of(inside_, no_share)) return Status::ok;
   const bool starts = operation.kind == Kind::acceleration;

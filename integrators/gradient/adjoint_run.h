@@ -50,6 +50,9 @@ class AdjointRun {
   Status sweep(std::size_t numbers, const Seed& seed, Out by);
 
   const std::string& failure() const { return failure_; }
+  /// Whether sweep() failed since reference frames (History) moved during the run, which
+  /// it does not differentiate. GradientRun does.
+  bool frames_moved() const { return frames_moved_; }
   const Stats& stats() const { return stats_; }
   /// Size of the record in memory, and the number of its parts.
   std::size_t record_bytes() const;
@@ -78,6 +81,7 @@ class AdjointRun {
   void note(Event event, const RecordedRun& run);
   void stop();
   Status fail(Status s, std::string why);
+  Status frames_have_moved();
   Status repeat(std::size_t part);
   Status sweep_part(std::size_t part, const Seed& seed);
   void add_seeds(std::size_t events, const Seed& seed);
@@ -95,7 +99,7 @@ class AdjointRun {
   TransposedEquations stages_;
   std::optional<TransposedEquations>
       starts_;  // with g'' = 0, where there are constraints
-  bool damping_ = false;
+  bool damping_ = false, frames_moved_ = false;
 
   Tape tape_;
   std::vector<double> memory_;  // at the end of tape_, then during a sweep

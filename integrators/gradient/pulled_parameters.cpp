@@ -135,6 +135,15 @@ PulledParameters::PulledParameters(System& system,
   for (std::size_t k = 0; k < natural_by_.size(); ++k) {
     if (natural_by_[k].empty()) index_.push_back(k);
   }
+  system.reset();
+  const std::vector<double> memory = system.memory();
+  for (const VariedSystem& one : varied_) {
+    for (const auto& made : one.systems) {
+      std::vector<double> own = made->memory();
+      add(own, -1, memory);
+      began_.push_back(std::move(own));
+    }
+  }
   if (stages_.constraints() > 0) {
     starts_.emplace(system, varied_, acceleration_options(options), false);
   }
@@ -149,8 +158,13 @@ void PulledParameters::begin(std::size_t numbers) {
 }
 
 void PulledParameters::recall(In memory) {
+  std::size_t next = 0;
   for (const VariedSystem& one : varied_) {
-    for (const auto& system : one.systems) system->recall(memory);
+    for (const auto& system : one.systems) {
+      std::vector<double> own = began_[next++];
+      add(own, 1, memory);
+      system->recall(own);
+    }
   }
 }
 

@@ -54,7 +54,8 @@ class PulledParameters {
   std::size_t count() const { return natural_by_.size(); }
   /// Begins a sweep of so many numbers.
   void begin(std::size_t numbers);
-  /// The systems remember what the run did.
+  /// The systems remember what the run did, relative to what each began with: reference
+  /// frames at the start depend on parameters.
   void recall(In memory);
   /// Of x (n + m) for each number. `starts`: of the equations of an acceleration, in
   /// which constraints are g'' = 0.
@@ -72,6 +73,8 @@ class PulledParameters {
   std::vector<std::vector<double>> natural_by_;  // empty: by a stencil
   std::vector<VariedSystem> varied_;
   std::vector<std::size_t> index_;  // of varied_
+  /// Of each system of varied_: memory at the start less that of the run's system.
+  std::vector<std::vector<double>> began_;
   Linearized stages_;
   std::optional<Linearized> starts_;  // where there are constraints
   std::optional<PulledNatural> natural_;

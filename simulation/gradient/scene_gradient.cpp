@@ -11,12 +11,13 @@
 #include "contract/input_error.h"
 #include "contract/jacobian_choice.h"
 #include "integrators/catalogue.h"
-#include "integrators/gradient/gradient_run.h"
+#include "integrators/gradient/adjoint_run.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
 namespace {
 
+using integrators::AdjointRun;
 using integrators::GradientRun;
 using integrators::GradientStart;
 using integrators::RunParameter;
@@ -124,6 +125,111 @@ GradientRun::Method method_of(const Scene& scene, bool with_damping, int parts) 
   return method;
 }
 
+/// The run of one strand at the times of a task, with its derivatives.
+class StrandRun {
+ public:
+  StrandRun(const Scene& scene, std::size_t strand, const GradientTask& task)
+      : scene_(scene),
+        strand_(strand),
+        task_(task),
+        chosen_(scene.options.tolerance > 0),
+        system_(system_of(scene, strand)),
+        parameters_(run_parameters(scene, strand, task.parameters)),
+        method_(method_of(scene, task.damped, task.parts)) {
+    if (chosen_) accepted_ = accepted_steps(scene, strand, task.times);
+    stops_ = chosen_ ? divided(accepted_.stops, task.parts) : stops_at(task.times);
+    found_.by.resize(task.parameters.size());
+    found_.unfinished = accepted_.unfinished;
+  }
+
+  StrandGradient gradient(bool adjoint) {
+    found_.adjoint = adjoint;
+    adjoint ? backward() : forward();
+    found_.not_smooth = not_smooth(*system_);
+    const std::size_t first = from_start() ? 1 : 0;
+    for (std::size_t f = first; f < found_.points.size() && chosen_; ++f) {
+      found_.moved =
+          std::max(found_.moved, farthest(found_.points[f], accepted_.points[f - first]) /
+                                     scene_.strands[strand_].length());
+    }
+    return std::move(found_);
+  }
+
+ private:
+  bool from_start() const { return !task_.times.empty() && task_.times.front() <= 0; }
+
+  /// see(k) at every time, where k advances have led to it.
+  template <class Run, class See>
+  Status take(Run& run, See see) {
+    Status s = run.start();
+    const auto note = [&](std::size_t advances) {
+      found_.points.push_back(points_at(*system_, run.time(), run.q()));
+      see(advances);
+    };
+    if (s == Status::ok && from_start()) note(0);
+    for (std::size_t k = 0; k < stops_.size() && s == Status::ok; ++k) {
+      s = run.advance(stops_[k].t);
+      if (s == Status::ok && stops_[k].asked) note(k + 1);
+    }
+    if (s != Status::ok) found_.unfinished = run.failure();
+    return s;
+  }
+
+  void forward() {
+    GradientRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_);
+    static_cast<void>(take(run, [&](std::size_t) {
+      for (std::size_t k = 0; k < found_.by.size(); ++k) {
+        std::vector<double> dx(found_.points.back().size());
+        run.points_by(k, dx);
+        for (double& entry : dx) entry /= task_.parameters[k].measure;
+        found_.by[k].push_back(std::move(dx));
+      }
+    }));
+  }
+
+  /// A run that fails has derivatives up to there, except at the last frame.
+  void backward() {
+    AdjointRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_);
+    std::vector<std::size_t> advances;  // of each time
+    static_cast<void>(take(run, [&](std::size_t k) { advances.push_back(k); }));
+    const std::size_t times = found_.points.size();
+    if (times == 0) return;
+    const std::size_t all = found_.points.front().size();
+    const std::size_t width = task_.of == GradientOf::points ? all : 3;
+    const std::size_t first = task_.of == GradientOf::last_tip ? times - 1 : 0;
+    const std::size_t numbers = (times - first) * width;
+    std::vector<double> by(numbers * parameters_.size());
+    const auto seed = [&](std::size_t number, std::size_t stop, Out x_hat) {
+      if (advances[first + number / width] != stop) return;
+      x_hat[all - width + number % width] = 1;
+    };
+    if (run.sweep(numbers, seed, by) != Status::ok) {
+      found_.unfinished = run.failure();
+      found_.frames_moved = run.frames_moved();
+      found_.points.clear();
+      return;
+    }
+    for (std::size_t k = 0; k < found_.by.size(); ++k) {
+      found_.by[k].assign(times, std::vector<double>(all));
+      for (std::size_t i = 0; i < numbers; ++i) {
+        found_.by[k][first + i / width][all - width + i % width] =
+            by[i * parameters_.size() + k] / task_.parameters[k].measure;
+      }
+    }
+  }
+
+  const Scene& scene_;
+  std::size_t strand_;
+  const GradientTask& task_;
+  bool chosen_;  // steps by a tolerance
+  std::unique_ptr<System> system_;
+  std::vector<RunParameter> parameters_;
+  GradientRun::Method method_;
+  Accepted accepted_;
+  std::vector<Stop> stops_;
+  StrandGradient found_;
+};
+
 }  // namespace
 
 std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
@@ -162,44 +268,18 @@ std::vector<double> times_of_frames(const Scene& scene) {
 
 StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
                                const GradientTask& task) {
-  StrandGradient found;
-  found.by.resize(task.parameters.size());
-  const bool chosen = scene.options.tolerance > 0;
-  Accepted accepted;
-  if (chosen) accepted = accepted_steps(scene, strand, task.times);
-  found.unfinished = accepted.unfinished;
-  const std::vector<Stop> stops =
-      chosen ? divided(accepted.stops, task.parts) : stops_at(task.times);
-  const auto system = system_of(scene, strand);
-  GradientRun run(*system, exact_system_of(scene, strand),
-                  run_parameters(scene, strand, task.parameters),
-                  method_of(scene, task.damped, task.parts));
-  const auto add_points = [&] {
-    found.points.push_back(points_at(*system, run.time(), run.q()));
-    for (std::size_t k = 0; k < found.by.size(); ++k) {
-      std::vector<double> dx(found.points.back().size());
-      run.points_by(k, dx);
-      for (double& entry : dx) entry /= task.parameters[k].measure;
-      found.by[k].push_back(std::move(dx));
-    }
-  };
-  Status s = run.start();
-  const bool from_start = !task.times.empty() && task.times.front() <= 0;
-  if (s == Status::ok && from_start) add_points();
-  for (const Stop& stop : stops) {
-    if (s == Status::ok) s = run.advance(stop.t);
-    if (s != Status::ok) break;
-    if (stop.asked) add_points();
+  bool adjoint = task.way == GradientWay::adjoint;
+  if (task.way == GradientWay::automatic) {
+    const auto points = exact_system_of(scene, strand)->material_points()->count();
+    const auto numbers =
+        3 * (task.of == GradientOf::points ? static_cast<std::size_t>(points)
+                                           : std::size_t{1});
+    const std::size_t frames = task.of == GradientOf::last_tip ? 1 : task.times.size();
+    adjoint = task.parameters.size() > 3 * numbers * frames;
   }
-  if (s != Status::ok) found.unfinished = run.failure();
-  found.not_smooth = not_smooth(*system);
-  const std::size_t first = from_start ? 1 : 0;
-  for (std::size_t f = first; f < found.points.size() && chosen; ++f) {
-    found.moved =
-        std::max(found.moved, farthest(found.points[f], accepted.points[f - first]) /
-                                  scene.strands[strand].length());
-  }
-  return found;
+  StrandGradient found = StrandRun(scene, strand, task).gradient(adjoint);
+  const bool again = found.frames_moved && task.way == GradientWay::automatic;
+  return again ? StrandRun(scene, strand, task).gradient(false) : found;
 }
 
 void check_gradient(const Scene& scene) {
@@ -229,12 +309,30 @@ void check_derivatives(const Scene& scene, const std::string& place) {
   refuse_if(!reason.empty(), "no gradient: " + reason, place, "change the scene");
 }
 
+GradientOf gradient_of(std::string_view word) {
+  return word == "tip"        ? GradientOf::tip
+         : word == "last_tip" ? GradientOf::last_tip
+                              : GradientOf::points;
+}
+
+GradientWay gradient_way(std::string_view word) {
+  return word == "forward"   ? GradientWay::forward
+         : word == "adjoint" ? GradientWay::adjoint
+                             : GradientWay::automatic;
+}
+
 SceneGradient scene_gradient(const Scene& scene, int parts) {
   SceneGradient all;
   all.parameters = gradient_parameters(scene);
   all.damped =
       starts_damped(scene.tables->gradient->values().word("start"), all.parameters);
-  const GradientTask task{all.parameters, all.damped, times_of_frames(scene), parts};
+  const Parameters& asked = scene.tables->gradient->values();
+  const GradientTask task{all.parameters,
+                          all.damped,
+                          times_of_frames(scene),
+                          parts,
+                          gradient_of(asked.word("of")),
+                          gradient_way(asked.word("way"))};
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     all.strands.push_back(strand_gradient(scene, k, task));
   }

@@ -11,24 +11,34 @@
 
 namespace tress::simulation {
 
+/// Which points are differentiated.
+enum class GradientOf { points, tip, last_tip };
+/// By GradientRun or AdjointRun. automatic: the one that is expected to cost less.
+enum class GradientWay { forward, adjoint, automatic };
+
 /// Asks for derivatives of the points of strands.
 struct GradientTask {
   std::vector<SceneParameter> parameters;
   bool damped = false;        // GradientStart
   std::vector<double> times;  // s, ascending, from 0
   int parts = 1;              // of every step
+  GradientOf of = GradientOf::points;
+  GradientWay way = GradientWay::forward;
 };
 
 /// The points of one strand at the times of its task, and their derivatives.
 struct StrandGradient {
   std::vector<std::vector<double>> points;  // at each time: (3 points) m
-  /// Derivatives by each parameter, at each time: m over SceneParameter::unit.
+  /// Derivatives by each parameter, at each time: m over SceneParameter::unit. The
+  /// adjoint leaves zeros for points and times that its task does not ask for.
   std::vector<std::vector<std::vector<double>>> by;
   std::string unfinished;  // why its run ended after these times; empty: it did not
   std::string not_smooth;  // why its motion is not smooth; empty: not known to be
   /// Largest distance of the points of a run with a tolerance from those of the run with
   /// its accepted steps frozen, over the length.
   double moved = 0;
+  bool adjoint = false;       // how the derivatives were computed
+  bool frames_moved = false;  // for which there is no adjoint: AdjointRun
 };
 
 /// Derivatives of a scene's run. Those of strands that choose their steps are of the run
@@ -46,6 +56,10 @@ void check_derivatives(const Scene& scene, const std::string& place);
 
 /// Whether a run starts damped, by a word of [gradient] start.
 bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters);
+
+/// By words of [gradient] of and way.
+GradientOf gradient_of(std::string_view word);
+GradientWay gradient_way(std::string_view word);
 
 /// Times of all frames, from 0.
 std::vector<double> times_of_frames(const Scene& scene);

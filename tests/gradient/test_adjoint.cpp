@@ -20,10 +20,12 @@ StrandRun swing(const std::string& model, const std::string& method) {
   return run;
 }
 
-/// Every natural strain, and two parameters that are none.
+/// Every natural strain, and three parameters that are none.
 std::vector<RunParameter> many(const StrandRun& run) {
-  std::vector<RunParameter> all =
-      parameters(run, {{"youngs_modulus_pa", 3e9, 3e9}, {"drag_kg_m_s", 5e-5, 5e-5}});
+  // The strand starts in its natural shape, to which the reference frames belong.
+  std::vector<RunParameter> all = parameters(run, {{"youngs_modulus_pa", 3e9, 3e9},
+                                                   {"drag_kg_m_s", 5e-5, 5e-5},
+                                                   {"natural_curvature_per_m", 20, 10}});
   const std::size_t count = natural_strains(*run.make())->natural().size();
   for (std::size_t k = 0; k < count; ++k) {
     all.emplace_back([&run, k](double s) {
@@ -66,6 +68,23 @@ TEST_P(AdjointOf, ARecordInPartsIsThatOfOne) {
   constexpr std::size_t few_steps = 1000;  // bytes
   expect_same(adjoint_tip_gradient(run, all, GradientStart::damped, few_steps),
               adjoint_tip_gradient(run, all, GradientStart::damped));
+}
+
+// As tests/gradient/test_frames.cpp.
+TEST_P(AdjointOf, FramesThatMoveIsRefused) {
+  StrandRun run = swing("der", GetParam());
+  run.settings.emplace_back("initial", "straight");
+  run.options.step = 0.2 / 60;
+  run.stops = {0.2};
+  const auto system = run.make();
+  AdjointRun adjoint(*system, run.make(), {}, {run.method, run.options});
+  ASSERT_EQ(adjoint.start(), Status::ok);
+  ASSERT_EQ(adjoint.advance(0.2), Status::ok);
+  EXPECT_NE(
+      adjoint.sweep(1, [](std::size_t, std::size_t, Out x_hat) { x_hat.back() = 1; }, {}),
+      Status::ok);
+  EXPECT_TRUE(adjoint.frames_moved());
+  EXPECT_NE(adjoint.failure().find("forward in time"), std::string::npos);
 }
 
 // A stage takes its time, q, v and a; der also notes the twist of every edge in a step.
