@@ -252,6 +252,10 @@ Status AdjointRun::back(const Operation& operation) {
   if (starts) status = equations.accelerate(motion_);
   if (status == Status::ok) status = equations.move(motion_, operation.w);
   for (std::size_t s = 0; s < hat_.size() && status == Status::ok; ++s) {
+    if (no_share(inside_[s])) {  // of a number of an earlier time
+      std::ranges::fill(x_[s], 0.0);
+      continue;
+    }
     std::ranges::copy(inside_[s][operation.first], x_[s].begin());
     status = equations.solve(x_[s]);
     std::ranges::fill(q_hat_, 0.0);

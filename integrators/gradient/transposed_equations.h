@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/transposed_form.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/gradient/residual_derivative.h"
 #include "integrators/gradient/watched_system.h"
@@ -20,7 +21,9 @@ namespace tress::integrators {
 ///                  [nu]   [0]
 ///
 /// The derivatives are the matrices of SparseForm where the system has one and no
-/// constraints, else columns by central differences, O(n) residuals.
+/// constraints. With TransposedForm they are its products, and S^-T has the solutions of
+/// n unit vectors as its rows. Else they are columns by central differences, O(n)
+/// residuals.
 class TransposedEquations {
  public:
   /// `sparse`: as ResidualDerivative. `system` must outlive this.
@@ -36,15 +39,18 @@ class TransposedEquations {
   Status move(const WatchedSystem::Motion& state, Weights w) noexcept;
   /// Solves for x = (mu, nu), (n + m), from b in the first n numbers.
   Status solve(InOut x) noexcept;
-  void pull(In x, InOut q_hat, InOut v_hat) const noexcept;
+  void pull(In x, InOut q_hat, InOut v_hat) noexcept;
 
  private:
+  Status by_products(const WatchedSystem::Motion& state, Weights w) noexcept;
   Status by_columns(const WatchedSystem::Motion& state) noexcept;
   Status by_matrices(const WatchedSystem::Motion& state) noexcept;
 
   Dynamics dynamics_;
   ResidualDerivative derivative_;
-  SparseForm* sparse_;  // null: by columns
+  SparseForm* sparse_;          // null: not used
+  TransposedForm* transposed_;  // null: not used
+  bool products_ = false;       // in use at this state
   std::size_t n_, m_;
   Pattern pattern_;                        // (n + m) x n, of each of by_
   std::array<std::vector<double>, 3> by_;  // q, v, a
@@ -52,6 +58,8 @@ class TransposedEquations {
   BlockMatrix matrix_;                     // transposed
   int of_r_, of_lambda_;
   std::unique_ptr<LinearSolver> solver_;
+  std::vector<double> inverse_;  // (n x n) S^-1, column by column
+  std::vector<double> product_q_, product_v_;
   std::vector<double> combined_, gradient_, none_, unit_, none_m_;
 };
 

@@ -47,6 +47,34 @@ void expect_same(const TipGradient& found, const TipGradient& expected) {
   }
 }
 
+double factor(const StepTable::Combination& of, std::size_t vector) {
+  for (const auto& term : of) {
+    if (term.vector == vector) return term.factor;
+  }
+  return 0;
+}
+
+// Vectors 0 and 1 are q and v, 2 is the acceleration.
+TEST(StepProbe, FindsTheTableOfBackwardEuler) {
+  constexpr double h = 0.125;
+  const auto system = swing("super_helix", "backward_euler").make();
+  const WatchedSystem none(*system);
+  StepProbe probe("backward_euler", {});
+  EXPECT_EQ(probe.start(0).operations.size(), 0u);
+  const StepTable table = probe.step(h, none);
+  ASSERT_EQ(table.inputs, 2u);
+  ASSERT_EQ(table.operations.size(), 1u);
+  const auto& stage = table.operations.front();
+  EXPECT_EQ(stage.first, 2u);
+  EXPECT_EQ(stage.w.vel, h);
+  EXPECT_EQ(stage.w.pos, h * h);
+  EXPECT_EQ(factor(stage.of[0], 0), 1);
+  EXPECT_EQ(factor(stage.of[0], 1), h);
+  EXPECT_EQ(factor(stage.of[1], 1), 1);
+  EXPECT_EQ(factor(table.results[0], 2), h * h);
+  EXPECT_EQ(factor(table.results[1], 2), h);
+}
+
 class AdjointOf : public testing::TestWithParam<std::string> {};
 
 // Strains that are coordinates, or not, with a damped start.
