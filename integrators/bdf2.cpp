@@ -24,6 +24,10 @@ class Bdf2 final : public FixedStep {
         place_(stage_.place_bar().size()),
         place_previous_(place_) {}
 
+  std::vector<InOut> state() override {
+    return {q_, v_, q_previous_, v_previous_, {&h_previous_, 1}};
+  }
+
  private:
   Status reset(double /*t*/) override {
     h_previous_ = 0;

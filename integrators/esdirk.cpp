@@ -23,6 +23,8 @@ class FixedEsdirk final : public FixedStep {
   FixedEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : FixedStep(system, options), stages_(dynamics_, options, table, {}) {}
 
+  std::vector<InOut> state() override { return {q_, v_, a_}; }
+
  private:
   Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
 

@@ -43,6 +43,8 @@ class GeneralizedAlpha final : public FixedStep {
         q_bar_(vector_n()),
         v_bar_(vector_n()) {}
 
+  std::vector<InOut> state() override { return {q_, v_, u_, a_}; }
+
  private:
   Status reset(double t) override {
     const Status s = dynamics_.accelerate(t, q_, v_, u_, lambda_);

@@ -25,7 +25,7 @@ std::size_t frames(const StrandGradient& one, const StrandGradient& finer) {
 
 std::string table_of(const Scene& scene, const SceneGradient& gradient,
                      const SceneGradient& finer) {
-  const bool tips = scene.tables->gradient->values().word("of") == "tip";
+  const GradientOf of = gradient_of(scene.tables->gradient->values().word("of"));
   std::string text = csv_line(
       std::vector<std::string>{"strand", "point", "time_s", "component", "by", "unit",
                                "derivative", "relative", "time_error", "status"});
@@ -34,9 +34,12 @@ std::string table_of(const Scene& scene, const SceneGradient& gradient,
     const StrandGradient& other = finer.strands[k];
     const char* const status = strand.not_smooth.empty() ? "ok" : "not_smooth";
     const double length = scene.strands[k].length();
-    for (std::size_t f = 0; f < frames(strand, other); ++f) {
+    const std::size_t last = frames(strand, other);
+    for (std::size_t f = of == GradientOf::last_tip ? std::max<std::size_t>(last, 1) - 1
+                                                    : 0;
+         f < last; ++f) {
       const std::size_t numbers = strand.points[f].size();
-      for (std::size_t i = tips ? numbers - 3 : 0; i < numbers; ++i) {
+      for (std::size_t i = of == GradientOf::points ? 0 : numbers - 3; i < numbers; ++i) {
         for (std::size_t j = 0; j < gradient.parameters.size(); ++j) {
           const SceneParameter& by = gradient.parameters[j];
           const double derivative = strand.by[j][f][i];
@@ -104,8 +107,10 @@ bool report_gradient(const Scene& scene, const std::string& file) {
         "are within {:.2g} of the length of the run's\n",
         scene.name, std::ranges::max(gradient.strands, {}, &StrandGradient::moved).moved);
   }
-  tell("simulate: {}: gradient: {} parameters{} -> {}\n", scene.name,
-       gradient.parameters.size(), gradient.damped ? ", damped start" : "", file);
+  const bool adjoint = std::ranges::any_of(gradient.strands, &StrandGradient::adjoint);
+  tell("simulate: {}: gradient: {} parameters{}{} -> {}\n", scene.name,
+       gradient.parameters.size(), gradient.damped ? ", damped start" : "",
+       adjoint ? ", adjoint" : "", file);
   return finished;
 }
 

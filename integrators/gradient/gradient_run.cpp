@@ -5,14 +5,11 @@
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
+#include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {
-
-constexpr std::string_view damping_method = "backward_euler";
-constexpr double damping_part = 1.0 / 16;  // of a step
-constexpr int damping_steps = 2;
 
 std::vector<VariedSystem> varied_systems(System& system,
                                          std::span<const RunParameter> parameters) {
@@ -21,28 +18,6 @@ std::vector<VariedSystem> varied_systems(System& system,
     all.push_back(varied_system(system, parameter));
   }
   return all;
-}
-
-/// Of the variational equations: linear, so that the first correction is the solution;
-/// and one step at a time, those of the run.
-Options of_columns(Options options) {
-  constexpr double any = 1e200, one_step = 1e30;
-  options.newton_tolerance = any;
-  options.refresh = Refresh::every_iteration;
-  options.formulation = Formulation::parametric;
-  options.step = one_step;
-  options.max_work = 0;
-  return options;
-}
-
-System& checked(System& system, const GradientRun::Method& method) {
-  std::string reason = no_gradient(method.id, system, method.options);
-  if (method.options.tolerance > 0) {
-    reason = "steps that a tolerance chooses are not smooth in the parameters";
-  }
-  if (reason.empty()) return system;
-  throw InputError("no gradient of a run by " + std::string(method.id), reason,
-                   "change the method or the model");
 }
 
 }  // namespace
@@ -72,10 +47,20 @@ std::string no_gradient(std::string_view method, System& system, const Options& 
          " have no exact derivative of their bias: use formulation = index3";
 }
 
+System& with_gradient(System& system, const GradientRun::Method& method) {
+  std::string reason = no_gradient(method.id, system, method.options);
+  if (method.options.tolerance > 0) {
+    reason = "steps that a tolerance chooses are not smooth in the parameters";
+  }
+  if (reason.empty()) return system;
+  throw InputError("no gradient of a run by " + std::string(method.id), reason,
+                   "change the method or the model");
+}
+
 GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
                          std::span<const RunParameter> parameters, const Method& method)
     : method_(method),
-      system_(checked(system, method)),
+      system_(with_gradient(system, method)),
       exact_(std::move(exact)),
       varied_(varied_systems(system, parameters)),
       watched_(system),
@@ -85,32 +70,50 @@ GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
       dq_(parameters.size() * q_.size()),
       dv_(dq_) {}
 
-Status GradientRun::start() {
-  for (System* system : {&system_, exact_.get()}) system->reset();
+template <class Visit>
+void GradientRun::each_system(const Visit& visit) {
+  for (System* system : {&system_, exact_.get()}) visit(*system);
   for (const VariedSystem& one : varied_) {
-    for (const auto& system : one.systems) system->reset();
+    for (const auto& system : one.systems) visit(*system);
   }
+}
+
+Status GradientRun::start() {
+  each_system([](System& system) { system.reset(); });
   t_ = 0;
-  failure_.clear();
-  stats_ = {};
   system_.initial_state(q_, v_);
   variational_.initial_state(dq_, dv_);
   if (watched_.history() != nullptr) {
     static_cast<void>(static_cast<System&>(watched_).accept(t_, q_, v_));
     static_cast<void>(static_cast<System&>(variational_).accept(t_, dq_, dv_));
   }
+  return set_off();
+}
+
+Status GradientRun::start(const State& from) {
+  each_system([&](System& system) {
+    system.reset();
+    system.recall(from.memory);
+  });
+  t_ = from.t;
+  q_ = from.q, v_ = from.v;
+  dq_ = from.dq, dv_ = from.dv;
+  return set_off();
+}
+
+/// With the start that the method asks for.
+Status GradientRun::set_off() {
+  failure_.clear();
+  stats_ = {};
   damping_ = method_.start == GradientStart::damped;
   if (!damping_) return begin(method_.id, method_.options);
-  Options options = method_.options;
-  options.step *= damping_part;
-  options.own.clear();
-  return begin(damping_method, options);
+  return begin(DampedStart::method, DampedStart::options(method_.options));
 }
 
 /// Both methods from the present state.
 Status GradientRun::begin(std::string_view method, const Options& options) {
   run_ = make_integrator(method, watched_, options);
-  columns_ = make_integrator(method, variational_, of_columns(options));
+  columns_ = make_integrator(method, variational_, linear_options(options));
   watched_.forget();
   const Status s = run_->start(t_, q_, v_);
   if (s != Status::ok) return fail(s, run_->failure());
@@ -121,8 +124,8 @@ Status GradientRun::begin(std::string_view method, const Options& options) {
 
 Status GradientRun::advance(double t_end) {
   if (damping_) {
-    const double h = std::min(method_.options.step, t_end - t_);
-    Status s = advance_by(*run_, *columns_, t_ + damping_steps * damping_part * h);
+    Status s =
+        advance_by(*run_, *columns_, DampedStart::end(t_, t_end, method_.options.step));
     damping_ = false;
     if (s == Status::ok) s = begin(method_.id, method_.options);
     if (s != Status::ok) return s;

@@ -44,6 +44,14 @@ class GradientRun {
 
   /// Starts at t = 0 from initial_state().
   Status start();
+  /// A state on the way of a run of an equal system, and its derivatives there.
+  struct State {
+    double t = 0;
+    std::vector<double> q, v;
+    std::vector<double> memory;  // System::memory()
+    std::vector<double> dq, dv;  // parameter after parameter
+  };
+  Status start(const State& from);
   /// Advances run and derivatives to t_end. Not `ok`: failure() tells why.
   Status advance(double t_end);
   /// Returns the time of the state, s.
@@ -64,6 +72,9 @@ class GradientRun {
   const Stats& stats() const { return stats_; }
 
  private:
+  template <class Visit>
+  void each_system(const Visit& visit);
+  Status set_off();
   Status advance_by(Integrator& run, Integrator& columns, double t_end);
   Status begin(std::string_view method, const Options& options);
   void keep(const Integrator& run, const Integrator& columns);
@@ -82,5 +93,9 @@ class GradientRun {
   std::string failure_;
   Stats stats_;
 };
+
+/// Returns the system. Throws InputError where its run by this method has no_gradient(),
+/// or has a tolerance.
+System& with_gradient(System& system, const GradientRun::Method& method);
 
 }  // namespace tress::integrators

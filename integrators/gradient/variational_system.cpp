@@ -4,19 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
-namespace {
-
-/// Options under which constraints give accelerations.
-Options of_accelerations(Options options) {
-  options.formulation = Formulation::acceleration;
-  return options;
-}
-
-}  // namespace
-
 VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
                                      std::span<const VariedSystem> varied,
                                      const Options& options, bool sparse)
@@ -27,7 +18,7 @@ VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
       stages_(system, varied, options, sparse),
       c_(columns() * size(stages_.constraints())) {
   if (stages_.constraints() > 0) {
-    starts_.emplace(system, varied, of_accelerations(options), sparse);
+    starts_.emplace(system, varied, acceleration_options(options), sparse);
   }
   for (auto* x : {&start_.q, &start_.v, &start_.a}) x->resize(n_);
   start_.lambda.resize(size(stages_.constraints()));

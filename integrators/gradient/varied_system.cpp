@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "contract/forms/material_points.h"
+#include "contract/forms/natural_strains.h"
+#include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {
-
-// s. Motions of roots, of periods and durations from milliseconds to seconds, are not at
-// rest at all of these times.
-constexpr double probed_times[] = {0, 0.0137, 0.373, 2.91};
 
 /// A state away from the initial one, by parts of the typical sizes that differ from
 /// coordinate to coordinate.
@@ -60,11 +58,54 @@ bool affine(const std::vector<double>& at_0, const std::vector<double>& at_half,
   return bend <= rounding * size;
 }
 
+bool same(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr double rounding = 1e-14;
+  double size = 0, apart = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    size = std::max(size, std::abs(y[i]));
+    if (!(std::abs(x[i] - y[i]) <= apart)) apart = std::abs(x[i] - y[i]);  // NaN, too
+  }
+  return apart <= rounding * size;
+}
+
 }  // namespace
 
-VariedSystem varied_system(System& system, const RunParameter& parameter) {
+std::vector<double> natural_direction(System& system, const RunParameter& parameter) {
+  NaturalStrains* const own = natural_strains(system);
+  if (own == nullptr) return {};
+  const std::vector<double> here = own->natural();
+  const auto at = [&](double s, bool& alone) {
+    const auto changed = parameter(s);
+    NaturalStrains* const form = natural_strains(*changed);
+    alone = form != nullptr && form->natural().size() == here.size();
+    if (!alone) return std::vector<double>{};
+    std::vector<double> natural = form->natural();
+    form->set_natural(here);
+    const Probe probe(system);
+    const auto with = probe.of(*changed), without = probe.of(system);
+    alone = std::ranges::equal(with, without, same);
+    return natural;
+  };
+  bool alone = true;
+  const double far = affine_stencil.at[0];
+  const std::vector<double> natural = at(far, alone);
+  if (!alone) return {};
+  const std::vector<double> middle = at(far / 2, alone);
+  const bool straight = affine(here, middle, natural);
+  const Stencil stencil = straight ? affine_stencil : central_stencil;
+  std::vector<double> direction(here.size());
+  add(direction, stencil.base, here);
+  for (std::size_t i = 0; i < stencil.at.size(); ++i) {
+    add(direction, stencil.weight[i],
+        straight ? natural : natural_strains(*parameter(stencil.at[i]))->natural());
+  }
+  return direction;
+}
+
+VariedSystem varied_system(System& system, const RunParameter& parameter,
+                           VariedMemory memory) {
   VariedSystem varied{central_stencil, {}};
-  if (system.history() == nullptr) {
+  if (system.history() == nullptr || memory == VariedMemory::of_run) {
     const Probe probe(system);
     auto far = parameter(affine_stencil.at[0]);
     const auto middle = parameter(affine_stencil.at[0] / 2);

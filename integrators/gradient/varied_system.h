@@ -39,6 +39,10 @@ inline constexpr double central_weight[] = {
 /// Stencil of central differences.
 inline constexpr Stencil central_stencil{0, central_at, central_weight};
 
+/// s. Motions of roots, of periods and durations from milliseconds to seconds, are not at
+/// rest at all of these times.
+inline constexpr double probed_times[] = {0, 0.0137, 0.373, 2.91};
+
 /// A parameter's stencil with its systems. Each follows the run, at the state q + s dq:
 /// what it remembers (History) depends on s too.
 struct VariedSystem {
@@ -46,9 +50,19 @@ struct VariedSystem {
   std::vector<std::unique_ptr<System>> systems;  // systems at the stencil's distances
 };
 
+/// What the systems of a stencil remember: what their own runs would, or the memory of
+/// the run itself.
+enum class VariedMemory { own, of_run };
+
 /// With the affine stencil where residual, start and points are affine in s: measured at
 /// one state, in which all terms are alive, and several times. Never of systems with a
-/// History, which makes the residual depend on the states behind it.
-VariedSystem varied_system(System& system, const RunParameter& parameter);
+/// History of their own, which makes the residual depend on the states behind it.
+VariedSystem varied_system(System& system, const RunParameter& parameter,
+                           VariedMemory memory = VariedMemory::own);
+
+/// The derivative of the natural strains by a parameter that changes nothing else,
+/// measured as above. Empty: it changes other things, or the system has no
+/// NaturalStrains.
+std::vector<double> natural_direction(System& system, const RunParameter& parameter);
 
 }  // namespace tress::integrators

@@ -25,7 +25,9 @@ bool WatchedSystem::accept(double t, InOut q, InOut v) {
 
 bool WatchedSystem::carry(double t, InOut q, InOut v, InOut a) const {
   carried_.add(t, q, v, a, {});
-  return tress::carry(system_, t, q, v, a);
+  const bool carried = tress::carry(system_, t, q, v, a);
+  if (!carried) --carried_.count;
+  return carried;
 }
 
 }  // namespace tress::integrators

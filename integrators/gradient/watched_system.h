@@ -25,7 +25,7 @@ class WatchedSystem final : public System, public StageWatcher, private MovingHi
 
   /// Solutions in the order in which they were found.
   std::span<const Motion> stages() const { return stages_.all(); }
-  /// Returns the states that carry() was given, in order.
+  /// Returns the states that carry() was given and could carry, in order.
   std::span<const Motion> carried() const { return carried_.all(); }
   /// The state that accept() was given, and its answer.
   const Motion& accepted() const { return accepted_; }

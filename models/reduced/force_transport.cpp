@@ -57,6 +57,8 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
     sweeps_.solve(b, x);
     return Base::finite(x);
   }
+  /// The base's is that of the full inertia.
+  bool place_transposed(double, In, In, In) noexcept override { return false; }
 
  private:
   Status acceleration(double t, In q, In v, Out a) noexcept override {

@@ -10,12 +10,14 @@
 #include "contract/forms/history.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
+#include "contract/forms/transposed_form.h"
 #include "models/held/held_contacts.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/strand_energies.h"
+#include "models/reduced/transposed_tangent.h"
 #include "models/reduced/tree_solver.h"
 #include "models/strand/not_finite.h"
 
@@ -29,6 +31,7 @@ namespace tress::models {
 template <class Kernel, int modes>
 class ReducedSystem : public System,
                       public NaturalStrains,
+                      public TransposedForm,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
@@ -167,6 +170,23 @@ class ReducedSystem : public System,
   }
   bool strains_are_coordinates() const override { return !kinematics_.free(); }
 
+  bool place_transposed(double t, In q, In v, In a) noexcept override {
+    if (!exact_ || coupled_solver_) return false;
+    if (by_q_.parent.empty()) {
+      by_q_ = empty_tangent<Exact>(kinematics_);
+      by_v_ = by_q_;
+    }
+    dynamics_.residual(t, q, v, a, scratch_);
+    const auto effects = effect_blocks(t);
+    fill_tangent({0, 0, 1}, effects, v, a, by_q_);
+    fill_tangent({0, 1, 0}, effects, v, a, by_v_);
+    return true;
+  }
+  void pull(In mu, Out by_q, Out by_v) noexcept override {
+    transposed_.compute(by_q_, mu, by_q);
+    transposed_.compute(by_v_, mu, by_v);
+  }
+
  protected:
   bool accept(double, InOut q, InOut v) override {
     return kinematics_.free_root().rebase(q.last(6), v.last(6));
@@ -211,10 +231,17 @@ class ReducedSystem : public System,
     for (const Coupling& contact : contacts_) {
       full_.couplings.push_back(ContactTangent(kinematics_).of(contact, w));
     }
-    for (std::size_t i = 0; i < full_.segments.size(); ++i) {
-      exact_tangent_.segment(i, w, effects, full_.segments[i]);
+    fill_tangent(w, effects, v, a, full_);
+  }
+
+  /// At the motion of the last residual().
+  void fill_tangent(Weights w,
+                    const typename ExactTangent<Kernel, modes>::EffectBlocks& effects,
+                    In v, In a, TreeTangent<Exact>& to) const {
+    for (std::size_t i = 0; i < to.segments.size(); ++i) {
+      exact_tangent_.segment(i, w, effects, to.segments[i]);
     }
-    if (full_.free_root) exact_tangent_.root(w, v.last(6), a.last(6), full_.root);
+    if (to.free_root) exact_tangent_.root(w, v.last(6), a.last(6), to.root);
   }
 
   /// Strands that touch themselves need a solver for all unknowns at once.
@@ -397,6 +424,8 @@ class ReducedSystem : public System,
   ExactTangent<Kernel, modes> exact_tangent_;
   StiffTangent<Kernel, modes> mass_, acceleration_;
   TreeTangent<Exact> full_;
+  TreeTangent<Exact> by_q_, by_v_;  // of pull(); made on first use
+  TransposedProduct<Exact> transposed_;
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
   std::unique_ptr<TreeSolver<Exact>> full_solver_, coupled_solver_;
   bool full_in_use_ = false;

@@ -43,6 +43,10 @@ py::array_t<T> copy(std::span<const T> x) {
 
 inline py::array_t<double> copy(In x) { return copy<double>(x); }
 
+inline py::array_t<double> copy(In x, std::vector<py::ssize_t> shape) {
+  return copy(x).reshape(std::move(shape));
+}
+
 /// Returns a read-only array over the same memory; `owner` lives as long as the array
 /// does.
 inline py::array view(In x, const py::handle& owner) {

@@ -31,4 +31,5 @@ PYBIND11_MODULE(_core, m) {
   add_systems(m);
   add_integrators(m);
   add_scenes(m);
+  add_gradients(m);
 }

@@ -2,7 +2,9 @@
 
 from .errors import InputError, ProgramError, SolveError
 from ._core import load_plugin, scene_defaults, scene_schema, version as __version__
-from .scenes import Frames, HeadRun, Scene, StrandsRun
+from .gradients import Gradient, LinearizedStep
+from .runs import Frames, HeadRun, StrandsRun
+from .scenes import Scene
 from .systems import (
     Integrator,
     System,
@@ -18,9 +20,11 @@ from .tables import Table, experiment, programs_folder, read_table, unit_of
 
 __all__ = [
     "Frames",
+    "Gradient",
     "HeadRun",
     "InputError",
     "Integrator",
+    "LinearizedStep",
     "ProgramError",
     "Scene",
     "SolveError",

@@ -2,13 +2,11 @@
 
 import sys
 import tomllib
-from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
-from . import _core
+from . import _core, gradients
 from .errors import InputError, SolveError
+from .runs import HeadRun, StrandsRun
 from .systems import System
 from .toml import text_of
 
@@ -132,6 +130,37 @@ class Scene:
         """One strand with the effects on it alone, or the mechanism, as a System."""
         return System(self._core.system(strand))
 
+    def gradient(self, of="tip", by=None, start=None, time_errors=False):
+        """Exact derivatives of the run by numbers of the scene: Gradient.
+
+        of: "tip" or "points".
+        by: names of parameters, as in [gradient] of a scene file (docs/start/gradients.md);
+            None: those of the scene's own [gradient].
+        start: "auto", "damped" or "as_run", as in [gradient]; None: the scene's own, or
+            "auto".
+        time_errors: runs again with half the step, for ``Gradient.time_error``.
+
+        InputError names a parameter that is none, or the reason why the run has no
+        derivatives. A step without a solution raises SolveError.
+        """
+        return gradients.gradient(self, of, by, start, time_errors)
+
+    def linearized_step(self, t=0.0, dt=None, by=(), strand=0):
+        """Matrices of one step of the run: LinearizedStep, or A, B = linearized_step(...).
+
+        The derivatives of the state after the step by the state before it, A, and by
+        parameters, B: state-transition matrices for control and estimation.
+
+        t: start of the step, s; the scene runs to it first.
+        dt: length of the step, s; None: dt_s of the scene.
+        by: names of parameters, as in ``gradient``, which act during the step alone:
+            "root_position_m.z", "wind.velocity_m_s.x".
+
+        InputError where the method's step depends on more than (q, v), as that of bdf2 and
+        generalized_alpha, or the model has constraints.
+        """
+        return gradients.linearized_step(self, t, dt, by, strand)
+
     def start(self, threads=1, kind="strands"):
         """The run at t = 0, for loops of your own: StrandsRun, or HeadRun of a head."""
         if kind == "head":
@@ -191,137 +220,3 @@ def _progress(progress):
         print(f"\r{t:.3f} of {duration:g} s", end=end, file=sys.stderr, flush=True)
 
     return line
-
-
-@dataclass
-class Frames:
-    """Frames of a run. F frames, P points, strand after strand from root to tip."""
-
-    times: np.ndarray  # (F) s
-    positions: np.ndarray  # (F, P, 3) m
-    strand: np.ndarray  # (P) the strand of each point
-    before: np.ndarray  # (P) the point that it is attached to, -1: none
-    radii: np.ndarray  # (P) m, of a circle of the section's area; nan: a mechanism
-    velocities: np.ndarray = None  # (F, P, 3) m/s; None: of a head, which keeps none
-    series: dict = field(default_factory=dict)  # {column: (F)}, units in the names
-    # {name: (F, Q)}: curvature, speed, and the load of each effect, N/m; Q = P, but for
-    # trees, whose branches begin with the point that they are attached to (``lines``).
-    channels: dict = field(default_factory=dict)
-    channel_units: dict = field(default_factory=dict)
-    lines: np.ndarray = None  # points of each line of the channels
-    # Of each frame (contacts, 6): place, m, and force on the strand, N.
-    contacts: list = field(default_factory=list)
-    lost: list = field(default_factory=list)  # strands of a head without a solution
-
-    def of_strand(self, k):
-        """(F, points, 3) m: the points of one strand."""
-        return self.positions[:, self.strand == k]
-
-
-class StrandsRun:
-    """A run of a scene, strands one by one. ``advance(t)``, then read."""
-
-    def __init__(self, scene, threads=1):
-        self._core = _core.StrandsRun(scene._core, threads)
-
-    def advance(self, t):
-        """Runs to t (s) without the interpreter's lock; SolveError gives the reason."""
-        self._core.advance(t)
-
-    @property
-    def time(self):
-        return self._core.time
-
-    @property
-    def positions(self):
-        """(P, 3) m: the run's own memory, for reading, until the next advance()."""
-        return self._core.positions
-
-    @property
-    def velocities(self):
-        """(P, 3) m/s, as positions."""
-        return self._core.velocities
-
-    @property
-    def strand(self):
-        return self._core.strand
-
-    @property
-    def energies(self):
-        """(kinetic, elastic, [of each effect]), J."""
-        return self._core.energies
-
-    def frame(self):
-        """Everything of this instant, as copies."""
-        return self._core.frame()
-
-    def gather(self, frames):
-        core = self._core
-        series = np.array([frame["series"] for frame in frames])
-        channels = np.array([frame["channels"] for frame in frames])
-        columns = dict(zip(core.series, series.T))
-        return Frames(
-            times=columns["t_s"],
-            positions=np.array([frame["positions"] for frame in frames]),
-            velocities=np.array([frame["velocities"] for frame in frames]),
-            strand=core.strand,
-            before=core.before,
-            radii=core.radii,
-            series=columns,
-            channels={name: channels[:, c] for c, name in enumerate(core.channels)},
-            channel_units=core.units,
-            lines=core.lines,
-            contacts=[frame["contacts"] for frame in frames],
-        )
-
-
-class HeadRun:
-    """A run of all strands of a scene side by side. InputError says why a scene is none."""
-
-    def __init__(self, scene, threads=1, bits=64):
-        self._core = _core.HeadRun(scene._text, scene.file, bits, threads)
-
-    def advance(self, t):
-        """To t (s) in equal steps of at most the scene's, or as its tolerance asks."""
-        self._core.advance(t)
-
-    @property
-    def time(self):
-        return self._core.time
-
-    @property
-    def positions(self):
-        """(P, 3) m."""
-        return self._core.positions()
-
-    @property
-    def energies(self):
-        """(kinetic, elastic, gravity), J, of all strands."""
-        return self._core.energy()
-
-    @property
-    def lost(self):
-        """Strands that have no solution, or do what physics rules out."""
-        return self._core.lost()
-
-    def frame(self):
-        return {"t": self.time, "positions": self.positions, "energies": self.energies}
-
-    def gather(self, frames):
-        core = self._core
-        points = core.points
-        strand = np.repeat(np.arange(core.strands, dtype=np.int32), points)
-        before = np.arange(-1, strand.size - 1, dtype=np.int32)
-        before[::points] = -1
-        times = np.array([frame["t"] for frame in frames])
-        energies = np.array([frame["energies"] for frame in frames])
-        names = ("kinetic_j", "elastic_j", "gravity_j")
-        return Frames(
-            times=times,
-            positions=np.array([frame["positions"] for frame in frames]),
-            strand=strand,
-            before=before,
-            radii=core.radii(),
-            series={"t_s": times, **dict(zip(names, energies.T))},
-            lost=self.lost,
-        )

@@ -11,12 +11,13 @@
 #include "contract/input_error.h"
 #include "contract/jacobian_choice.h"
 #include "integrators/catalogue.h"
-#include "integrators/gradient/gradient_run.h"
+#include "integrators/gradient/adjoint_run.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
 namespace {
 
+using integrators::AdjointRun;
 using integrators::GradientRun;
 using integrators::GradientStart;
 using integrators::RunParameter;
@@ -32,41 +33,17 @@ Parameters exact_options(const Scene& scene) {
   return options;
 }
 
-std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand,
-                                  const Parameters& options) {
-  return scene.model->on_strand(scene.strands[strand], options, make_effects(scene));
-}
-
-std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
-                                         std::span<const SceneParameter> parameters) {
-  std::vector<RunParameter> all;
-  for (const SceneParameter& parameter : parameters) {
-    all.emplace_back([&scene, strand, &parameter](double s) {
-      Scene changed = scene;
-      parameter.change(changed, s);
-      return system_of(changed, strand, exact_options(changed));
-    });
-  }
-  return all;
-}
-
-bool damped(const Scene& scene, std::span<const SceneParameter> parameters) {
-  const std::string_view start = scene.tables->gradient->values().word("start");
-  if (start != "auto") return start == "damped";
-  return std::ranges::any_of(parameters, &SceneParameter::moves_rest);
-}
-
-/// Ends of steps: those at which frames are, with their number.
+/// End of a step, and whether points are asked for there.
 struct Stop {
   double t;
-  bool frame;
+  bool asked;
 };
 
-/// Of a fixed step: the frames.
-std::vector<Stop> stops_at_frames(const Scene& scene) {
+/// Of a fixed step.
+std::vector<Stop> stops_at(std::span<const double> times) {
   std::vector<Stop> stops;
-  for (std::size_t f = 1; f <= scene.last_frame(); ++f) {
-    stops.push_back({scene.time_of(f), true});
+  for (const double t : times) {
+    if (t > 0) stops.push_back({t, true});
   }
   return stops;
 }
@@ -78,26 +55,27 @@ std::vector<double> points_at(System& system, double t, In q) {
   return x;
 }
 
-/// A run with a tolerance: its accepted steps, which are cut at frames, and its points
-/// there.
+/// A run with a tolerance: its accepted steps, which are cut at the times asked for, and
+/// its points there.
 struct Accepted {
   std::vector<Stop> stops;
   std::vector<std::vector<double>> points;
   std::string unfinished;
 };
 
-Accepted accepted_steps(const Scene& scene, std::size_t strand) {
-  const auto system = system_of(scene, strand, scene.model_options);
+Accepted accepted_steps(const Scene& scene, std::size_t strand,
+                        std::span<const double> times) {
+  const auto system = system_of(scene, strand);
   std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q);
   system->initial_state(q, v);
   system->accept(0, q, v);
   const auto run = integrators::make_integrator(scene.integrator, *system, scene.options);
   Accepted accepted;
   Status s = run->start(0, q, v);
-  for (const Stop& frame : stops_at_frames(scene)) {
+  for (const Stop& asked : stops_at(times)) {
     if (s == Status::ok) {
-      s = run->advance(frame.t, [&](double t, In, In) {
-        accepted.stops.push_back({t, t == frame.t});
+      s = run->advance(asked.t, [&](double t, In, In) {
+        accepted.stops.push_back({t, t == asked.t});
         return true;
       });
     }
@@ -105,7 +83,7 @@ Accepted accepted_steps(const Scene& scene, std::size_t strand) {
       accepted.unfinished = run->failure();
       return accepted;
     }
-    accepted.points.push_back(points_at(*system, frame.t, run->q()));
+    accepted.points.push_back(points_at(*system, asked.t, run->q()));
   }
   return accepted;
 }
@@ -147,58 +125,177 @@ GradientRun::Method method_of(const Scene& scene, bool with_damping, int parts) 
   return method;
 }
 
-StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
-                               const SceneGradient& whole, int parts) {
-  StrandGradient found;
-  found.by.resize(whole.parameters.size());
-  const bool chosen = scene.options.tolerance > 0;
-  Accepted accepted;
-  if (chosen) accepted = accepted_steps(scene, strand);
-  found.unfinished = accepted.unfinished;
-  const std::vector<Stop> stops =
-      chosen ? divided(accepted.stops, parts) : stops_at_frames(scene);
-  const auto system = system_of(scene, strand, scene.model_options);
-  GradientRun run(*system, system_of(scene, strand, exact_options(scene)),
-                  run_parameters(scene, strand, whole.parameters),
-                  method_of(scene, whole.damped, parts));
-  const auto add_frame = [&] {
-    found.points.push_back(points_at(*system, run.time(), run.q()));
-    for (std::size_t k = 0; k < found.by.size(); ++k) {
-      std::vector<double> dx(found.points.back().size());
-      run.points_by(k, dx);
-      for (double& entry : dx) entry /= whole.parameters[k].measure;
-      found.by[k].push_back(std::move(dx));
+/// The run of one strand at the times of a task, with its derivatives.
+class StrandRun {
+ public:
+  StrandRun(const Scene& scene, std::size_t strand, const GradientTask& task)
+      : scene_(scene),
+        strand_(strand),
+        task_(task),
+        chosen_(scene.options.tolerance > 0),
+        system_(system_of(scene, strand)),
+        parameters_(run_parameters(scene, strand, task.parameters)),
+        method_(method_of(scene, task.damped, task.parts)) {
+    if (chosen_) accepted_ = accepted_steps(scene, strand, task.times);
+    stops_ = chosen_ ? divided(accepted_.stops, task.parts) : stops_at(task.times);
+    found_.by.resize(task.parameters.size());
+    found_.unfinished = accepted_.unfinished;
+  }
+
+  StrandGradient gradient(bool adjoint) {
+    found_.adjoint = adjoint;
+    adjoint ? backward() : forward();
+    found_.not_smooth = not_smooth(*system_);
+    const std::size_t first = from_start() ? 1 : 0;
+    for (std::size_t f = first; f < found_.points.size() && chosen_; ++f) {
+      found_.moved =
+          std::max(found_.moved, farthest(found_.points[f], accepted_.points[f - first]) /
+                                     scene_.strands[strand_].length());
     }
-  };
-  Status s = run.start();
-  if (s == Status::ok) add_frame();
-  for (const Stop& stop : stops) {
-    if (s == Status::ok) s = run.advance(stop.t);
-    if (s != Status::ok) break;
-    if (stop.frame) add_frame();
+    return std::move(found_);
   }
-  if (s != Status::ok) found.unfinished = run.failure();
-  found.not_smooth = not_smooth(*system);
-  for (std::size_t f = 1; f < found.points.size() && chosen; ++f) {
-    found.moved =
-        std::max(found.moved, farthest(found.points[f], accepted.points[f - 1]) /
-                                  scene.strands[strand].length());
+
+ private:
+  bool from_start() const { return !task_.times.empty() && task_.times.front() <= 0; }
+
+  /// see(k) at every time, where k advances have led to it.
+  template <class Run, class See>
+  Status take(Run& run, See see) {
+    Status s = run.start();
+    const auto note = [&](std::size_t advances) {
+      found_.points.push_back(points_at(*system_, run.time(), run.q()));
+      see(advances);
+    };
+    if (s == Status::ok && from_start()) note(0);
+    for (std::size_t k = 0; k < stops_.size() && s == Status::ok; ++k) {
+      s = run.advance(stops_[k].t);
+      if (s == Status::ok && stops_[k].asked) note(k + 1);
+    }
+    if (s != Status::ok) found_.unfinished = run.failure();
+    return s;
   }
-  return found;
-}
+
+  void forward() {
+    GradientRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_);
+    static_cast<void>(take(run, [&](std::size_t) {
+      for (std::size_t k = 0; k < found_.by.size(); ++k) {
+        std::vector<double> dx(found_.points.back().size());
+        run.points_by(k, dx);
+        for (double& entry : dx) entry /= task_.parameters[k].measure;
+        found_.by[k].push_back(std::move(dx));
+      }
+    }));
+  }
+
+  /// A run that fails has derivatives up to there, except at the last frame.
+  void backward() {
+    AdjointRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_);
+    std::vector<std::size_t> advances;  // of each time
+    static_cast<void>(take(run, [&](std::size_t k) { advances.push_back(k); }));
+    const std::size_t times = found_.points.size();
+    if (times == 0) return;
+    const std::size_t all = found_.points.front().size();
+    const std::size_t width = task_.of == GradientOf::points ? all : 3;
+    const std::size_t first = task_.of == GradientOf::last_tip ? times - 1 : 0;
+    const std::size_t numbers = (times - first) * width;
+    std::vector<double> by(numbers * parameters_.size());
+    const auto seed = [&](std::size_t number, std::size_t stop, Out x_hat) {
+      if (advances[first + number / width] != stop) return;
+      x_hat[all - width + number % width] = 1;
+    };
+    if (run.sweep(numbers, seed, by) != Status::ok) {
+      found_.unfinished = run.failure();
+      found_.frames_moved = run.frames_moved();
+      found_.points.clear();
+      return;
+    }
+    for (std::size_t k = 0; k < found_.by.size(); ++k) {
+      found_.by[k].assign(times, std::vector<double>(all));
+      for (std::size_t i = 0; i < numbers; ++i) {
+        found_.by[k][first + i / width][all - width + i % width] =
+            by[i * parameters_.size() + k] / task_.parameters[k].measure;
+      }
+    }
+  }
+
+  const Scene& scene_;
+  std::size_t strand_;
+  const GradientTask& task_;
+  bool chosen_;  // steps by a tolerance
+  std::unique_ptr<System> system_;
+  std::vector<RunParameter> parameters_;
+  GradientRun::Method method_;
+  Accepted accepted_;
+  std::vector<Stop> stops_;
+  StrandGradient found_;
+};
 
 }  // namespace
 
+std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
+  return scene.model->on_strand(scene.strands[strand], scene.model_options,
+                                make_effects(scene));
+}
+
+std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand) {
+  return scene.model->on_strand(scene.strands[strand], exact_options(scene),
+                                make_effects(scene));
+}
+
+std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
+                                         std::span<const SceneParameter> parameters) {
+  std::vector<RunParameter> all;
+  for (const SceneParameter& parameter : parameters) {
+    all.emplace_back([&scene, strand, &parameter](double s) {
+      Scene changed = scene;
+      parameter.change(changed, s);
+      return exact_system_of(changed, strand);
+    });
+  }
+  return all;
+}
+
+bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters) {
+  if (start != "auto") return start == "damped";
+  return std::ranges::any_of(parameters, &SceneParameter::moves_rest);
+}
+
+std::vector<double> times_of_frames(const Scene& scene) {
+  std::vector<double> times;
+  for (std::size_t f = 0; f <= scene.last_frame(); ++f) times.push_back(scene.time_of(f));
+  return times;
+}
+
+StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
+                               const GradientTask& task) {
+  bool adjoint = task.way == GradientWay::adjoint;
+  if (task.way == GradientWay::automatic) {
+    const auto points = exact_system_of(scene, strand)->material_points()->count();
+    const auto numbers =
+        3 * (task.of == GradientOf::points ? static_cast<std::size_t>(points)
+                                           : std::size_t{1});
+    const std::size_t frames = task.of == GradientOf::last_tip ? 1 : task.times.size();
+    adjoint = task.parameters.size() > 3 * numbers * frames;
+  }
+  StrandGradient found = StrandRun(scene, strand, task).gradient(adjoint);
+  const bool again = found.frames_moved && task.way == GradientWay::automatic;
+  return again ? StrandRun(scene, strand, task).gradient(false) : found;
+}
+
 void check_gradient(const Scene& scene) {
   const std::string where = "--gradient";
+  refuse_if(scene.model->on_strand != nullptr && !scene.tables->gradient,
+            fmt::format("scene {} has no [gradient]", scene.name), where,
+            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
+  const bool names_them = scene.tables != nullptr && scene.tables->gradient;
+  check_derivatives(scene, names_them ? scene.tables->gradient->place() : where);
+}
+
+void check_derivatives(const Scene& scene, const std::string& place) {
   refuse_if(scene.model->on_strand == nullptr,
             fmt::format("gradients are of strands, and {} brings its own shape",
                         scene.model->id),
-            where, "use a scene with [strand] or [groom]");
-  refuse_if(!scene.tables->gradient,
-            fmt::format("scene {} has no [gradient]", scene.name), where,
-            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
-  const std::string& place = scene.tables->gradient->place();
+            place, "use a scene with [strand] or [groom]");
   refuse_if(scene.strands_touch(),
             "no gradient of strands that touch: each is differentiated by itself", place,
             "leave out effects between strands");
@@ -206,18 +303,38 @@ void check_gradient(const Scene& scene) {
             "no gradient with rest = \"inverse\", whose natural strains follow from the "
             "parameters",
             place, "leave out rest");
-  const auto system = system_of(scene, 0, exact_options(scene));
+  const auto system = exact_system_of(scene, 0);
   const std::string reason =
       integrators::no_gradient(scene.integrator, *system, scene.options);
   refuse_if(!reason.empty(), "no gradient: " + reason, place, "change the scene");
 }
 
+GradientOf gradient_of(std::string_view word) {
+  return word == "tip"        ? GradientOf::tip
+         : word == "last_tip" ? GradientOf::last_tip
+                              : GradientOf::points;
+}
+
+GradientWay gradient_way(std::string_view word) {
+  return word == "forward"   ? GradientWay::forward
+         : word == "adjoint" ? GradientWay::adjoint
+                             : GradientWay::automatic;
+}
+
 SceneGradient scene_gradient(const Scene& scene, int parts) {
   SceneGradient all;
   all.parameters = gradient_parameters(scene);
-  all.damped = damped(scene, all.parameters);
+  all.damped =
+      starts_damped(scene.tables->gradient->values().word("start"), all.parameters);
+  const Parameters& asked = scene.tables->gradient->values();
+  const GradientTask task{all.parameters,
+                          all.damped,
+                          times_of_frames(scene),
+                          parts,
+                          gradient_of(asked.word("of")),
+                          gradient_way(asked.word("way"))};
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
-    all.strands.push_back(strand_gradient(scene, k, all, parts));
+    all.strands.push_back(strand_gradient(scene, k, task));
   }
   return all;
 }

@@ -1,22 +1,44 @@
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "integrators/gradient/varied_system.h"
 #include "simulation/scene/gradient_table.h"
 
 namespace tress::simulation {
 
-/// The points of one strand at frames, and their derivatives.
+/// Which points are differentiated.
+enum class GradientOf { points, tip, last_tip };
+/// By GradientRun or AdjointRun. automatic: the one that is expected to cost less.
+enum class GradientWay { forward, adjoint, automatic };
+
+/// Asks for derivatives of the points of strands.
+struct GradientTask {
+  std::vector<SceneParameter> parameters;
+  bool damped = false;        // GradientStart
+  std::vector<double> times;  // s, ascending, from 0
+  int parts = 1;              // of every step
+  GradientOf of = GradientOf::points;
+  GradientWay way = GradientWay::forward;
+};
+
+/// The points of one strand at the times of its task, and their derivatives.
 struct StrandGradient {
-  std::vector<std::vector<double>> points;  // at each frame: (3 points) m
-  /// Derivatives by each parameter, at each frame: m over SceneParameter::unit.
+  std::vector<std::vector<double>> points;  // at each time: (3 points) m
+  /// Derivatives by each parameter, at each time: m over SceneParameter::unit. The
+  /// adjoint leaves zeros for points and times that its task does not ask for.
   std::vector<std::vector<std::vector<double>>> by;
-  std::string unfinished;  // why its run ended after these frames; empty: it did not
+  std::string unfinished;  // why its run ended after these times; empty: it did not
   std::string not_smooth;  // why its motion is not smooth; empty: not known to be
   /// Largest distance of the points of a run with a tolerance from those of the run with
   /// its accepted steps frozen, over the length.
   double moved = 0;
+  bool adjoint = false;       // how the derivatives were computed
+  bool frames_moved = false;  // for which there is no adjoint: AdjointRun
 };
 
 /// Derivatives of a scene's run. Those of strands that choose their steps are of the run
@@ -29,6 +51,29 @@ struct SceneGradient {
 
 /// Throws InputError if the scene has no [gradient], or its run no derivatives.
 void check_gradient(const Scene& scene);
+/// Throws InputError naming `place` if the scene's run has no derivatives.
+void check_derivatives(const Scene& scene, const std::string& place);
+
+/// Whether a run starts damped, by a word of [gradient] start.
+bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters);
+
+/// By words of [gradient] of and way.
+GradientOf gradient_of(std::string_view word);
+GradientWay gradient_way(std::string_view word);
+
+/// Times of all frames, from 0.
+std::vector<double> times_of_frames(const Scene& scene);
+
+/// The gradient of one strand's run. With a tolerance, steps also end at the times.
+StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
+                               const GradientTask& task);
+
+/// Makes the model of a strand, with the model's own Jacobian or the exact one.
+std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand);
+std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand);
+/// The systems of a strand at changed values of the parameters, which both must outlive.
+std::vector<integrators::RunParameter> run_parameters(
+    const Scene& scene, std::size_t strand, std::span<const SceneParameter> parameters);
 
 /// The gradient that [gradient] asks for, with every step divided into `parts`.
 SceneGradient scene_gradient(const Scene& scene, int parts = 1);

@@ -30,8 +30,15 @@ constexpr Parameter gradient_keys[] = {
      .text = true,
      .fallback = "youngs_modulus_pa,radius_m,density_kg_m3"},
     {.name = "of",
-     .help = "points to differentiate: the tip, or all points",
-     .choices = "tip|points"},
+     .help = "points to differentiate: the tip, all points, or the tip at the last frame",
+     .choices = "tip|points|last_tip"},
+    {.name = "way",
+     .help =
+         "direction of the derivatives in time. forward: along with the run, one more "
+         "solution per parameter; adjoint: one sweep backward, one solution per number "
+         "that is differentiated; auto: adjoint where the parameters are more than 3 "
+         "times these numbers, 3 for each point and frame",
+     .choices = "auto|forward|adjoint"},
     {.name = "start",
      .help = "start of the run. damped: two short steps of backward Euler; auto: damped "
              "where "

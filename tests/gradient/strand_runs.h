@@ -8,6 +8,7 @@
 
 #include "contract/forms/material_points.h"
 #include "integrators/catalogue.h"
+#include "integrators/gradient/adjoint_run.h"
 #include "integrators/gradient/gradient_run.h"
 #include "models/catalogue.h"
 
@@ -115,10 +116,47 @@ inline TipGradient tip_gradient(const StrandRun& run,
   return found;
 }
 
+inline std::vector<RunParameter> parameters(const StrandRun& run,
+                                            const std::vector<Varied>& varied) {
+  std::vector<RunParameter> all;
+  for (const Varied& one : varied) all.push_back(run.parameter(one));
+  return all;
+}
+
 inline TipGradient tip_gradient(const StrandRun& run, const std::vector<Varied>& varied) {
-  std::vector<RunParameter> parameters;
-  for (const Varied& one : varied) parameters.push_back(run.parameter(one));
-  return tip_gradient(run, parameters);
+  return tip_gradient(run, parameters(run, varied));
+}
+
+/// tip_gradient() by one sweep backward.
+inline TipGradient adjoint_tip_gradient(const StrandRun& run,
+                                        const std::vector<RunParameter>& parameters,
+                                        GradientStart start = GradientStart::as_run,
+                                        std::size_t record = AdjointRun::most_record) {
+  const auto system = run.make();
+  AdjointRun adjoint(*system, run.make(), parameters, {run.method, run.options, start},
+                     record);
+  TipGradient found;
+  found.by.resize(parameters.size());
+  Status s = adjoint.start();
+  for (const double stop : run.stops) {
+    if (s == Status::ok) s = adjoint.advance(stop);
+    if (s != Status::ok) break;
+    const auto x = tip(*system, stop, adjoint.q());
+    found.value.insert(found.value.end(), x.begin(), x.end());
+  }
+  const std::size_t numbers = 3 * run.stops.size();
+  std::vector<double> by(numbers * parameters.size());
+  const auto seed = [](std::size_t number, std::size_t stop, Out x_hat) {
+    if (stop == number / 3 + 1) x_hat[x_hat.size() - 3 + number % 3] = 1;
+  };
+  if (s == Status::ok) s = adjoint.sweep(numbers, seed, by);
+  found.failure = adjoint.failure();
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    for (std::size_t i = 0; i < numbers; ++i) {
+      found.by[k].push_back(by[i * parameters.size() + k]);
+    }
+  }
+  return found;
 }
 
 /// (8 (f(e) - f(-e)) - (f(2e) - f(-2e)))/(12 e) of tips().

@@ -95,6 +95,20 @@ TEST_P(GradientOf, IsThatOfDifferencesOfRuns) {
   }
 }
 
+// Both are exact for the same run. They differ by rounding, and by the differences of
+// residuals in both: 1e-10 of their entries (ResidualDerivative).
+TEST_P(GradientOf, BackwardIsThatForward) {
+  const StrandRun run = run_of(GetParam());
+  const std::vector<RunParameter> all = parameters(run, varied(GetParam()));
+  const TipGradient forward = tip_gradient(run, all);
+  const TipGradient backward = adjoint_tip_gradient(run, all);
+  ASSERT_EQ(backward.failure, "");
+  EXPECT_EQ(backward.value, forward.value);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_LT(apart(backward.by[k], forward.by[k]), 1e-7) << varied(GetParam())[k].key;
+  }
+}
+
 // Motion depends on ratios of E (with G), friction, drag and density alone.
 TEST_P(GradientOf, IsZeroAlongAChangeOfAllForcesAndMasses) {
   const TipGradient found = tip_gradient(run_of(GetParam()), varied(GetParam()));

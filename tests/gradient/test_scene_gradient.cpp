@@ -109,6 +109,73 @@ TEST(SceneGradient, OfAStrandOfEachElementIsThatOfAll) {
   EXPECT_LT(worst, 1e-8 * most);
 }
 
+/// Largest difference of the derivatives of the tip at the last frame over the largest.
+void expect_same_tip(const SceneGradient& found, const SceneGradient& expected) {
+  const auto &one = found.strands.front(), &other = expected.strands.front();
+  ASSERT_EQ(one.unfinished, "");
+  ASSERT_EQ(one.by.size(), other.by.size());
+  for (std::size_t k = 0; k < one.by.size(); ++k) {
+    double apart = 0, most = 0;
+    for (std::size_t i = other.by[k].back().size() - 3; i < other.by[k].back().size();
+         ++i) {
+      const double expected_entry = other.by[k].back()[i];
+      apart = std::max(apart, std::abs(one.by[k].back()[i] - expected_entry));
+      most = std::max(most, std::abs(expected_entry));
+    }
+    EXPECT_GT(most * found.parameters[k].measure, 1e-8) << found.parameters[k].name;
+    EXPECT_LT(apart, 1e-7 * most) << found.parameters[k].name;
+  }
+}
+
+TEST(SceneGradient, ByTheAdjointIsThatForwardForEveryKindOfParameter) {
+  for (const char* integrator :
+       {"dt_s = 0.002\nnewton_tolerance = 1e-13", "position_tol_rel = 1e-3"}) {
+    const auto way = [&](const std::string& word) {
+      return scene_gradient(parse_scene(
+          scene_text("[gradient]\nby = [\"youngs_modulus_pa\", \"density_kg_m3\", "
+                     "\"radius_m\", \"internal_friction_kg_m3_s\", "
+                     "\"natural_curvature_per_m\", \"natural_twist_per_m.2\", "
+                     "\"initial_curvature2_per_m\", \"root_angle_rad.y\", "
+                     "\"root_position_m.z\", \"root.amplitude_m\", "
+                     "\"linear_drag.drag_kg_m_s\", \"wind.velocity_m_s.y\"]\nway = \"" +
+                         word + "\"\n",
+                     integrator),
+          "s.toml"));
+    };
+    const SceneGradient found = way("adjoint");
+    EXPECT_TRUE(found.strands.front().adjoint);
+    expect_same_tip(found, way("forward"));
+  }
+}
+
+// 3 numbers by 15 parameters. An edge of der that turns by 60 degrees moves its frame.
+TEST(SceneGradient, TakesTheAdjointWhereItIsExpectedToCostLess) {
+  const auto found = [](const std::string& model, const std::string& more) {
+    return scene_gradient(parse_scene(
+        "title = \"t\"\nduration_s = 0.2\nframes_per_s = 5\n[integrator]\nid = "
+        "\"tr_bdf2\"\ndt_s = "
+        "0.004\nnewton_tolerance = 1e-13\n[model]\nid = \"" +
+            model +
+            "\"\n[material]\ninternal_friction_kg_m3_s = 1e-10\n[strand]\nelements = "
+            "5\nshape = \"helix\"\ninitial = "
+            "\"straight\"\n[effects.gravity]\n[effects.linear_drag]\ndrag_kg_m_s = "
+            "1e-4\n" +
+            "[gradient]\nby = [\"natural_curvature_per_m.each\", "
+            "\"natural_curvature2_per_m.each\", \"natural_twist_per_m.each\"]\nof = "
+            "\"last_tip\"\n" +
+            more,
+        "s.toml"));
+  };
+  const SceneGradient helix = found("super_helix", ""), der = found("der", "");
+  EXPECT_TRUE(helix.strands.front().adjoint);
+  EXPECT_FALSE(found("super_helix", "way = \"forward\"\n").strands.front().adjoint);
+  EXPECT_FALSE(der.strands.front().adjoint);
+  EXPECT_EQ(der.strands.front().unfinished, "");
+  const SceneGradient refused = found("der", "way = \"adjoint\"\n");
+  EXPECT_NE(refused.strands.front().unfinished.find("forward in time"),
+            std::string::npos);
+}
+
 // J of the frozen run is within 3 tolerances of that of a run with a hundredth of the
 // tolerance, and its points within a tenth of one from those of the run with control.
 TEST(SceneGradient, WithAToleranceIsOfTheRunWithItsStepsFrozen) {

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <numeric>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contract/forms/natural_strains.h"
+#include "integrators/gradient/linearized.h"
+
+namespace tress::integrators {
+
+inline double product(In x, In y) {
+  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
+}
+
+/// n_hat -= r_n^T mu of the natural strains n (NaturalStrains). r_n is -diag(stiffness)
+/// where strains are coordinates. Elsewhere r is affine in n, and strains that are in
+/// different equations are changed together: O(1) residuals for a strand.
+class PulledNatural {
+ public:
+  /// `system` must outlive it and have the form.
+  PulledNatural(System& system, Dynamics& dynamics);
+
+  std::size_t count() const { return stiffness_.size(); }
+  /// Of several mu (n) at once, each with its n_hat.
+  Status pull(const WatchedSystem::Motion& at, std::span<const std::vector<double>> mu,
+              std::span<std::vector<double>> n_hat) noexcept;
+
+ private:
+  struct Member {
+    std::size_t strain;
+    std::vector<std::size_t> rows;  // of its equations
+  };
+  void find_groups(System& system);
+
+  NaturalStrains& form_;
+  Dynamics& dynamics_;
+  std::vector<double> stiffness_;
+  bool coordinates_;
+  std::vector<std::vector<Member>> groups_;
+  std::vector<double> base_, r_, c_, natural_, changed_;
+};
+
+/// p_hat -= R_s^T x for the parameters s of a run, with x = (mu, nu) of
+/// TransposedEquations. A parameter costs the residuals of its stencil. Those that change
+/// natural strains alone are together as expensive as a few.
+class PulledParameters {
+ public:
+  /// `system` must outlive it.
+  PulledParameters(System& system, std::span<const RunParameter> parameters,
+                   const Options& options);
+
+  std::size_t count() const { return natural_by_.size(); }
+  /// Begins a sweep of so many numbers.
+  void begin(std::size_t numbers);
+  /// The systems remember what the run did, relative to what each began with: reference
+  /// frames at the start depend on parameters.
+  void recall(In memory);
+  /// Of x (n + m) for each number. `starts`: of the equations of an acceleration, in
+  /// which constraints are g'' = 0.
+  Status pull(const WatchedSystem::Motion& at, bool starts,
+              std::span<const std::vector<double>> x) noexcept;
+  /// Adds the part of the start: q_hat and v_hat, (n) for each number.
+  void pull_start(System& system, std::span<const In> q_hat, std::span<const In> v_hat);
+  /// Adds that of points at a fixed q: x_hat for each number.
+  void pull_points(System& system, double t, In q,
+                   std::span<const std::vector<double>> x_hat);
+  /// Writes the derivatives, (numbers x count).
+  void write(Out by) const;
+
+ private:
+  std::vector<std::vector<double>> natural_by_;  // empty: by a stencil
+  std::vector<VariedSystem> varied_;
+  std::vector<std::size_t> index_;  // of varied_
+  /// Of each system of varied_: memory at the start less that of the run's system.
+  std::vector<std::vector<double>> began_;
+  Linearized stages_;
+  std::optional<Linearized> starts_;  // where there are constraints
+  std::optional<PulledNatural> natural_;
+  std::vector<std::vector<double>> by_;     // [number][parameter], of varied_
+  std::vector<std::vector<double>> n_hat_;  // [number]
+  std::vector<double> none_, r_, c_;
+};
+
+}  // namespace tress::integrators

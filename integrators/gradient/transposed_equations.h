@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "contract/forms/transposed_form.h"
+#include "integrators/formulation/dynamics.h"
+#include "integrators/gradient/residual_derivative.h"
+#include "integrators/gradient/watched_system.h"
+#include "linear/block_matrix.h"
+#include "linear/linear_solver.h"
+
+namespace tress::integrators {
+
+/// The equations of a run at one of its states, linearized and transposed. With R = (r -
+/// G^T lambda, c) the equations of Dynamics and S = R_a + w.vel R_v + w.pos R_q,
+///
+///     [S  -dG^T]^T [mu]   [b]
+///     [        ]   [  ] = [ ],    q_hat -= R_q^T (mu, nu),  v_hat -= R_v^T (mu, nu)
+///                  [nu]   [0]
+///
+/// The derivatives are the matrices of SparseForm where the system has one and no
+/// constraints. With TransposedForm they are its products, and S^-T has the solutions of
+/// n unit vectors as its rows. Else they are columns by central differences, O(n)
+/// residuals.
+class TransposedEquations {
+ public:
+  /// `sparse`: as ResidualDerivative. `system` must outlive this.
+  TransposedEquations(System& system, const Options& options, bool sparse);
+
+  std::size_t n() const { return n_; }
+  std::size_t m() const { return m_; }
+  /// Computes the accelerations and multipliers of a motion from q and v.
+  Status accelerate(WatchedSystem::Motion& motion) noexcept {
+    return dynamics_.accelerate(motion.t, motion.q, motion.v, motion.a, motion.lambda);
+  }
+  /// Linearizes at a state, which must last until the next call, and factors.
+  Status move(const WatchedSystem::Motion& state, Weights w) noexcept;
+  /// Solves for x = (mu, nu), (n + m), from b in the first n numbers.
+  Status solve(InOut x) noexcept;
+  void pull(In x, InOut q_hat, InOut v_hat) noexcept;
+
+ private:
+  Status by_products(const WatchedSystem::Motion& state, Weights w) noexcept;
+  Status by_columns(const WatchedSystem::Motion& state) noexcept;
+  Status by_matrices(const WatchedSystem::Motion& state) noexcept;
+
+  Dynamics dynamics_;
+  ResidualDerivative derivative_;
+  SparseForm* sparse_;          // null: not used
+  TransposedForm* transposed_;  // null: not used
+  bool products_ = false;       // in use at this state
+  std::size_t n_, m_;
+  Pattern pattern_;                        // (n + m) x n, of each of by_
+  std::array<std::vector<double>, 3> by_;  // q, v, a
+  bool mass_known_ = false;                // by_ has a mass that is constant
+  BlockMatrix matrix_;                     // transposed
+  int of_r_, of_lambda_;
+  std::unique_ptr<LinearSolver> solver_;
+  std::vector<double> inverse_;  // (n x n) S^-1, column by column
+  std::vector<double> product_q_, product_v_;
+  std::vector<double> combined_, gradient_, none_, unit_, none_m_;
+};
+
+}  // namespace tress::integrators

@@ -1,0 +1,99 @@
+"""Derivatives of runs by numbers of a scene."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import _core
+from .errors import InputError
+
+
+@dataclass
+class Gradient:
+    """Points of a run and their derivatives by K parameters. F frames, P points, strand
+    after strand; of="tip" keeps the last point of each strand."""
+
+    times: np.ndarray  # (F) s
+    value: np.ndarray  # (F, P, 3) m
+    jacobian: np.ndarray  # (F, P, 3, K) m per unit of each parameter
+    names: list  # (K) parameters
+    units: list  # (K) units of the parameters
+    parameters: np.ndarray  # (K) values of the parameters
+    strand: np.ndarray  # (P) the strand of each point
+    damped: bool  # the run began with two short steps of backward Euler
+    # "ok", or "not_smooth" where a force jumped during the run
+    status: str = "ok"
+    # Largest distance, over the length of the strand, of the points of a run with a
+    # tolerance from those of the run with its accepted steps frozen.
+    moved: float = 0.0
+    # (F, P, 3, K) change of jacobian with half the step; None: not asked for
+    time_error: np.ndarray = None
+
+    def by(self, name):
+        """(F, P, 3): the derivatives by one parameter. InputError where there is none."""
+        if name not in self.names:
+            raise InputError(f"no parameter '{name}' (by): one of {', '.join(self.names)}")
+        return self.jacobian[..., self.names.index(name)]
+
+    def relative(self):
+        """(F, P, 3, K) m: derivatives times the parameters. A hundredth of it is the change
+        of a point, in m, with 1 % of the parameter."""
+        return self.jacobian * self.parameters
+
+
+@dataclass
+class LinearizedStep:
+    """One step of a run as a linear map of deviations x = (dq, dv), 2n numbers:
+
+    x at t_next = A x at t + B s, with a change s of the parameters during the step.
+    """
+
+    A: np.ndarray  # (2n, 2n)
+    B: np.ndarray  # (2n, K) per unit of each parameter
+    names: list  # (K) parameters
+    units: list  # (K) units of the parameters
+    t: float  # s
+    t_next: float  # s
+    q: np.ndarray  # (n) coordinates at t
+    v: np.ndarray  # (n) rates at t
+    q_next: np.ndarray  # (n) coordinates at t_next
+    v_next: np.ndarray  # (n) rates at t_next
+
+    def __iter__(self):
+        return iter((self.A, self.B))
+
+
+def _one_of(name, value, words):
+    if value not in words:
+        raise InputError(f"unknown {name} '{value}' ({name}): one of {', '.join(words)}")
+
+
+def _names(by):
+    return [by] if isinstance(by, str) else list(by)
+
+
+def gradient(scene, of, by, start, time_errors):
+    """``Scene.gradient``."""
+    _one_of("of", of, ("tip", "points"))
+    if start is not None:
+        _one_of("start", start, ("auto", "damped", "as_run"))
+    names = None if by is None else _names(by)
+    found = _core.gradient(scene._core, of == "tip", names, start, 1)
+    strands = found.pop("strands")
+    result = Gradient(
+        value=np.concatenate([points for points, _, _ in strands], axis=1),
+        jacobian=np.concatenate([jacobian for _, jacobian, _ in strands], axis=1),
+        strand=np.repeat(np.arange(len(strands)), [s[0].shape[1] for s in strands]),
+        status="not_smooth" if any(reason for _, _, reason in strands) else "ok",
+        **found,
+    )
+    if time_errors:
+        finer = _core.gradient(scene._core, of == "tip", names, start, 2)["strands"]
+        other = np.concatenate([jacobian for _, jacobian, _ in finer], axis=1)
+        result.time_error = np.abs(result.jacobian - other)
+    return result
+
+
+def linearized_step(scene, t, dt, by, strand):
+    """``Scene.linearized_step``."""
+    return LinearizedStep(**_core.linearized_step(scene._core, strand, t, dt, _names(by)))

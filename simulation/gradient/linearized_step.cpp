@@ -1,0 +1,107 @@
+#include "simulation/gradient/linearized_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "integrators/gradient/gradient_run.h"
+#include "simulation/gradient/scene_gradient.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::simulation {
+namespace {
+
+using integrators::GradientRun;
+using integrators::RunParameter;
+
+/// Methods of GradientRun whose step depends on what they keep from the steps before.
+constexpr std::string_view methods_with_memory[] = {"bdf2", "generalized_alpha"};
+
+void check_step(const Scene& scene, System& system, const std::string& place) {
+  check_derivatives(scene, place);
+  refuse_if(std::ranges::count(methods_with_memory, scene.integrator) > 0,
+            fmt::format("a step of {} depends on the steps before, not on (q, v) alone",
+                        scene.integrator),
+            place, "use tr_bdf2, esdirk43, newmark, implicit_midpoint or backward_euler");
+  refuse_if(system.layout().constraints > 0,
+            "no matrices of a step of a model with constraints, whose coordinates do not "
+            "change independently",
+            place, "use a model without constraints");
+}
+
+/// The state of the scene's own run at t. Returns why it does not get there.
+std::string run_to(const Scene& scene, System& system, double t, GradientRun::State& at) {
+  at.q.resize(static_cast<std::size_t>(system.layout().coordinates));
+  at.v.resize(at.q.size());
+  system.initial_state(at.q, at.v);
+  system.accept(0, at.q, at.v);
+  const auto run = integrators::make_integrator(scene.integrator, system, scene.options);
+  Status s = run->start(0, at.q, at.v);
+  if (s == Status::ok && t > 0) s = run->advance(t);
+  if (s != Status::ok) return run->failure();
+  at.t = t;
+  at.q.assign(run->q().begin(), run->q().end());
+  at.v.assign(run->v().begin(), run->v().end());
+  at.memory = system.memory();
+  return {};
+}
+
+}  // namespace
+
+LinearizedStep linearized_step(const Scene& scene, std::size_t strand, double t,
+                               double step, std::span<const SceneParameter> parameters,
+                               const std::string& place) {
+  const auto system = system_of(scene, strand);
+  check_step(scene, *system, place);
+  GradientRun::State from;
+  LinearizedStep all;
+  all.t = t;
+  all.unfinished = run_to(scene, *system, t, from);
+  if (!all.unfinished.empty()) return all;
+  const std::size_t n = from.q.size(), states = 2 * n;
+  // Columns of the state are those of parameters that change the start alone.
+  std::vector<RunParameter> columns(
+      states, [&](double) { return exact_system_of(scene, strand); });
+  const auto varied = run_parameters(scene, strand, parameters);
+  columns.insert(columns.end(), varied.begin(), varied.end());
+  from.dq.resize(columns.size() * n);
+  from.dv.resize(from.dq.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    from.dq[i * n + i] = 1;
+    from.dv[(n + i) * n + i] = 1;
+  }
+  GradientRun::Method method{.id = scene.integrator, .options = scene.options};
+  method.options.tolerance = 0;
+  method.options.step = step;
+  method.sparse = !needs(make_effects(scene)).couplings;
+  GradientRun run(*system, exact_system_of(scene, strand), columns, method);
+  Status s = run.start(from);
+  if (s == Status::ok) s = run.advance(t + step);
+  if (s != Status::ok) {
+    all.unfinished = run.failure();
+    return all;
+  }
+  all.t_next = run.time();
+  all.q = from.q;
+  all.v = from.v;
+  all.q_next.assign(run.q().begin(), run.q().end());
+  all.v_next.assign(run.v().begin(), run.v().end());
+  all.by_state.resize(states * states);
+  all.by_parameters.resize(states * parameters.size());
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const bool of_state = k < states;
+    const std::size_t j = of_state ? k : k - states;
+    const std::size_t width = of_state ? states : parameters.size();
+    const double measure = of_state ? 1 : parameters[j].measure;
+    std::vector<double>& matrix = of_state ? all.by_state : all.by_parameters;
+    for (std::size_t i = 0; i < n; ++i) {
+      matrix[i * width + j] = run.dq(k)[i] / measure;
+      matrix[(n + i) * width + j] = run.dv(k)[i] / measure;
+    }
+  }
+  return all;
+}
+
+}  // namespace tress::simulation
