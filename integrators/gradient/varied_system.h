@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,16 +36,25 @@ inline constexpr double central_weight[] = {
     8 / (12 * central_distance), -1 / (12 * central_distance)};
 inline constexpr Stencil central_stencil{0, central_at, central_weight};
 
+/// dr/ds = constant + by_q q + by_v v, entry by entry, in every state and at all times:
+/// of a modulus, an internal friction or a natural strain in coordinates that are
+/// strains.
+struct SimpleDerivative {
+  std::vector<double> constant, by_q, by_v;
+};
+
 /// A parameter's stencil with its systems. Each follows the run, at the state q + s dq:
 /// what it remembers (History) depends on s too.
 struct VariedSystem {
   Stencil stencil;
   std::vector<std::unique_ptr<System>> systems;
+  std::optional<SimpleDerivative> simple;  // of the residual
 };
 
 /// With the affine stencil where residual, start and points are affine in s: measured at
 /// one state, in which all terms are alive, and several times. Never of systems with a
-/// History, which makes the residual depend on the states behind it.
+/// History, which makes the residual depend on the states behind it. `simple` is measured
+/// at three such states and tried at a fourth one.
 VariedSystem varied_system(System& system, const RunParameter& parameter);
 
 }  // namespace tress::integrators

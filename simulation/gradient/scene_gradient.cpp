@@ -12,6 +12,7 @@
 #include "contract/jacobian_choice.h"
 #include "integrators/catalogue.h"
 #include "integrators/gradient/gradient_run.h"
+#include "models/strand_copies.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
@@ -160,7 +161,9 @@ StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
   const auto system = system_of(scene, strand, scene.model_options);
   GradientRun run(*system, system_of(scene, strand, exact_options(scene)),
                   run_parameters(scene, strand, whole.parameters),
-                  method_of(scene, whole.damped, parts));
+                  method_of(scene, whole.damped, parts),
+                  models::strand_copies(*scene.model, scene.strands[strand],
+                                        scene.model_options, make_effects(scene)));
   const auto add_frame = [&] {
     found.points.push_back(points_at(*system, run.time(), run.q()));
     for (std::size_t k = 0; k < found.by.size(); ++k) {
