@@ -58,13 +58,16 @@ System& with_gradient(System& system, const GradientRun::Method& method) {
 }
 
 GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
-                         std::span<const RunParameter> parameters, const Method& method)
+                         std::span<const RunParameter> parameters, const Method& method,
+                         std::unique_ptr<System> copies)
     : method_(method),
       system_(with_gradient(system, method)),
       exact_(std::move(exact)),
+      copies_(std::move(copies)),
       varied_(varied_systems(system, parameters)),
       watched_(system),
-      variational_(watched_, *exact_, varied_, method.options, method.sparse),
+      variational_(watched_, *exact_, varied_, method.options, method.sparse,
+                   copies_.get()),
       q_(size(system.layout().coordinates)),
       v_(q_),
       dq_(parameters.size() * q_.size()),

@@ -37,10 +37,12 @@ class GradientRun {
     bool sparse = true;                           // as ResidualDerivative
   };
 
-  /// `exact`: the same system, with the exact Jacobian. `system` must outlive this.
-  /// Throws InputError where there is no_gradient().
+  /// `exact`: the same system, with the exact Jacobian. `copies`: as ResidualDerivative,
+  /// which makes parameters cheaper. `system` must outlive this. Throws InputError where
+  /// there is no_gradient().
   GradientRun(System& system, std::unique_ptr<System> exact,
-              std::span<const RunParameter> parameters, const Method& method);
+              std::span<const RunParameter> parameters, const Method& method,
+              std::unique_ptr<System> copies = nullptr);
 
   /// Starts at t = 0 from initial_state().
   Status start();
@@ -82,7 +84,7 @@ class GradientRun {
 
   Method method_;
   System& system_;
-  std::unique_ptr<System> exact_;
+  std::unique_ptr<System> exact_, copies_;
   std::vector<VariedSystem> varied_;
   WatchedSystem watched_;
   VariationalSystem variational_;

@@ -7,16 +7,20 @@
 namespace tress::integrators {
 
 Linearized::Linearized(System& system, std::span<const VariedSystem> varied,
-                       const Options& options, bool sparse)
+                       const Options& options, bool sparse, System* copies)
     : dynamics_(system, options),
-      derivative_(dynamics_, sparse),
+      derivative_(dynamics_, sparse, copies),
       varied_(varied),
       base_r_(size(dynamics_.n())),
       base_c_(size(dynamics_.m())),
       r_(base_r_),
-      c_(base_c_) {
+      c_(base_c_),
+      dc_(base_c_),
+      none_(base_r_),
+      dv_(varied.size() * base_r_.size()),
+      da_(dv_) {
   for (const VariedSystem& one : varied) {
-    based_ = based_ || one.stencil.base != 0;
+    based_ = based_ || (!one.simple && one.stencil.base != 0);
     auto& equations = equations_.emplace_back();
     for (const auto& made : one.systems) {
       equations.push_back(std::make_unique<Dynamics>(*made, options));
@@ -33,16 +37,47 @@ Status Linearized::move(const WatchedSystem::Motion& state) noexcept {
 }
 
 Status Linearized::factor(Weights w) noexcept {
+  w_ = w;
   return dynamics_.linearize(state_->t, state_->q, state_->v, state_->a, state_->lambda,
                              w);
 }
 
-Status Linearized::along(std::size_t k, In dq, In dv, In da, Out dr, Out dc) noexcept {
-  const Status s = derivative_.along(dq, dv, da, dr, dc);
-  return s == Status::ok ? add_parameter(k, dr, dc) : s;
+Status Linearized::excess(In dq, In dv, In da, Out x) noexcept {
+  shifted(dv_, dv, -w_.vel / w_.pos, dq);
+  shifted(da_, da, -1 / w_.pos, dq);
+  Status s = derivative_.at_fixed_q(dv_, da_, x);
+  const std::size_t n = base_r_.size();
+  for (std::size_t k = 0; k < varied_.size() && s == Status::ok; ++k) {
+    const Out column = x.subspan(k * n, n);
+    std::ranges::fill(dc_, 0.0);
+    s = add_parameter(k, column, dc_);
+    if (s == Status::ok) s = dynamics_.solve(column, dc_);
+  }
+  add(x, 1 / w_.pos, dq);
+  return s;
+}
+
+Status Linearized::accelerate(In dq, In dv, Out da) noexcept {
+  const std::size_t n = base_r_.size();
+  Status s = Status::ok;
+  for (std::size_t k = 0; k < varied_.size() && s == Status::ok; ++k) {
+    const Out column = da.subspan(k * n, n);
+    s = derivative_.along(dq.subspan(k * n, n), dv.subspan(k * n, n), none_, column, dc_);
+    if (s == Status::ok) s = add_parameter(k, column, dc_);
+    if (s == Status::ok) s = dynamics_.solve(column, dc_);
+  }
+  for (double& entry : da) entry = -entry;
+  return s;
 }
 
 Status Linearized::add_parameter(std::size_t k, InOut dr, InOut dc) noexcept {
+  if (const auto& simple = varied_[k].simple) {
+    for (std::size_t i = 0; i < dr.size(); ++i) {
+      dr[i] += simple->constant[i] + simple->by_q[i] * state_->q[i] +
+               simple->by_v[i] * state_->v[i];
+    }
+    return Status::ok;
+  }
   const Stencil& stencil = varied_[k].stencil;
   add(dr, stencil.base, base_r_);
   add(dc, stencil.base, base_c_);

@@ -128,9 +128,8 @@ PulledParameters::PulledParameters(System& system,
                                    const Options& options)
     : natural_by_(natural_directions(system, parameters)),
       varied_(others(system, parameters, natural_by_)),
-      stages_(system, varied_, options, false),
-      none_(size(stages_.dynamics().n())),
-      r_(none_),
+      stages_(system, varied_, options, false, nullptr),
+      r_(size(stages_.dynamics().n())),
       c_(size(stages_.dynamics().m())) {
   for (std::size_t k = 0; k < natural_by_.size(); ++k) {
     if (natural_by_[k].empty()) index_.push_back(k);
@@ -144,8 +143,8 @@ PulledParameters::PulledParameters(System& system,
       began_.push_back(std::move(own));
     }
   }
-  if (stages_.constraints() > 0) {
-    starts_.emplace(system, varied_, acceleration_options(options), false);
+  if (stages_.dynamics().m() > 0) {
+    starts_.emplace(system, varied_, acceleration_options(options), false, nullptr);
   }
   if (varied_.size() < natural_by_.size()) {
     natural_.emplace(system, stages_.dynamics());
@@ -173,7 +172,9 @@ Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
   Linearized& linearized = starts && starts_ ? *starts_ : stages_;
   Status status = linearized.move(at);
   for (std::size_t k = 0; k < varied_.size() && status == Status::ok; ++k) {
-    status = linearized.along(k, none_, none_, none_, r_, c_);
+    std::ranges::fill(r_, 0.0);
+    std::ranges::fill(c_, 0.0);
+    status = linearized.add_parameter(k, r_, c_);
     for (std::size_t s = 0; s < x.size(); ++s) {
       by_[s][k] -= product(r_, In(x[s]).first(r_.size())) +
                    product(c_, In(x[s]).subspan(r_.size()));
@@ -185,7 +186,7 @@ Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
 
 void PulledParameters::pull_start(System& system, std::span<const In> q_hat,
                                   std::span<const In> v_hat) {
-  std::vector<double> q(none_), v(none_);
+  std::vector<double> q(r_.size()), v(q);
   for (std::size_t k = 0; k < varied_.size(); ++k) {
     each_term(system, varied_[k], [&](double weight, System& at) {
       at.initial_state(q, v);

@@ -80,7 +80,7 @@ class PulledParameters {
   std::optional<PulledNatural> natural_;
   std::vector<std::vector<double>> by_;     // [number][parameter], of varied_
   std::vector<std::vector<double>> n_hat_;  // [number]
-  std::vector<double> none_, r_, c_;
+  std::vector<double> r_, c_;
 };
 
 }  // namespace tress::integrators

@@ -2,16 +2,21 @@
 
 #include <algorithm>
 
+#include "integrators/gradient/varied_system.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {
 
-/// Of the direction's length over System::scale. A central difference at this distance
-/// has an error of some 1e-10 in reduced coordinates, from both its order and rounding.
+/// Of a direction's length over System::scale. At fixed q the residual is quadratic in
+/// velocities but for laws of friction and drag, and what does not depend on them cancels
+/// in a difference but for its last digit.
 constexpr double distance = 1e-5;
-/// Velocities this much larger than positions, over System::scale, have their own.
-constexpr double most_faster = 30;
+/// Likewise of dq in reduced coordinates: of order 4, its error is 1e-18 f'''''' and
+/// 5e-12 f from rounding, which the smallest inertia enlarges in accelerations.
+constexpr double distance_along = 3e-5;
+/// Copies pay where their state serves more than one direction.
+constexpr std::size_t fewest_for_copies = 2;
 
 /// y += A x
 void add_product(const Pattern& pattern, In values, In x, InOut y) {
@@ -25,23 +30,29 @@ void add_product(const Pattern& pattern, In values, In x, InOut y) {
 
 }  // namespace
 
-ResidualDerivative::ResidualDerivative(Dynamics& dynamics, bool sparse)
+ResidualDerivative::ResidualDerivative(Dynamics& dynamics, bool sparse, System* copies)
     : dynamics_(dynamics),
       sparse_(sparse ? dynamics.system().sparse_form() : nullptr),
+      copies_(sparse_ == nullptr ? copies : nullptr),
       none_(size(dynamics.n())),
       q_shift_(none_),
       v_shift_(none_),
-      a_shift_(q_shift_),
-      a_typ_(q_shift_),
-      r_(q_shift_),
-      c_(size(dynamics.m())),
-      before_r_(r_),
-      before_c_(c_) {
+      a_shift_(none_),
+      a_typ_(none_),
+      r_(none_),
+      c_(size(dynamics.m())) {
   for (std::size_t i = 0; i < a_typ_.size(); ++i) {
     a_typ_[i] = dynamics.v_typ()[i] * dynamics.v_typ()[i] / dynamics.q_typ()[i];
   }
-  if (sparse_ == nullptr) return;
-  for (auto& values : by_) values.resize(size(sparse_->pattern().nonzeros()));
+  if (sparse_ != nullptr) {
+    by_v_.resize(size(sparse_->pattern().nonzeros()));
+    by_q_ = by_a_ = by_v_;
+  }
+  if (copies_ == nullptr) return;
+  q_copies_.resize(size(copies_->layout().coordinates));
+  v_copies_ = a_copies_ = r_copies_ = q_copies_;
+  count_ = q_copies_.size() / none_.size();
+  e_.resize(count_ / 2);
 }
 
 Status ResidualDerivative::move(double t, In q, In v, In a, In lambda) noexcept {
@@ -50,58 +61,119 @@ Status ResidualDerivative::move(double t, In q, In v, In a, In lambda) noexcept 
   v_ = v;
   a_ = a;
   lambda_ = lambda;
-  if (sparse_ == nullptr) return Status::ok;
-  constexpr Weights weights[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
-  for (std::size_t k = 0; k < by_.size(); ++k) {
-    const Status s = sparse_->values(t, q, v, a, weights[k], by_[k]);
-    if (s != Status::ok) return s;
+  for (std::size_t k = 0; k < count_; ++k) {
+    std::ranges::copy(q, Out(q_copies_).subspan(k * q.size()).begin());
   }
-  if (dynamics_.m() == 0) return Status::ok;
-  return dynamics_.constraints()->add_curvature(t, q, lambda, -1, by_[0]);
+  if (sparse_ == nullptr) return Status::ok;
+  if (!constant_by_a_) {
+    const Status s = sparse_->values(t, q, v, a, {1, 0, 0}, by_a_);
+    if (s != Status::ok) return s;
+    constant_by_a_ = dynamics_.system().traits().constant_mass;
+  }
+  return sparse_->values(t, q, v, a, {0, 1, 0}, by_v_);
 }
 
-Status ResidualDerivative::along(In dq, In dv, In da, Out dr, Out dc) noexcept {
-  if (sparse_ == nullptr) return differences(dq, dv, da, dr, dc);
-  if (dynamics_.m() > 0) {
-    const Status s = differences(dq, dv, da, dr, dc);
+Status ResidualDerivative::at_fixed_q(In dv, In da, Out dr) noexcept {
+  const std::size_t n = q_.size();
+  if (count_ > 0 && dv.size() >= fewest_for_copies * n) {
+    return differences_of_copies(dv, da, dr);
+  }
+  if (sparse_ != nullptr) std::ranges::fill(dr, 0.0);
+  for (std::size_t at = 0; at < dv.size(); at += n) {
+    const In by_v = dv.subspan(at, n), by_a = da.subspan(at, n);
+    const Out to = dr.subspan(at, n);
+    if (sparse_ != nullptr) {
+      add_product(sparse_->pattern(), by_v_, by_v, to);
+      add_product(sparse_->pattern(), by_a_, by_a, to);
+      continue;
+    }
+    const Status s = difference(by_v, by_a, to, c_);
     if (s != Status::ok) return s;
   }
-  std::ranges::fill(dr, 0.0);
-  const Pattern& pattern = sparse_->pattern();
-  add_product(pattern, by_[0], dq, dr);
-  add_product(pattern, by_[1], dv, dr);
-  add_product(pattern, by_[2], da, dr);
   return Status::ok;
 }
 
 /// The residual is affine in accelerations, which may therefore be as large as they are.
-Status ResidualDerivative::differences(In dq, In dv, In da, Out dr, Out dc) noexcept {
-  std::ranges::fill(dr, 0.0);
-  std::ranges::fill(dc, 0.0);
-  const double slow = scaled_norm(dq, dynamics_.q_typ());
+double ResidualDerivative::length(In dv, In da) const noexcept {
   const double fast = scaled_norm(dv, dynamics_.v_typ());
-  if (slow == 0 || fast <= most_faster * slow) {
-    return add_difference(std::max(slow, fast), dq, dv, da, dr, dc);
-  }
-  const Status s = add_difference(slow, dq, none_, none_, dr, dc);
-  return s == Status::ok ? add_difference(fast, none_, dv, da, dr, dc) : s;
+  return fast > 0 ? fast : scaled_norm(da, a_typ_);
 }
 
-Status ResidualDerivative::add_difference(double length, In dq, In dv, In da, InOut dr,
-                                          InOut dc) noexcept {
-  if (length == 0) length = scaled_norm(da, a_typ_);
-  if (length == 0) return Status::ok;
-  const double e = distance / length;
-  const auto at = [&](double s, Out r, Out c) {
-    shifted(q_shift_, q_, s, dq);
-    shifted(v_shift_, v_, s, dv);
-    shifted(a_shift_, a_, s, da);
-    return dynamics_.residual(t_, q_shift_, v_shift_, a_shift_, lambda_, r, c);
-  };
-  if (const Status s = at(-e, before_r_, before_c_); s != Status::ok) return s;
-  if (const Status s = at(e, r_, c_); s != Status::ok) return s;
-  for (std::size_t i = 0; i < r_.size(); ++i) dr[i] += (r_[i] - before_r_[i]) / (2 * e);
-  for (std::size_t k = 0; k < c_.size(); ++k) dc[k] += (c_[k] - before_c_[k]) / (2 * e);
+Status ResidualDerivative::difference(In dv, In da, Out dr, Out dc) noexcept {
+  std::ranges::fill(dr, 0.0);
+  std::ranges::fill(dc, 0.0);
+  const double of_direction = length(dv, da);
+  if (of_direction == 0) return Status::ok;
+  for (const double e : {distance / of_direction, -distance / of_direction}) {
+    shifted(v_shift_, v_, e, dv);
+    shifted(a_shift_, a_, e, da);
+    const Status s = dynamics_.residual(t_, q_, v_shift_, a_shift_, lambda_, r_, c_);
+    if (s != Status::ok) return s;
+    add(dr, 1 / (2 * e), r_);
+    add(dc, 1 / (2 * e), c_);
+  }
+  return Status::ok;
+}
+
+/// Two copies for each direction.
+Status ResidualDerivative::differences_of_copies(In dv, In da, Out dr) noexcept {
+  const std::size_t n = q_.size();
+  const auto part = [n](auto all, std::size_t k) { return all.subspan(k * n, n); };
+  const std::size_t directions = dv.size() / n;
+  for (std::size_t from = 0; from < directions; from += e_.size()) {
+    const std::size_t some = std::min(e_.size(), directions - from);
+    for (std::size_t k = 0; k < e_.size(); ++k) {
+      const std::size_t of = from + std::min(k, some - 1);
+      const In by_v = part(dv, of), by_a = part(da, of);
+      const double of_direction = length(by_v, by_a);
+      e_[k] = of_direction > 0 ? distance / of_direction : 1;
+      for (const std::size_t side : {0u, 1u}) {
+        const double e = side == 0 ? e_[k] : -e_[k];
+        shifted(part(Out(v_copies_), 2 * k + side), v_, e, by_v);
+        shifted(part(Out(a_copies_), 2 * k + side), a_, e, by_a);
+      }
+    }
+    const Status s = copies_->residual(t_, q_copies_, v_copies_, a_copies_, r_copies_);
+    if (s != Status::ok) return s;
+    for (std::size_t k = 0; k < some; ++k) {
+      const Out to = part(dr, from + k);
+      std::ranges::fill(to, 0.0);
+      add(to, 1 / (2 * e_[k]), part(In(r_copies_), 2 * k));
+      add(to, -1 / (2 * e_[k]), part(In(r_copies_), 2 * k + 1));
+    }
+  }
+  return Status::ok;
+}
+
+Status ResidualDerivative::along(In dq, In dv, In da, Out dr, Out dc) noexcept {
+  if (sparse_ == nullptr || dynamics_.m() > 0) {
+    const Status s = differences(dq, dv, da, dr, dc);
+    if (s != Status::ok) return s;
+  }
+  if (sparse_ == nullptr) return Status::ok;
+  Status s = sparse_->values(t_, q_, v_, a_, {0, 0, 1}, by_q_);
+  if (s == Status::ok && dynamics_.m() > 0) {
+    s = dynamics_.constraints()->add_curvature(t_, q_, lambda_, -1, by_q_);
+  }
+  std::ranges::fill(dr, 0.0);
+  add_product(sparse_->pattern(), by_a_, da, dr);
+  add_product(sparse_->pattern(), by_v_, dv, dr);
+  add_product(sparse_->pattern(), by_q_, dq, dr);
+  return s;
+}
+
+Status ResidualDerivative::differences(In dq, In dv, In da, Out dr, Out dc) noexcept {
+  if (const Status s = difference(dv, da, dr, dc); s != Status::ok) return s;
+  const double of_direction = scaled_norm(dq, dynamics_.q_typ());
+  if (of_direction == 0) return Status::ok;
+  const double longer = distance_along / central_distance / of_direction;
+  for (std::size_t i = 0; i < central_stencil.at.size(); ++i) {
+    shifted(q_shift_, q_, longer * central_stencil.at[i], dq);
+    const Status s = dynamics_.residual(t_, q_shift_, v_, a_, lambda_, r_, c_);
+    if (s != Status::ok) return s;
+    add(dr, central_stencil.weight[i] / longer, r_);
+    add(dc, central_stencil.weight[i] / longer, c_);
+  }
   return Status::ok;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
@@ -8,31 +7,41 @@
 namespace tress::integrators {
 
 /// Derivatives of (r - G^T lambda, c), the equations of Dynamics, along directions at one
-/// state. They come from the matrices of SparseForm where the system has one, else from
-/// central differences. There are two of these where stiff modes move much faster than
-/// the rest: one alone would leave rounding errors of the positions.
+/// state. Those at fixed q come from the matrices of SparseForm where the system has one,
+/// else from central differences.
 class ResidualDerivative {
  public:
-  /// `sparse`: whether the SparseForm is all of dr/dq and dr/dv, which it is not where
-  /// effects couple distant points. `dynamics` must outlive it.
-  ResidualDerivative(Dynamics& dynamics, bool sparse);
+  /// `sparse`: whether the SparseForm is all of dr/dv, which it is not where effects
+  /// couple distant points. `copies`: the same system several times as one, whose
+  /// residuals cost less so; null: none. All must outlive it.
+  ResidualDerivative(Dynamics& dynamics, bool sparse, System* copies);
 
   /// Moves to a state. The spans must last until the next call.
   Status move(double t, In q, In v, In a, In lambda) noexcept;
-  /// dr (n), dc (m): the derivatives along (dq, dv, da).
+  /// dr = r_v dv + r_a da of several directions, one behind the other (n each).
+  Status at_fixed_q(In dv, In da, Out dr) noexcept;
+  /// dr (n), dc (m): derivatives along (dq, dv, da). Those along dq that are not by
+  /// matrices are differences of order 4, which stretching asks for.
   Status along(In dq, In dv, In da, Out dr, Out dc) noexcept;
 
  private:
+  Status difference(In dv, In da, Out dr, Out dc) noexcept;
   Status differences(In dq, In dv, In da, Out dr, Out dc) noexcept;
-  Status add_difference(double length, In dq, In dv, In da, InOut dr, InOut dc) noexcept;
+  Status differences_of_copies(In dv, In da, Out dr) noexcept;
+  double length(In dv, In da) const noexcept;
 
   Dynamics& dynamics_;
-  SparseForm* sparse_;  // null: not used
+  SparseForm* sparse_;     // null: not used
+  System* copies_;         // null: not used
+  std::size_t count_ = 0;  // of copies
   double t_ = 0;
   In q_, v_, a_, lambda_;
-  std::array<std::vector<double>, 3> by_;  // dr/dq, dr/dv, dr/da
-  std::vector<double> none_;               // (n) zeros
-  std::vector<double> q_shift_, v_shift_, a_shift_, a_typ_, r_, c_, before_r_, before_c_;
+  std::vector<double> by_q_, by_v_, by_a_;  // values of the matrices
+  bool constant_by_a_ = false;              // by_a_ is that of all states
+  std::vector<double> none_;                // (n) zeros
+  std::vector<double> q_shift_, v_shift_, a_shift_, a_typ_, r_, c_;
+  std::vector<double> q_copies_, v_copies_, a_copies_, r_copies_;
+  std::vector<double> e_;  // of each direction
 };
 
 }  // namespace tress::integrators

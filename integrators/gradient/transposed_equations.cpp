@@ -32,7 +32,7 @@ void subtract_transposed(const Pattern& pattern, In values, In x, InOut y) {
 TransposedEquations::TransposedEquations(System& system, const Options& options,
                                          bool sparse)
     : dynamics_(system, options),
-      derivative_(dynamics_, sparse && dynamics_.m() > 0),
+      derivative_(dynamics_, sparse && dynamics_.m() > 0, nullptr),
       sparse_(sparse && dynamics_.m() == 0 ? system.sparse_form() : nullptr),
       transposed_(dynamics_.m() == 0 && sparse_ == nullptr ? transposed_form(system)
                                                            : nullptr),

@@ -10,18 +10,18 @@
 namespace tress::integrators {
 VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
                                      std::span<const VariedSystem> varied,
-                                     const Options& options, bool sparse)
+                                     const Options& options, bool sparse, System* copies)
     : run_(run),
       system_(system),
       varied_(varied),
       n_(size(system.layout().coordinates)),
-      stages_(system, varied, options, sparse),
-      c_(columns() * size(stages_.constraints())) {
-  if (stages_.constraints() > 0) {
-    starts_.emplace(system, varied, acceleration_options(options), sparse);
+      stages_(system, varied, options, sparse, copies) {
+  const int constraints = stages_.dynamics().m();
+  if (constraints > 0) {
+    starts_.emplace(system, varied, acceleration_options(options), sparse, copies);
   }
   for (auto* x : {&start_.q, &start_.v, &start_.a}) x->resize(n_);
-  start_.lambda.resize(size(stages_.constraints()));
+  start_.lambda.resize(size(constraints));
 }
 
 void VariationalSystem::initial_state(Out dq, Out dv) const {
@@ -73,42 +73,23 @@ Status VariationalSystem::linearize(double t, In, In, In, Weights w) noexcept {
 
 Status VariationalSystem::residual(double t, In dq, In dv, In da, Out r) noexcept {
   if (const Status s = look_at(t); s != Status::ok) return s;
-  const std::size_t m = size(stages_.constraints());
-  for (std::size_t k = 0; k < columns(); ++k) {
-    const Status s = stages_.along(k, column(dq, k), column(dv, k), column(da, k),
-                                   column(r, k), Out(c_).subspan(k * m, m));
-    if (s != Status::ok) return s;
-  }
-  return Status::ok;
+  return stages_.excess(dq, dv, da, r);
 }
 
 Status VariationalSystem::solve(In b, Out x) noexcept {
   if (b.data() != x.data()) std::ranges::copy(b, x.begin());
-  const std::size_t m = size(stages_.constraints());
-  for (std::size_t k = 0; k < columns(); ++k) {
-    const Status s = stages_.solve(column(x, k), Out(c_).subspan(k * m, m));
-    if (s != Status::ok) return s;
-  }
   return Status::ok;
 }
 
 Status VariationalSystem::acceleration(double t, In dq, In dv, Out da) noexcept {
   Linearized& equations = at_start();
-  Dynamics& dynamics = equations.dynamics();
   start_.t = t;
-  Status s = dynamics.accelerate(t, start_.q, start_.v, start_.a, start_.lambda);
+  Status s =
+      equations.dynamics().accelerate(t, start_.q, start_.v, start_.a, start_.lambda);
   if (s == Status::ok) s = equations.move(start_);
   if (s == Status::ok) s = equations.factor({1, 0, 0});
   looked_ = false;
-  const std::vector<double> none(n_);
-  const std::size_t m = size(equations.constraints());
-  for (std::size_t k = 0; k < columns() && s == Status::ok; ++k) {
-    const Out x = column(da, k), c = Out(c_).subspan(k * m, m);
-    s = equations.along(k, column(dq, k), column(dv, k), none, x, c);
-    if (s == Status::ok) s = equations.solve(x, c);
-    for (double& entry : x) entry = -entry;
-  }
-  return s;
+  return s == Status::ok ? equations.accelerate(dq, dv, da) : s;
 }
 
 /// Where nothing moves, the systems only follow the run. Else the change of what each

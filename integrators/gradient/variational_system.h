@@ -21,26 +21,27 @@ namespace tress::integrators {
 /// [Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed., VI.4.1, for
 /// Runge-Kutta methods; Bock 1981 for multistep methods].
 ///
-/// Constraints g(q) = 0 (index 3) enter inside solve(): seen from outside the columns are
-/// not constrained. The equations are linear, and solve() gives their solution in one
-/// correction from any guess, which Newton's method must not repeat: it needs a tolerance
-/// that any correction meets.
+/// The residual is that of these equations times S^-1 (Linearized::excess()) with the
+/// S(w) of the last linearize(), so that the matrix is the identity. Constraints g(q) = 0
+/// (index 3) are solved for in it: seen from outside the columns are not constrained. The
+/// equations are linear, and one correction from any guess gives their solution, which
+/// Newton's method must not repeat: it needs a tolerance that any correction meets.
 ///
 /// Accelerations at a start are those of M da = -(r_q dq + r_v dv + dr/ds). The maps of
 /// History::accept() and MovingHistory::carry() are differentiated by the stencils.
 ///
-/// A stage costs one linearization, however many the columns are. Each column costs its
-/// product with the derivative (two residuals without SparseForm), the residuals of its
-/// stencil (one or four) and a solution.
+/// A stage costs one linearization, however many the columns are. Each column costs two
+/// residuals at the stage's own q (or products with the matrices of SparseForm), the
+/// residuals of its stencil (none, one or four) and a solution.
 class VariationalSystem final : public System,
                                 private ExplicitForm,
                                 private MovingHistory {
  public:
   /// `system`: the one of the run, with the exact Jacobian; it follows the run. `run`
-  /// records it. All must outlive this.
+  /// records it. `sparse`, `copies`: as ResidualDerivative. All must outlive this.
   VariationalSystem(const WatchedSystem& run, System& system,
                     std::span<const VariedSystem> varied, const Options& options,
-                    bool sparse);
+                    bool sparse, System* copies);
 
   /// Writes the columns of initial_state().
   void initial_state(Out dq, Out dv) const override;
@@ -82,7 +83,6 @@ class VariationalSystem final : public System,
   WatchedSystem::Motion start_;
   double looked_at_ = 0;  // of the record
   bool looked_ = false;
-  std::vector<double> c_;  // of all columns
   mutable std::size_t carried_ = 0;
   std::string failure_;
 };

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,12 +43,20 @@ inline constexpr Stencil central_stencil{0, central_at, central_weight};
 /// s. Motions of roots, of periods and durations from milliseconds to seconds, are not at
 /// rest at all of these times.
 inline constexpr double probed_times[] = {0, 0.0137, 0.373, 2.91};
+/// dr/ds = constant + by_q q + by_v v, entry by entry, in every state and at all times:
+/// of a modulus, an internal friction or a natural strain in coordinates that are
+/// strains.
+struct SimpleDerivative {
+  std::vector<double> constant, by_q, by_v;
+};
 
 /// A parameter's stencil with its systems. Each follows the run, at the state q + s dq:
 /// what it remembers (History) depends on s too.
 struct VariedSystem {
   Stencil stencil;                               // stencil of the derivative
   std::vector<std::unique_ptr<System>> systems;  // systems at the stencil's distances
+  std::optional<SimpleDerivative>
+      simple;  // derivative of the residual, where it is simple
 };
 
 /// What the systems of a stencil remember: what their own runs would, or the memory of
@@ -57,6 +66,7 @@ enum class VariedMemory { own, of_run };
 /// With the affine stencil where residual, start and points are affine in s: measured at
 /// one state, in which all terms are alive, and several times. Never of systems with a
 /// History of their own, which makes the residual depend on the states behind it.
+/// `simple` is measured at three such states and tried at a fourth one.
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory = VariedMemory::own);
 

@@ -12,6 +12,8 @@
 #include "contract/jacobian_choice.h"
 #include "integrators/catalogue.h"
 #include "integrators/gradient/adjoint_run.h"
+#include "integrators/gradient/gradient_run.h"
+#include "models/strand_copies.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
@@ -176,7 +178,9 @@ class StrandRun {
   }
 
   void forward() {
-    GradientRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_);
+    GradientRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_,
+                    models::strand_copies(*scene_.model, scene_.strands[strand_],
+                                          scene_.model_options, make_effects(scene_)));
     static_cast<void>(take(run, [&](std::size_t) {
       for (std::size_t k = 0; k < found_.by.size(); ++k) {
         std::vector<double> dx(found_.points.back().size());

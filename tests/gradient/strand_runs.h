@@ -11,6 +11,7 @@
 #include "integrators/gradient/adjoint_run.h"
 #include "integrators/gradient/gradient_run.h"
 #include "models/catalogue.h"
+#include "models/strand_copies.h"
 
 /// Strands of the catalogue as functions of their parameters, for tests of gradients.
 namespace tress::testing_support {
@@ -40,13 +41,23 @@ struct StrandRun {
   Options options;
   std::vector<double> stops;  // s
 
-  std::unique_ptr<System> make(const std::string& key = {}, double value = 0) const {
+  Parameters parameters() const {
     Parameters p(setup_parameters(*model), "model " + std::string(model->id));
     for (const auto& [name, text] : settings) {
       if (p.knows(name)) p.set(name, text);
     }
+    return p;
+  }
+
+  std::unique_ptr<System> make(const std::string& key = {}, double value = 0) const {
+    Parameters p = parameters();
     if (!key.empty()) p.set(key, number_text(value));
     return model->make(p);
+  }
+
+  std::unique_ptr<System> copies() const {
+    const Parameters p = parameters();
+    return strand_copies(*model, strand(p), p, strand_effects(p));
   }
 
   RunParameter parameter(const Varied& varied) const {
@@ -94,7 +105,8 @@ inline TipGradient tip_gradient(const StrandRun& run,
                                 const std::vector<RunParameter>& parameters,
                                 GradientStart start = GradientStart::as_run) {
   const auto system = run.make();
-  GradientRun gradient(*system, run.make(), parameters, {run.method, run.options, start});
+  GradientRun gradient(*system, run.make(), parameters, {run.method, run.options, start},
+                       run.copies());
   TipGradient found;
   found.by.resize(parameters.size());
   Status s = gradient.start();
