@@ -123,14 +123,52 @@ Status PulledNatural::pull(const WatchedSystem::Motion& at,
   return status;
 }
 
+ParameterResiduals::ParameterResiduals(System& system,
+                                       std::span<const VariedSystem> varied,
+                                       const Options& options)
+    : dynamics_(system, options),
+      varied_(varied),
+      base_r_(size(dynamics_.n())),
+      base_c_(size(dynamics_.m())),
+      r_(base_r_),
+      c_(base_c_) {
+  for (const VariedSystem& one : varied) {
+    auto& equations = equations_.emplace_back();
+    for (const auto& made : one.systems) {
+      equations.push_back(std::make_unique<Dynamics>(*made, options));
+    }
+  }
+}
+
+Status ParameterResiduals::move(const WatchedSystem::Motion& state) noexcept {
+  state_ = &state;
+  const auto based = [](const VariedSystem& one) { return one.stencil.base != 0; };
+  if (std::ranges::none_of(varied_, based)) return Status::ok;
+  return dynamics_.residual(state.t, state.q, state.v, state.a, state.lambda, base_r_,
+                            base_c_);
+}
+
+Status ParameterResiduals::derivative(std::size_t k, Out dr, Out dc) noexcept {
+  const Stencil& stencil = varied_[k].stencil;
+  for (std::size_t i = 0; i < dr.size(); ++i) dr[i] = stencil.base * base_r_[i];
+  for (std::size_t i = 0; i < dc.size(); ++i) dc[i] = stencil.base * base_c_[i];
+  for (std::size_t i = 0; i < stencil.at.size(); ++i) {
+    const Status s = equations_[k][i]->residual(state_->t, state_->q, state_->v,
+                                                state_->a, state_->lambda, r_, c_);
+    if (s != Status::ok) return s;
+    add(dr, stencil.weight[i], r_);
+    add(dc, stencil.weight[i], c_);
+  }
+  return Status::ok;
+}
+
 PulledParameters::PulledParameters(System& system,
                                    std::span<const RunParameter> parameters,
                                    const Options& options)
     : natural_by_(natural_directions(system, parameters)),
       varied_(others(system, parameters, natural_by_)),
-      stages_(system, varied_, options, false),
-      none_(size(stages_.dynamics().n())),
-      r_(none_),
+      stages_(system, varied_, options),
+      r_(size(stages_.dynamics().n())),
       c_(size(stages_.dynamics().m())) {
   for (std::size_t k = 0; k < natural_by_.size(); ++k) {
     if (natural_by_[k].empty()) index_.push_back(k);
@@ -144,8 +182,8 @@ PulledParameters::PulledParameters(System& system,
       began_.push_back(std::move(own));
     }
   }
-  if (stages_.constraints() > 0) {
-    starts_.emplace(system, varied_, acceleration_options(options), false);
+  if (stages_.dynamics().m() > 0) {
+    starts_.emplace(system, varied_, acceleration_options(options));
   }
   if (varied_.size() < natural_by_.size()) {
     natural_.emplace(system, stages_.dynamics());
@@ -170,10 +208,10 @@ void PulledParameters::recall(In memory) {
 
 Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
                               std::span<const std::vector<double>> x) noexcept {
-  Linearized& linearized = starts && starts_ ? *starts_ : stages_;
-  Status status = linearized.move(at);
+  ParameterResiduals& residuals = starts && starts_ ? *starts_ : stages_;
+  Status status = residuals.move(at);
   for (std::size_t k = 0; k < varied_.size() && status == Status::ok; ++k) {
-    status = linearized.along(k, none_, none_, none_, r_, c_);
+    status = residuals.derivative(k, r_, c_);
     for (std::size_t s = 0; s < x.size(); ++s) {
       by_[s][k] -= product(r_, In(x[s]).first(r_.size())) +
                    product(c_, In(x[s]).subspan(r_.size()));
@@ -185,7 +223,7 @@ Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
 
 void PulledParameters::pull_start(System& system, std::span<const In> q_hat,
                                   std::span<const In> v_hat) {
-  std::vector<double> q(none_), v(none_);
+  std::vector<double> q(r_.size()), v(q);
   for (std::size_t k = 0; k < varied_.size(); ++k) {
     each_term(system, varied_[k], [&](double weight, System& at) {
       at.initial_state(q, v);

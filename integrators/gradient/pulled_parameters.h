@@ -1,12 +1,15 @@
 #pragma once
 
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "contract/forms/natural_strains.h"
-#include "integrators/gradient/linearized.h"
+#include "integrators/formulation/dynamics.h"
+#include "integrators/gradient/varied_system.h"
+#include "integrators/gradient/watched_system.h"
 
 namespace tress::integrators {
 
@@ -42,6 +45,26 @@ class PulledNatural {
   std::vector<double> base_, r_, c_, natural_, changed_;
 };
 
+/// (dr/ds, dc/ds) of the equations of Dynamics by parameters, at one state.
+class ParameterResiduals {
+ public:
+  /// All must outlive it.
+  ParameterResiduals(System& system, std::span<const VariedSystem> varied,
+                     const Options& options);
+
+  Dynamics& dynamics() { return dynamics_; }
+  /// Moves to a state, which must last until the next call.
+  Status move(const WatchedSystem::Motion& state) noexcept;
+  Status derivative(std::size_t k, Out dr, Out dc) noexcept;
+
+ private:
+  Dynamics dynamics_;
+  std::span<const VariedSystem> varied_;
+  std::vector<std::vector<std::unique_ptr<Dynamics>>> equations_;  // of varied_
+  const WatchedSystem::Motion* state_ = nullptr;
+  std::vector<double> base_r_, base_c_, r_, c_;
+};
+
 /// p_hat -= R_s^T x for the parameters s of a run, with x = (mu, nu) of
 /// TransposedEquations. A parameter costs the residuals of its stencil. Those that change
 /// natural strains alone are together as expensive as a few.
@@ -75,12 +98,12 @@ class PulledParameters {
   std::vector<std::size_t> index_;  // of varied_
   /// Of each system of varied_: memory at the start less that of the run's system.
   std::vector<std::vector<double>> began_;
-  Linearized stages_;
-  std::optional<Linearized> starts_;  // where there are constraints
+  ParameterResiduals stages_;
+  std::optional<ParameterResiduals> starts_;  // where there are constraints
   std::optional<PulledNatural> natural_;
   std::vector<std::vector<double>> by_;     // [number][parameter], of varied_
   std::vector<std::vector<double>> n_hat_;  // [number]
-  std::vector<double> none_, r_, c_;
+  std::vector<double> r_, c_;
 };
 
 }  // namespace tress::integrators

@@ -32,39 +32,46 @@ void subtract_transposed(const Pattern& pattern, In values, In x, InOut y) {
 TransposedEquations::TransposedEquations(System& system, const Options& options,
                                          bool sparse)
     : dynamics_(system, options),
-      derivative_(dynamics_, sparse && dynamics_.m() > 0),
-      sparse_(sparse && dynamics_.m() == 0 ? system.sparse_form() : nullptr),
+      sparse_(sparse ? system.sparse_form() : nullptr),
       transposed_(dynamics_.m() == 0 && sparse_ == nullptr ? transposed_form(system)
                                                            : nullptr),
       n_(size(dynamics_.n())),
       m_(size(dynamics_.m())),
-      pattern_(sparse_ != nullptr ? sparse_->pattern() : full_pattern(n_ + m_, n_)),
+      pattern_(matrices_alone() ? sparse_->pattern() : full_pattern(n_ + m_, n_)),
+      before_r_(n_),
+      before_c_(m_),
       matrix_(static_cast<int>(n_ + m_), static_cast<int>(n_ + m_)),
       of_r_(matrix_.add_block(pattern_, 0, 0, true)),
-      of_lambda_(0),
-      none_(n_),
-      unit_(n_),
-      none_m_(m_) {
+      of_lambda_(0) {
   if (m_ > 0) {
     const Pattern& gradient = dynamics_.constraints()->pattern();
     of_lambda_ = matrix_.add_block(gradient, static_cast<int>(n_), 0, true);
     gradient_.resize(size(gradient.nonzeros()));
   }
   matrix_.finish();
-  solver_ = make_linear_solver(sparse_ != nullptr ? options.linear : LinearKind::dense,
+  solver_ = make_linear_solver(matrices_alone() ? options.linear : LinearKind::dense,
                                matrix_.pattern());
-  for (auto& values : by_) values.resize(size(pattern_.nonzeros()));
-  combined_.resize(by_[0].size());
+  combined_.resize(size(pattern_.nonzeros()));
+  if (!matrices_alone()) by_.fill(combined_);
+  if (sparse_ != nullptr) {
+    for (auto& values : sparse_by_) values.resize(size(sparse_->pattern().nonzeros()));
+  }
+  typ_ = {{{dynamics_.q_typ().begin(), dynamics_.q_typ().end()},
+           {dynamics_.v_typ().begin(), dynamics_.v_typ().end()},
+           std::vector<double>(n_)}};
+  for (std::size_t i = 0; i < n_; ++i) typ_[2][i] = typ_[1][i] * typ_[1][i] / typ_[0][i];
 }
 
 Status TransposedEquations::move(const WatchedSystem::Motion& state, Weights w) noexcept {
   products_ = transposed_ != nullptr &&
               transposed_->place_transposed(state.t, state.q, state.v, state.a);
   if (products_) return by_products(state, w);
-  Status s = sparse_ != nullptr ? by_matrices(state) : by_columns(state);
+  Status s = sparse_ != nullptr ? by_matrices(state) : Status::ok;
+  if (s == Status::ok && !matrices_alone()) s = by_columns(state);
   if (s != Status::ok) return s;
+  const auto& [by_q, by_v, by_a] = derivatives();
   for (std::size_t p = 0; p < combined_.size(); ++p) {
-    combined_[p] = w.acc * by_[2][p] + w.vel * by_[1][p] + w.pos * by_[0][p];
+    combined_[p] = w.acc * by_a[p] + w.vel * by_v[p] + w.pos * by_q[p];
   }
   matrix_.clear();
   matrix_.add(of_r_, 1, combined_);
@@ -93,23 +100,48 @@ Status TransposedEquations::by_products(const WatchedSystem::Motion& at,
 Status TransposedEquations::by_matrices(const WatchedSystem::Motion& at) noexcept {
   constexpr Weights weights[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
   for (std::size_t k = 0; k < (mass_known_ ? 2 : by_.size()); ++k) {
-    const Status s = sparse_->values(at.t, at.q, at.v, at.a, weights[k], by_[k]);
+    const Status s = sparse_->values(at.t, at.q, at.v, at.a, weights[k], sparse_by_[k]);
     if (s != Status::ok) return s;
   }
   mass_known_ = dynamics_.system().traits().constant_mass;
-  return Status::ok;
+  if (m_ == 0) return Status::ok;
+  return dynamics_.constraints()->add_curvature(at.t, at.q, at.lambda, -1, sparse_by_[0]);
 }
 
 Status TransposedEquations::by_columns(const WatchedSystem::Motion& at) noexcept {
-  Status s = derivative_.move(at.t, at.q, at.v, at.a, at.lambda);
+  at_ = at;
+  Status s = Status::ok;
   for (std::size_t k = 0; k < by_.size(); ++k) {
-    for (std::size_t j = 0; j < n_ && s == Status::ok; ++j) {
-      unit_[j] = 1;
-      const auto column = Out(by_[k]).subspan(j * (n_ + m_), n_ + m_);
-      s = derivative_.along(k == 0 ? unit_ : none_, k == 1 ? unit_ : none_,
-                            k == 2 ? unit_ : none_, column.first(n_), column.subspan(n_));
-      unit_[j] = 0;
-    }
+    for (std::size_t j = 0; j < n_ && s == Status::ok; ++j) s = column(k, j);
+  }
+  return s;
+}
+
+/// Column j of the derivative by q, v or a (k). A central difference at this distance has
+/// an error of some 1e-10 in reduced coordinates, from both its order and rounding. The
+/// residual is affine in accelerations.
+Status TransposedEquations::column(std::size_t k, std::size_t j) noexcept {
+  constexpr double distance = 1e-5;  // of typical sizes
+  const double e = (k == 2 ? 1 : distance) * typ_[k][j];
+  double& x = (k == 0 ? at_.q : k == 1 ? at_.v : at_.a)[j];
+  const double here = x;
+  const auto all = Out(by_[k]).subspan(j * (n_ + m_), n_ + m_);
+  const Out r = all.first(n_), c = all.subspan(n_);
+  x = here - e;
+  Status s =
+      dynamics_.residual(at_.t, at_.q, at_.v, at_.a, at_.lambda, before_r_, before_c_);
+  x = here + e;
+  if (s == Status::ok) {
+    s = dynamics_.residual(at_.t, at_.q, at_.v, at_.a, at_.lambda, r, c);
+  }
+  x = here;
+  for (std::size_t i = 0; i < n_; ++i) r[i] = (r[i] - before_r_[i]) / (2 * e);
+  for (std::size_t i = 0; i < m_; ++i) c[i] = (c[i] - before_c_[i]) / (2 * e);
+  if (sparse_ == nullptr) return s;
+  std::ranges::fill(r, 0.0);
+  const Pattern& pattern = sparse_->pattern();
+  for (int p = pattern.start[j]; p < pattern.start[j + 1]; ++p) {
+    r[size(pattern.row[size(p)])] = sparse_by_[k][size(p)];
   }
   return s;
 }
@@ -134,8 +166,8 @@ void TransposedEquations::pull(In x, InOut q_hat, InOut v_hat) noexcept {
     add(v_hat, -1, product_v_);
     return;
   }
-  subtract_transposed(pattern_, by_[0], x, q_hat);
-  subtract_transposed(pattern_, by_[1], x, v_hat);
+  subtract_transposed(pattern_, derivatives()[0], x, q_hat);
+  subtract_transposed(pattern_, derivatives()[1], x, v_hat);
 }
 
 }  // namespace tress::integrators

@@ -6,7 +6,6 @@
 
 #include "contract/forms/transposed_form.h"
 #include "integrators/formulation/dynamics.h"
-#include "integrators/gradient/residual_derivative.h"
 #include "integrators/gradient/watched_system.h"
 #include "linear/block_matrix.h"
 #include "linear/linear_solver.h"
@@ -20,13 +19,14 @@ namespace tress::integrators {
 ///     [        ]   [  ] = [ ],    q_hat -= R_q^T (mu, nu),  v_hat -= R_v^T (mu, nu)
 ///                  [nu]   [0]
 ///
-/// The derivatives are the matrices of SparseForm where the system has one and no
-/// constraints. With TransposedForm they are its products, and S^-T has the solutions of
-/// n unit vectors as its rows. Else they are columns by central differences, O(n)
-/// residuals.
+/// The derivatives are the matrices of SparseForm where the system has one; those of
+/// constraints are columns by central differences. With TransposedForm they are its
+/// products, and S^-T has the solutions of n unit vectors as its rows. Else they are
+/// columns by central differences, O(n) residuals.
 class TransposedEquations {
  public:
-  /// `sparse`: as ResidualDerivative. `system` must outlive this.
+  /// `sparse`: whether the SparseForm is all of dr/dq and dr/dv, which it is not where
+  /// effects couple distant points. `system` must outlive this.
   TransposedEquations(System& system, const Options& options, bool sparse);
 
   std::size_t n() const { return n_; }
@@ -45,22 +45,31 @@ class TransposedEquations {
   Status by_products(const WatchedSystem::Motion& state, Weights w) noexcept;
   Status by_columns(const WatchedSystem::Motion& state) noexcept;
   Status by_matrices(const WatchedSystem::Motion& state) noexcept;
+  Status column(std::size_t k, std::size_t j) noexcept;
+  bool matrices_alone() const { return sparse_ != nullptr && m_ == 0; }
+  /// On pattern_.
+  const std::array<std::vector<double>, 3>& derivatives() const {
+    return matrices_alone() ? sparse_by_ : by_;
+  }
 
   Dynamics dynamics_;
-  ResidualDerivative derivative_;
   SparseForm* sparse_;          // null: not used
   TransposedForm* transposed_;  // null: not used
   bool products_ = false;       // in use at this state
   std::size_t n_, m_;
-  Pattern pattern_;                        // (n + m) x n, of each of by_
-  std::array<std::vector<double>, 3> by_;  // q, v, a
-  bool mass_known_ = false;                // by_ has a mass that is constant
-  BlockMatrix matrix_;                     // transposed
+  Pattern pattern_;                               // (n + m) x n, of each of by_
+  std::array<std::vector<double>, 3> by_;         // q, v, a
+  std::array<std::vector<double>, 3> sparse_by_;  // the same of r alone, by matrices
+  std::array<std::vector<double>, 3> typ_;        // typical sizes of q, v, a
+  WatchedSystem::Motion at_;                      // shifted
+  std::vector<double> before_r_, before_c_;
+  bool mass_known_ = false;  // sparse_by_ has a mass that is constant
+  BlockMatrix matrix_;       // transposed
   int of_r_, of_lambda_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> inverse_;  // (n x n) S^-1, column by column
   std::vector<double> product_q_, product_v_;
-  std::vector<double> combined_, gradient_, none_, unit_, none_m_;
+  std::vector<double> combined_, gradient_;
 };
 
 }  // namespace tress::integrators
