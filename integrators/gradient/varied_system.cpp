@@ -69,65 +69,67 @@ bool same(const std::vector<double>& x, const std::vector<double>& y) {
     if (!(std::abs(x[i] - y[i]) <= apart)) apart = std::abs(x[i] - y[i]);  // NaN, too
   }
   return apart <= rounding * size;
-  double largest_entry(const std::vector<double>& x) {
-    double most = 0;
-    for (const double entry : x) most = std::max(most, std::abs(entry));
-    return most;
-  }
+}
 
-  /// dr/ds from systems at s = 0 and s = affine_at[0], and the largest |r|.
-  struct Slope {
-    Slope(System& at_0, System& far, double t, In q, In v, In a) : by(q.size()) {
-      std::vector<double> r(q.size());
-      ok = at_0.residual(t, q, v, a, r) == Status::ok;
-      size = largest_entry(r);
-      add(by, affine_stencil.base, r);
-      ok = far.residual(t, q, v, a, r) == Status::ok && ok;
-      size = std::max(size, largest_entry(r));
-      add(by, affine_stencil.weight[0], r);
-    }
-    std::vector<double> by;
-    double size = 0;
-    bool ok = false;
-  };
+double largest_entry(const std::vector<double>& x) {
+  double most = 0;
+  for (const double entry : x) most = std::max(most, std::abs(entry));
+  return most;
+}
 
-  std::optional<SimpleDerivative> simple_derivative(System & at_0, System & far,
-                                                    const Probe& probe) {
-    constexpr double rounding = 1e-14;  // of differences, over the largest |r|
-    constexpr double part = 0.05;       // of typical sizes
-    const std::size_t n = probe.q.size();
-    const std::vector<double> none(n);
-    std::vector<double> q(probe.q), v(probe.v);
-    add(q, part, probe.q_typ);
-    add(v, part, probe.v_typ);
-    const double t = probed_times[1];
-    const Slope here(at_0, far, t, probe.q, probe.v, none),
-        moved(at_0, far, t, q, probe.v, none), faster(at_0, far, t, probe.q, v, none);
-    SimpleDerivative simple{here.by, none, none};
-    const double unseen = rounding * std::max({here.size, moved.size, faster.size});
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto slope = [&](double change, double by) {
-        return std::abs(change) > unseen ? change / by : 0;
-      };
-      simple.by_q[i] = slope(moved.by[i] - here.by[i], q[i] - probe.q[i]);
-      simple.by_v[i] = slope(faster.by[i] - here.by[i], v[i] - probe.v[i]);
-      simple.constant[i] -= simple.by_q[i] * probe.q[i] + simple.by_v[i] * probe.v[i];
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const double away = part * std::cos(2 + 1.9 * static_cast<double>(i));
-      q[i] += away * probe.q_typ[i];
-      v[i] -= away * probe.v_typ[i];
-    }
-    const Slope tried(at_0, far, probed_times[2], q, v, probe.a);
-    bool holds = here.ok && moved.ok && faster.ok && tried.ok;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double expected =
-          simple.constant[i] + simple.by_q[i] * q[i] + simple.by_v[i] * v[i];
-      const double bound = 10 * rounding * std::max(tried.size, unseen / rounding);
-      holds = holds && std::abs(tried.by[i] - expected) <= bound;
-    }
-    return holds ? std::optional(simple) : std::nullopt;
+/// dr/ds from systems at s = 0 and s = affine_at[0], and the largest |r|.
+struct Slope {
+  Slope(System& at_0, System& far, double t, In q, In v, In a) : by(q.size()) {
+    std::vector<double> r(q.size());
+    ok = at_0.residual(t, q, v, a, r) == Status::ok;
+    size = largest_entry(r);
+    add(by, affine_stencil.base, r);
+    ok = far.residual(t, q, v, a, r) == Status::ok && ok;
+    size = std::max(size, largest_entry(r));
+    add(by, affine_stencil.weight[0], r);
   }
+  std::vector<double> by;
+  double size = 0;
+  bool ok = false;
+};
+
+std::optional<SimpleDerivative> simple_derivative(System& at_0, System& far,
+                                                  const Probe& probe) {
+  constexpr double rounding = 1e-14;  // of differences, over the largest |r|
+  constexpr double part = 0.05;       // of typical sizes
+  const std::size_t n = probe.q.size();
+  const std::vector<double> none(n);
+  std::vector<double> q(probe.q), v(probe.v);
+  add(q, part, probe.q_typ);
+  add(v, part, probe.v_typ);
+  const double t = probed_times[1];
+  const Slope here(at_0, far, t, probe.q, probe.v, none),
+      moved(at_0, far, t, q, probe.v, none), faster(at_0, far, t, probe.q, v, none);
+  SimpleDerivative simple{here.by, none, none};
+  const double unseen = rounding * std::max({here.size, moved.size, faster.size});
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto slope = [&](double change, double by) {
+      return std::abs(change) > unseen ? change / by : 0;
+    };
+    simple.by_q[i] = slope(moved.by[i] - here.by[i], q[i] - probe.q[i]);
+    simple.by_v[i] = slope(faster.by[i] - here.by[i], v[i] - probe.v[i]);
+    simple.constant[i] -= simple.by_q[i] * probe.q[i] + simple.by_v[i] * probe.v[i];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const double away = part * std::cos(2 + 1.9 * static_cast<double>(i));
+    q[i] += away * probe.q_typ[i];
+    v[i] -= away * probe.v_typ[i];
+  }
+  const Slope tried(at_0, far, probed_times[2], q, v, probe.a);
+  bool holds = here.ok && moved.ok && faster.ok && tried.ok;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double expected =
+        simple.constant[i] + simple.by_q[i] * q[i] + simple.by_v[i] * v[i];
+    const double bound = 10 * rounding * std::max(tried.size, unseen / rounding);
+    holds = holds && std::abs(tried.by[i] - expected) <= bound;
+  }
+  return holds ? std::optional(simple) : std::nullopt;
+}
 
 }  // namespace
 
