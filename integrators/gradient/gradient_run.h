@@ -14,14 +14,14 @@ namespace tress::integrators {
 /// steps: Options::tolerance is ignored.
 std::string no_gradient(std::string_view method, System& system, const Options& options);
 
-/// Start of a run: `as_run`, as the method starts it, or `damped`: with two steps of
-/// backward Euler of a sixteenth of the step each. A parameter that moves the rest shape
-/// out of the start excites stiff modes that the run itself does not have. Methods that
-/// start from a0 = M^-1 f(q0, v0) carry them on. Measured on a straight hair let go
-/// horizontally, 40 steps: its natural twist at the root moves the tip by 0.9 % of what
-/// its natural curvature does. The exact derivative of the run gives 1600 times the
-/// curvature's (tr_bdf2), 350 (newmark, generalized_alpha), 52 (esdirk43); with this
-/// start 0.9 %. [Rannacher 1984, Numer. Math. 43, 309, for values of parabolic problems]
+/// Start of a run. Damped: with two steps of backward Euler of a sixteenth of the step
+/// each. A parameter that moves the rest shape out of the start excites stiff modes that
+/// the run itself does not have. Methods that start from a0 = M^-1 f(q0, v0) carry them
+/// on. Measured on a straight hair let go horizontally, 40 steps: its natural twist at
+/// the root moves the tip by 0.9 % of what its natural curvature does. The exact
+/// derivative of the run gives 1600 times the curvature's (tr_bdf2), 350 (newmark,
+/// generalized_alpha), 52 (esdirk43); with this start 0.9 %. [Rannacher 1984, Numer.
+/// Math. 43, 309, for values of parabolic problems]
 enum class GradientStart { as_run, damped };
 
 /// A run with the exact derivatives of its states by parameters, forward in time: after
@@ -29,12 +29,11 @@ enum class GradientStart { as_run, damped };
 /// itself is that of the landed method, bit by bit.
 class GradientRun {
  public:
-  /// Method of the run.
   struct Method {
-    std::string_view id;                          // id of the integrator
-    Options options;                              // Options::step: the longest step
-    GradientStart start = GradientStart::as_run;  // treatment of the start
-    bool sparse = true;                           // as ResidualDerivative
+    std::string_view id;
+    Options options;  // Options::step: the longest step
+    GradientStart start = GradientStart::as_run;
+    bool sparse = true;  // as ResidualDerivative
   };
 
   /// `exact`: the same system, with the exact Jacobian. `system` must outlive this.
@@ -44,21 +43,15 @@ class GradientRun {
 
   /// Starts at t = 0 from initial_state().
   Status start();
-  /// Advances run and derivatives to t_end. Not `ok`: failure() tells why.
   Status advance(double t_end);
-  /// Returns the time of the state, s.
   double time() const { return t_; }
-  /// Returns the coordinates (n).
   In q() const { return q_; }
-  /// Returns the rates (n).
   In v() const { return v_; }
   /// Derivatives of q and v by parameter k.
   In dq(std::size_t k) const { return In(dq_).subspan(k * q_.size(), q_.size()); }
-  /// Returns the derivatives of v by parameter k.
   In dv(std::size_t k) const { return In(dv_).subspan(k * q_.size(), q_.size()); }
   /// Writes the derivatives of MaterialPoints::positions(), (3 count) m.
   void points_by(std::size_t k, Out dx);
-  /// Returns what ended the last advance(); empty if it ended well.
   const std::string& failure() const { return failure_; }
   /// Work of the run, and of its derivatives in units of vectors of all columns.
   const Stats& stats() const { return stats_; }

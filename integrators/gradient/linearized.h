@@ -20,9 +20,7 @@ class Linearized {
   Linearized(System& system, std::span<const VariedSystem> varied, const Options& options,
              bool sparse);
 
-  /// Returns the system with the form of its constraints.
   Dynamics& dynamics() { return dynamics_; }
-  /// Returns the number of constraints.
   int constraints() const { return dynamics_.m(); }
   /// Moves to a state, which must last until the next call.
   Status move(const WatchedSystem::Motion& state) noexcept;
@@ -30,7 +28,6 @@ class Linearized {
   Status factor(Weights w) noexcept;
   /// (dr, dc) along a direction of parameter k.
   Status along(std::size_t k, In dq, In dv, In da, Out dr, Out dc) noexcept;
-  /// Solves with the matrix of factor(); (r, c) become the solution.
   Status solve(InOut r, InOut c) noexcept { return dynamics_.solve(r, c); }
 
  private:

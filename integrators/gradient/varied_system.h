@@ -15,13 +15,12 @@ using RunParameter = std::function<std::unique_ptr<System>(double s)>;
 
 /// f'(0) = base f(0) + sum_i weight_i f(at_i).
 struct Stencil {
-  double base = 0;                     // weight of f(0)
-  std::span<const double> at, weight;  // distances, and weights of the values there
+  double base = 0;
+  std::span<const double> at, weight;
 };
 
-/// Distance and weight of the affine stencil, exact of affine functions.
+/// Exact of affine functions, whatever the distance.
 inline constexpr double affine_at[] = {0.25}, affine_weight[] = {4};
-/// Stencil for affine functions.
 inline constexpr Stencil affine_stencil{-4, affine_at, affine_weight};
 
 /// Central differences of order 4 at the distance d. Their error is d^4/30 f''''' and,
@@ -29,21 +28,18 @@ inline constexpr Stencil affine_stencil{-4, affine_at, affine_weight};
 /// 4e12 times f' (edges of a hair, whose axial stiffness is 4e6 of its bending
 /// stiffness).
 inline constexpr double central_distance = 3e-6;
-/// Distances of the central stencil.
 inline constexpr double central_at[] = {-2 * central_distance, -central_distance,
                                         central_distance, 2 * central_distance};
-/// Weights of the central stencil.
 inline constexpr double central_weight[] = {
     1 / (12 * central_distance), -8 / (12 * central_distance),
     8 / (12 * central_distance), -1 / (12 * central_distance)};
-/// Stencil of central differences.
 inline constexpr Stencil central_stencil{0, central_at, central_weight};
 
 /// A parameter's stencil with its systems. Each follows the run, at the state q + s dq:
 /// what it remembers (History) depends on s too.
 struct VariedSystem {
-  Stencil stencil;                               // stencil of the derivative
-  std::vector<std::unique_ptr<System>> systems;  // systems at the stencil's distances
+  Stencil stencil;
+  std::vector<std::unique_ptr<System>> systems;
 };
 
 /// With the affine stencil where residual, start and points are affine in s: measured at
