@@ -14,10 +14,9 @@ namespace tress::integrators {
 /// All else it passes on.
 class WatchedSystem final : public System, public StageWatcher, private MovingHistory {
  public:
-  /// A state with its acceleration and multipliers.
   struct Motion {
-    double t = 0;                         // time, s
-    std::vector<double> q, v, a, lambda;  // the parts of the state
+    double t = 0;
+    std::vector<double> q, v, a, lambda;
   };
 
   /// `system` must outlive it.
@@ -29,7 +28,6 @@ class WatchedSystem final : public System, public StageWatcher, private MovingHi
   std::span<const Motion> carried() const { return carried_.all(); }
   /// The state that accept() was given, and its answer.
   const Motion& accepted() const { return accepted_; }
-  /// Returns what accept() answered.
   bool moved() const { return moved_; }
   /// Begins a new record.
   void forget() { stages_.count = carried_.count = 0; }

@@ -11,34 +11,30 @@ namespace tress::models {
 /// one point of four elements), and at its tip.
 template <class Real>
 struct AlongOf {
-  /// Bound of the blocks.
   static constexpr int most_blocks = most_clothoid_points * lanes<Real> / Pack::lanes;
 
   // Only those in use are set and copied.
   AlongOf() {}                                      // NOLINT
   explicit AlongOf(int count) : blocks(count) {}    // NOLINT
   AlongOf(const AlongOf& other) { *this = other; }  // NOLINT
-  /// Copies the blocks in use.
-  AlongOf& operator=(const AlongOf& other) {  // NOLINT
+  AlongOf& operator=(const AlongOf& other) {        // NOLINT
     blocks = other.blocks;
     tip = other.tip;
     for (int i = 0; i < 3 * blocks; ++i) entries[i] = other.entries[i];
     return *this;
   }
 
-  /// Returns the vectors at a block of points.
   Vec3<Pack> operator[](int b) const {
     return {entries[3 * b], entries[3 * b + 1], entries[3 * b + 2]};
   }
-  /// Sets the vectors at a block of points.
   void set(int b, const Vec3<Pack>& value) {
     entries[3 * b] = value.x;
     entries[3 * b + 1] = value.y;
     entries[3 * b + 2] = value.z;
   }
 
-  int blocks = 0;                 // blocks in use
-  Vec3<Real> tip;                 // vector at the tip
+  int blocks = 0;
+  Vec3<Real> tip;
   Pack entries[3 * most_blocks];  // x, y, z a block
 };
 
@@ -87,7 +83,6 @@ class Collocation {
     }
   }
 
-  /// Returns the number of blocks.
   int blocks() const { return blocks_; }
   const Pack& place(int b) const { return place_[b]; }  // 2 x - 1
 

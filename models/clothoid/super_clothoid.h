@@ -27,16 +27,13 @@ std::unique_ptr<System> super_clothoid_batch(std::span<const Strand> strands,
                                              const ReducedOptions& options,
                                              std::vector<Effects> effects);
 
-/// Returns the options of the model.
 std::span<const Parameter> super_clothoid_parameters();
-/// Makes the model on a strand.
 std::unique_ptr<System> make_super_clothoid(const Strand& strand,
                                             const Parameters& parameters,
                                             Effects effects);
 
 /// The trees of models/reduced/trees.h.
 std::span<const Parameter> super_clothoid_tree_parameters();
-/// Makes the tree of these parameters.
 std::unique_ptr<System> make_super_clothoid_tree(const Parameters& parameters);
 
 }  // namespace tress::models

@@ -21,20 +21,13 @@ namespace tress::models {
 /// alone. Cost: O(elements), whatever the number of points, at which effects act.
 template <class T>
 struct ChainKind {
-  /// scalar: a number, or a pack of lanes.
   using Real = T;
-  /// Vector of these scalars.
   using Vec = Vec3<T>;
-  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
-  /// Data of an element that steps do not change.
   using Material = ReducedMaterial<T>;
-  /// Motion of a frame.
   using Motion = ReducedMotion<T>;
-  /// Sums over all that hangs on a tip.
   using Sum = ArticulatedSum<T>;
 
-  /// Geometry and loads of a link, between sweeps.
   struct Kept {
     Vec v, omega;           // of its joint, in the link's axes
     Vec force, moment;      // of inertia and drag, about the joint
@@ -44,13 +37,9 @@ struct ChainKind {
 
   /// The clamp's joint is half as long as others (reduced_strand()).
   static constexpr double first_stiffness = 2;
-  /// Parts of a rotor at the root and at the last tip.
   static constexpr double rotors_of_root = 0, rotors_of_last = 1;
-  /// Whether elements are straight; whether eliminate() is the kind's own.
   static constexpr bool straight = true, eliminates = true;
-  /// Returns the unit of the unknowns, over that of the batch.
   static double unit(double /*length*/) { return 1; }
-  /// Returns the factor of stiffness for a link of this length.
   static double moment(double length) { return 1 / length; }
   /// Halves of two links' angles; `shape`: natural or initial.
   static tress::Vec at_rest(const Strand& strand, std::size_t i,
@@ -62,7 +51,6 @@ struct ChainKind {
     return angle + before.length / 2 * (before.*shape);
   }
 
-  /// Moves from the start of a link to its end.
   template <bool accelerated>
   static void move(const Material& m, const Vec& q, const Vec& rate,
                    const Vec& acceleration, Motion& at, Kept& e) {
@@ -92,12 +80,10 @@ struct ChainKind {
     at.a = at.a + m.length * bent;
   }
 
-  /// Returns the sum behind the last link: nothing.
   static Sum last(const Material& /*m*/, const Motion& /*tip*/, const T& /*acc*/) {
     return {};
   }
 
-  /// Adds a link to all that hangs on its end.
   template <bool accelerated, class Kernel>
   static void carry(const Kernel& /*kernel*/, const Material& m,
                     const typename Kernel::Inertia& inertia, const Vec& /*q*/,
@@ -212,7 +198,6 @@ struct ChainKind {
     }
     return passed;
   }
-  /// Solves for the unknowns of a link and moves on to its end.
   template <class Element>
   static Vec follow(const Element& e, bool twist, Vec& l, Vec& a) {
     const Vec y = e.unknown - e.pivot * (e.of_force * l + e.of_moment * a);
@@ -222,7 +207,6 @@ struct ChainKind {
     return {first, dot(x.of[1], y), dot(x.of[2], y)};
   }
 
-  /// Turns the change of motion into the axes of the link.
   static void arrive(const Kept& e, Vec& l, Vec& a) {
     l = e.rotation.back(l);
     a = e.rotation.back(a);
@@ -236,16 +220,13 @@ struct ChainKind {
   /// Kinematics alone, seen from the joint in the axes of the link before.
   class Shape {
    public:
-    /// Prepares the kinematics of a link.
     Shape(const Vec& q, const Vec& rate, const T& length)
         : joint_(turn_of(q, rate)),
           along_(joint_.rotation.column(0)),
           moving_(cross(joint_.velocity, along_)),
           length_(length) {}
 
-    /// Returns the motion of the point at an arc length.
     SeenPoint<T> at(const T& arc) const { return {arc * along_, arc * moving_}; }
-    /// Returns the motion of the tip.
     [[gnu::always_inline]] SeenTip<T> tip() const {
       return {length_ * along_, length_ * moving_, joint_.rotation, joint_.velocity};
     }
@@ -256,28 +237,22 @@ struct ChainKind {
     T length_;
   };
 
-  /// Turns the frame into the axes of the link.
   static void enter(const Kept& e, FrameOf<T>& frame) {
     frame = frame *
             FrameOf<T>{e.rotation.column(0), e.rotation.column(1), e.rotation.column(2)};
   }
-  /// Leaves the frame: the axes are those of the link.
   static void go_on(const Kept& /*e*/, FrameOf<T>& /*frame*/) {}
 
   /// Points on which effects act, in the link's axes.
   class Points {
    public:
-    /// Prepares the points of a link.
     Points(const Kept& e, const Vec& /*q*/, const Vec& /*rate*/, const T& /*length*/)
         : e_(e) {}
 
-    /// Returns the place of the point at an arc length.
     Vec position(const T& arc) const { return {arc, T(0), T(0)}; }
-    /// Returns its velocity.
     Vec velocity(const T& /*arc*/, const Vec& position) const {
       return e_.v + cross(e_.omega, position);
     }
-    /// Returns its tangent.
     Vec tangent(const T& /*arc*/) const { return {T(1), T(0), T(0)}; }
     /// The unknowns move a point as a turn of the link does.
     void add(const T& /*arc*/, const Vec& position, const PointLoad<T>& load,

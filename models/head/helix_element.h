@@ -16,13 +16,11 @@ namespace tress::models {
 template <class T>
 class LaneFunctions {
  public:
-  /// Prepares the functions of elements up to this length.
   LaneFunctions(const Vec3<T>& kappa, const T& length)
       : x2_(dot(kappa, kappa)),
         winding_(x2_ * length * length),
         short_(all_up_to(winding_, most)) {}
 
-  /// Evaluates the functions at arc length s.
   [[gnu::always_inline]] HelixFunctions<T> at(const T& s) const {
     HelixFunctions<T> f = helix::series<few>(s, x2_);
     if (!short_) [[unlikely]] {
@@ -35,7 +33,6 @@ class LaneFunctions {
     }
     return f;
   }
-  /// Returns the square |kappa|^2.
   const T& x2() const { return x2_; }
 
  private:
@@ -59,9 +56,8 @@ class LaneFunctions {
 /// A vector along an element: constants weighted with the functions of arc length.
 template <class T>
 struct AlongHelix {
-  Vec3<T> one, s, A, B, A1, B1, A2, B2;  // coefficients of the functions
+  Vec3<T> one, s, A, B, A1, B1, A2, B2;
 
-  /// Evaluates the vector at an arc length.
   Vec3<T> at(const T& arc, const HelixFunctions<T>& f) const {
     return one + arc * s + f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 +
            f.B2 * B2;
@@ -89,14 +85,10 @@ struct AlongHelix {
 template <class T>
 class HelixElement {
  public:
-  /// Vector of these scalars.
   using Vec = Vec3<T>;
-  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
-  /// Type of constants.
   using Number = typename ConstantOf<T>::Type;
 
-  /// Takes the Darboux vector and its rate.
   HelixElement(const Vec& kappa, const Vec& rate)
       : k_(kappa),
         v_(rate),
@@ -109,18 +101,13 @@ class HelixElement {
         z_v_(cross(rate, u_) + cross(kappa, u_v_)),
         l_v_(along_l(rate)) {}
 
-  /// Returns the vector kappa.
   const Vec& k() const { return k_; }
-  /// Returns the vector u.
   const Vec& u() const { return u_; }
-  /// Returns the vector z.
   const Vec& z() const { return z_; }
 
-  /// Returns P at s.
   Vec position(const T& s, const HelixFunctions<T>& f) const {
     return {s + f.B * z_.x, f.A * u_.y + f.B * z_.y, f.A * u_.z + f.B * z_.z};
   }
-  /// Returns the derivatives dP/dkappa.
   Matrix slope(const HelixFunctions<T>& f) const {
     const Vec r{f.B1 * z_.x, f.A1 * u_.y + f.B1 * z_.y, f.A1 * u_.z + f.B1 * z_.z};
     const T bx = f.B * k_.x, by = f.B * k_.y, bz = f.B * k_.z;
@@ -173,14 +160,12 @@ class HelixElement {
     all.B1 = all.B1 + along * z_;
   }
 
-  /// Rotation of the tip.
   struct Turn {
     Matrix rotation;  // E, from the components of the tip to those of the start
     Matrix turn;      // W: angular velocity of the tip = W kappa'
     Vec velocity;     // W kappa'
     Vec bias;         // its derivative at kappa'' = 0
   };
-  /// Computes the rotation of the tip.
   Turn turn(const T& s, const HelixFunctions<T>& f, const T& x2) const {
     Turn t;
     t.rotation = of_cross(T(1), f.S, f.A, x2);
@@ -196,7 +181,6 @@ class HelixElement {
     return {Number(-2) * (k_.y * x.y + k_.z * x.z), k_.y * x.x + k_.x * x.y,
             k_.z * x.x + k_.x * x.z};
   }
-  /// Returns the transposed product of along_l.
   Vec back(const Vec& b, const Vec& a) const {
     return {k_.y * b.y + k_.z * b.z, k_.x * b.y - Number(2) * k_.y * b.x - a.z,
             k_.x * b.z - Number(2) * k_.z * b.x + a.y};
@@ -223,14 +207,11 @@ class HelixElement {
 /// and of forces times functions.
 template <class T>
 struct HelixSums {
-  T one{}, s{}, A{}, B{}, A1{}, B1{};  // sums of w times one function
-  T ss{}, sA{}, sB{}, sA1{}, sB1{};    // sums of w s times one function
-  /// Sums of w times two functions.
+  T one{}, s{}, A{}, B{}, A1{}, B1{};
+  T ss{}, sA{}, sB{}, sA1{}, sB1{};
   T AA{}, AB{}, BB{}, AA1{}, AB1{}, BA1{}, BB1{}, A1A1{}, A1B1{}, B1B1{};
-  /// Sums of forces times one function.
   Vec3<T> force, force_s, force_A, force_B, force_A1, force_B1;
 
-  /// Adds a point.
   void add(const T& w, const T& arc, const HelixFunctions<T>& f) {
     const T with_s = w * arc, with_a = w * f.A, with_b = w * f.B, with_a1 = w * f.A1,
             with_b1 = w * f.B1;
@@ -256,7 +237,6 @@ struct HelixSums {
     A1B1 += with_a1 * f.B1;
     B1B1 += with_b1 * f.B1;
   }
-  /// Adds a force at a point.
   void add_force(const Vec3<T>& f_w, const T& arc, const HelixFunctions<T>& f) {
     force = force + f_w;
     force_s = force_s + arc * f_w;
@@ -270,15 +250,14 @@ struct HelixSums {
 /// Sums of forces times functions.
 template <class T>
 struct HelixForces {
-  Vec3<T> s, A, B, A1, B1;  // sums of forces times one function
+  Vec3<T> s, A, B, A1, B1;
 };
 /// Moment of the forces about the start, sum P x f, and their work on the unknowns, sum
 /// d_j . f with d_j = dP/dkappa_j.
 template <class T>
 struct HelixWork {
-  Vec3<T> moment, unknown;  // moment, and work on the unknowns
+  Vec3<T> moment, unknown;
 
-  /// Combines the sums with the element's vectors.
   HelixWork(const HelixElement<T>& element, const HelixForces<T>& f) {
     using Number = typename HelixElement<T>::Number;
     const Vec3<Number> e0{Number(1), Number(0), Number(0)};
@@ -300,7 +279,6 @@ struct HelixMoments {
   Symmetric3<T> inner;      // sum w d_i . d_j
   Vec3<T> moment, unknown;  // sum P x f, sum d_j . f
 
-  /// Combines the sums with the element's vectors.
   HelixMoments(const HelixElement<T>& element, const Vec3<T>& k, const HelixSums<T>& m) {
     using Vec = Vec3<T>;
     const Vec &u = element.u(), &z = element.z();

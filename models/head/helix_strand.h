@@ -12,34 +12,23 @@ namespace tress::models {
 /// between them.
 template <class T>
 struct HelixKind {
-  /// scalar: a number, or a pack of lanes.
   using Real = T;
-  /// Vector of these scalars.
   using Vec = Vec3<T>;
-  /// Matrix of these scalars.
   using Matrix = Matrix3<T>;
-  /// Data of an element that steps do not change.
   using Material = ReducedMaterial<T>;
-  /// Motion of a frame.
   using Motion = ReducedMotion<T>;
-  /// Sums over all that hangs on a tip.
   using Sum = ArticulatedSum<T>;
 
-  /// Geometry and motion of an element, between sweeps.
   struct Kept {
     Vec v, omega, a, alpha;        // of its start
     Vec position;                  // of its tip
     Matrix slope, turn, rotation;  // dP/dkappa, W, E at the tip
   };
 
-  static constexpr double first_stiffness = 1;  // factor of the first element's stiffness
-  /// Parts of a rotor at the root and at the last tip.
+  static constexpr double first_stiffness = 1;
   static constexpr double rotors_of_root = 0.5, rotors_of_last = 0.5;
-  /// Whether elements are straight; whether eliminate() is the kind's own.
   static constexpr bool straight = false, eliminates = false;
-  /// Returns the unit of length: unknowns are inverse lengths.
   static double unit(double length) { return length; }
-  /// Returns the factor of stiffness for an element of this length.
   static double moment(double length) { return length; }
   /// `shape`: natural or initial.
   static tress::Vec at_rest(const Strand& strand, std::size_t i,
@@ -47,7 +36,6 @@ struct HelixKind {
     return strand.segments[i].*shape;
   }
 
-  /// Moves from the start of an element to its tip.
   template <bool accelerated>
   static void move(const Material& m, const Vec& q, const Vec& rate,
                    const Vec& acceleration, Motion& at, Kept& e) {
@@ -85,7 +73,6 @@ struct HelixKind {
     return end;
   }
 
-  /// Adds an element to all that hangs on its tip.
   template <bool accelerated, class Kernel>
   static void carry(const Kernel& kernel, const Material& m,
                     const typename Kernel::Inertia& weights, const Vec& q,
@@ -166,9 +153,7 @@ struct HelixKind {
     sum.aa.xx += acc * m.rotor;
   }
 
-  /// Does nothing: the axes are those of the start.
   static void arrive(const Kept& /*e*/, Vec& /*l*/, Vec& /*a*/) {}
-  /// Moves the change of motion from the start to the tip.
   static void leave(const Kept& e, const Vec& own, Vec& l, Vec& a) {
     l = e.rotation.back(l + cross(a, e.position) + e.slope * own);
     a = e.rotation.back(a + e.turn * own);
@@ -177,16 +162,13 @@ struct HelixKind {
   /// Kinematics alone.
   class Shape {
    public:
-    /// Prepares the kinematics of an element.
     Shape(const Vec& q, const Vec& rate, const T& length)
         : element_(q, rate), functions_(q, length), rate_(rate), length_(length) {}
 
-    /// Returns the motion of the point at an arc length.
     SeenPoint<T> at(const T& arc) const {
       const HelixFunctions<T> f = functions_.at(arc);
       return {element_.position(arc, f), element_.slope(f) * rate_};
     }
-    /// Returns the motion of the tip.
     [[gnu::always_inline]] SeenTip<T> tip() const {
       const HelixFunctions<T> f = functions_.at(length_);
       const auto turn = element_.turn(length_, f, functions_.x2());
@@ -203,7 +185,6 @@ struct HelixKind {
 
   /// The frame of its axes, from that of the tip before, and on to its tip's.
   static void enter(const Kept& /*e*/, FrameOf<T>& /*frame*/) {}
-  /// Turns the frame on to the tip.
   static void go_on(const Kept& e, FrameOf<T>& frame) {
     frame = frame *
             FrameOf<T>{e.rotation.column(0), e.rotation.column(1), e.rotation.column(2)};
@@ -212,25 +193,20 @@ struct HelixKind {
   /// Points on which effects act, in its axes.
   class Points {
    public:
-    /// Prepares the points of an element.
     Points(const Kept& e, const Vec& q, const Vec& rate, const T& length)
         : e_(e), element_(q, rate), functions_(q, length), rate_(rate) {}
 
-    /// Returns the place of the point at an arc length.
     Vec position(const T& arc) const {
       return element_.position(arc, functions_.at(arc));
     }
-    /// Returns its velocity.
     Vec velocity(const T& arc, const Vec& position) const {
       return e_.v + cross(e_.omega, position) +
              element_.slope(functions_.at(arc)) * rate_;
     }
-    /// Returns its tangent.
     Vec tangent(const T& arc) const {
       const HelixFunctions<T> f = functions_.at(arc);
       return Vec{T(1), T(0), T(0)} + f.S * element_.u() + f.A * element_.z();
     }
-    /// Adds the load on a point.
     void add(const T& arc, const Vec& position, const PointLoad<T>& load,
              LoadSums<T>& sums) const {
       sums.add(position, load);

@@ -14,9 +14,8 @@ namespace tress::models {
 /// takes the mean.
 template <class T>
 struct LinearStrainOf {
-  Vec3<T> mean, half;  // mean, and half of the change along the segment
+  Vec3<T> mean, half;
 
-  /// Returns the mean.
   explicit operator Vec3<T>() const { return mean; }
 
   friend LinearStrainOf operator+(const LinearStrainOf& a, const LinearStrainOf& b) {
@@ -33,10 +32,8 @@ struct LinearStrainOf {
     return dot(a.mean, b.mean) + dot(a.half, b.half);
   }
 };
-/// Strain of numbers in double precision.
 using LinearStrain = LinearStrainOf<double>;
 
-/// Sets the strain in a lane.
 template <class T>
 void set_lane(LinearStrainOf<T>& to, int lane, const LinearStrain& x) {
   set_lane(to.mean, lane, x.mean);
@@ -48,7 +45,6 @@ template <class T>
 T weighed_square(const Vec3<T>& k, const Vec3<T>& x) {
   return k.x * x.x * x.x + k.y * x.y * x.y + k.z * x.z * x.z;
 }
-/// Returns the sum of both functions' squares; see above.
 template <class T>
 T weighed_square(const LinearStrainOf<T>& k, const LinearStrainOf<T>& x) {
   return weighed_square(k.mean, x.mean) + weighed_square(k.half, x.half);

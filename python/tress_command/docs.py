@@ -30,4 +30,4 @@ COMMAND = Command(
     _run,
     example="./tress docs --check",
     time="less than a minute once its packages are there.",
-    options=(("--check", "warnings and broken links are errors"),))
+    options=(("--check", "warnings, broken links and undescribed names of the C++ API are errors"),))

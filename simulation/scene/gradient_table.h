@@ -15,11 +15,11 @@ namespace tress::simulation {
 
 /// A number of a table, or a component of one, by which [gradient] differentiates.
 struct GradientNumber {
-  std::string key;                            // key of the table
+  std::string key;
   std::optional<std::size_t> component = {};  // of three
-  double value = 0;                           // value in the table
-  double measure = 1;                         // a change by s is one by s times this
-  std::string unit = {};                      // unit of the value
+  double value = 0;
+  double measure = 1;  // a change by s is one by s times this
+  std::string unit = {};
 
   /// The text of the key for Parameters::set, changed by s.
   std::string text(const Parameters& values, double s) const;
@@ -37,7 +37,6 @@ std::optional<std::size_t> take_component(std::string_view& name);
 /// Unit vector of the world's axis k.
 Vec axis_of(std::size_t k);
 
-/// Throws InputError for a name of [gradient].
 [[noreturn]] void refuse_gradient(std::string_view name, std::string_view reason,
                                   const std::string& place, std::string_view remedy);
 
@@ -46,13 +45,12 @@ std::span<const Parameter> gradient_table_parameters();
 
 /// One such number. Where strands have several values, all change in the same proportion.
 struct SceneParameter {
-  std::string name, unit;  // name in [gradient], unit of the value
-  double value = 0;        // of the first strand, in the unit
-  double measure = 1;      // s = 1 changes the value by so much
+  std::string name, unit;
+  double value = 0;    // of the first strand, in the unit
+  double measure = 1;  // s = 1 changes the value by so much
   /// Whether it moves the shape at rest, the start or the roots: the run then needs a
   /// damped start.
   bool moves_rest = false;
-  /// Changes a scene by s.
   std::function<void(Scene& scene, double s)> change;
 };
 

@@ -20,6 +20,7 @@ PAGES = ("index", "start/first_strand", "start/how_to_choose", "theory/rod", "th
          "theory/glossary", "results/hard_cases", "reference/scene_file", "reference/cpp/system")
 WIDTHS = {"phone": 390, "desktop": 1400}
 THEMES = ("light", "dark")
+LONGEST_S = 2
 
 TYPESET = """return document.readyState === 'complete' && (!window.MathJax?.startup ||
   document.querySelectorAll('.math').length === 0 || document.querySelector('mjx-container') !== null)"""
@@ -90,16 +91,32 @@ class Site(unittest.TestCase):
         self.assertNotEqual(browser.run(theme), first)
         browser.run("localStorage.clear()")
 
+    def test_every_page_takes_at_most_two_seconds_of_its_thread(self):
+        # Processor time of the page's main thread, mathematics included: another load of the
+        # machine does not lengthen it.
+        browser = self.browsers["light"]
+        browser.devtools("Performance.enable", timeDomain="threadTicks")
+        pages = [path.relative_to(SITE) for path in sorted(SITE.rglob("*.html"))]
+        for page in pages:
+            if "_static" not in page.parts:
+                with self.subTest(page=str(page)):
+                    browser.open("about:blank")  # so that the page gets a process of its own
+                    self.visit(page)
+                    metrics = browser.devtools("Performance.getMetrics")["metrics"]
+                    busy_s = {metric["name"]: metric["value"] for metric in metrics}["TaskDuration"]
+                    self.assertTrue(0 < busy_s < LONGEST_S, f"{busy_s} s")
+
     @unittest.skipUnless(AXE.is_file(), "no axe-core: npm ci --prefix docs/site")
     def test_axe_has_no_complaints(self):
         # In the dark only colours differ.
         for theme, pages, rules in (("light", (*PAGES, "search"), {}),
                                     ("dark", ("index", "reference/cpp/system"), {"runOnly": ["color-contrast"]})):
             for page in pages:
-                with self.subTest(page=page, theme=theme):
-                    browser = self.visit(f"{page}.html", theme)
-                    browser.devtools("Runtime.evaluate", expression=AXE.read_text(encoding="utf-8"))
-                    self.assertEqual(browser.run(VIOLATIONS, rules), [])
+                for width in WIDTHS.values():
+                    with self.subTest(page=page, theme=theme, width=width):
+                        browser = self.visit(f"{page}.html", theme, width)
+                        browser.devtools("Runtime.evaluate", expression=AXE.read_text(encoding="utf-8"))
+                        self.assertEqual(browser.run(VIOLATIONS, rules), [])
 
 
 if __name__ == "__main__":
