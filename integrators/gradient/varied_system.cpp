@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/forms/constraint_form.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
 #include "linear/vector_ops.h"
@@ -30,8 +31,8 @@ struct Probe {
   }
   std::vector<double> q, v, a, q_typ, v_typ;
 
-  /// All that may depend on a parameter: the start, then residuals and points. NaN where
-  /// a residual is not finite.
+  /// All that may depend on a parameter: the start, then residuals, points and
+  /// constraints. NaN where a residual is not finite.
   std::vector<std::vector<double>> of(System& system) const {
     std::vector<std::vector<double>> all(2, std::vector<double>(q.size()));
     system.initial_state(all[0], all[1]);
@@ -40,9 +41,20 @@ struct Probe {
       std::vector<double> r(q.size());
       if (system.residual(t, q, v, a, r) != Status::ok) r.assign(q.size(), std::nan(""));
       all.push_back(std::move(r));
-      if (points == nullptr) continue;
-      all.emplace_back(3 * static_cast<std::size_t>(points->count()));
-      points->positions(t, q, all.back());
+      if (points != nullptr) {
+        all.emplace_back(3 * static_cast<std::size_t>(points->count()));
+        points->positions(t, q, all.back());
+      }
+      if (ConstraintForm* constraints = system.constraint_form()) {
+        std::vector<double> g(static_cast<std::size_t>(system.layout().constraints)),
+            gt(static_cast<std::size_t>(constraints->pattern().nonzeros()));
+        if (constraints->value(t, q, g) != Status::ok ||
+            constraints->gradient(t, q, gt) != Status::ok) {
+          g.assign(g.size(), std::nan(""));
+        }
+        all.push_back(std::move(g));
+        all.push_back(std::move(gt));
+      }
     }
     return all;
   }
@@ -121,12 +133,14 @@ std::optional<SimpleDerivative> simple_derivative(System& at_0, System& far,
     v[i] -= away * probe.v_typ[i];
   }
   const Slope tried(at_0, far, probed_times[2], q, v, probe.a);
-  bool holds = here.ok && moved.ok && faster.ok && tried.ok;
+  const double size = std::max(tried.size, unseen / rounding);
+  // A parameter that does not act here may act elsewhere, as that of a contact.
+  bool holds = here.ok && moved.ok && faster.ok && tried.ok &&
+               largest_entry(tried.by) > 100 * rounding * size;
   for (std::size_t i = 0; i < n; ++i) {
     const double expected =
         simple.constant[i] + simple.by_q[i] * q[i] + simple.by_v[i] * v[i];
-    const double bound = 10 * rounding * std::max(tried.size, unseen / rounding);
-    holds = holds && std::abs(tried.by[i] - expected) <= bound;
+    holds = holds && std::abs(tried.by[i] - expected) <= 10 * rounding * size;
   }
   return holds ? std::optional(simple) : std::nullopt;
 }
