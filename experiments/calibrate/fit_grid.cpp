@@ -6,6 +6,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/calibrate/calibrate.h"
+#include "experiments/calibrate/point_fit.h"
 #include "experiments/calibrate/shipped_records.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/settings.h"
@@ -19,8 +20,21 @@ using calibrate::damping, calibrate::fitting;
 
 constexpr Parameter settings_of_rows[] = {
     {.name = "data",
-     .help = "CSV files, separated by ',': t_s,amplitude_m[,sigma_m][,parameters of the "
-             "strand]; empty: those of experiments/calibrate/data",
+     .help = "CSV files, separated by ','. Oscillations: t_s,amplitude_m[,sigma_m]"
+             "[,parameters of the strand]. Points of the strands of --scene: "
+             "time_s,x_m,y_m,z_m[,strand][,point][,sigma_m]. Empty: those of "
+             "experiments/calibrate/data",
+     .text = true},
+    {.name = "by",
+     .help = "parameters to fit to points, separated by ',', by the names of [gradient] "
+             "by; empty: those of the scene's [gradient]",
+     .text = true},
+    {.name = "bounds",
+     .help = "limits of parameters of `by`: NAME:LOW:HIGH, separated by ','",
+     .text = true},
+    {.name = "priors",
+     .help = "values and standard errors of parameters of `by` from before the records: "
+             "NAME:VALUE:SIGMA, separated by ','",
      .text = true},
     {.name = "signal",
      .help = "amplitude_m is the tip's displacement from the root, up to a constant, or "
@@ -81,6 +95,18 @@ class Cases {
         own_(settings_.experiment()) {}
 
   std::vector<Case> all() {
+    if (are_points(files())) {
+      const PointFit fit = point_fit(line_, settings_);
+      Case& one = all_.emplace_back();
+      one.identity = fit.identity();
+      one.run_rows = [fit](const Row& row, const Deadline&) { return fit.rows(row); };
+      return std::move(all_);
+    }
+    for (const std::string_view key : {"by", "bounds", "priors"}) {
+      refuse_if(settings_.chosen(key), fmt::format("'{}' is of records of points", key),
+                line_.place(fmt::format("set:{}", key)),
+                "give data with the columns time_s, x_m, y_m, z_m");
+    }
     if (observed() == Observed::envelope &&
         fits(fitted_of(own_.word("fit")), Fitted::stiffness)) {
       throw InputError("an envelope has no frequency, from which stiffness follows",
@@ -97,6 +123,11 @@ class Cases {
   }
 
  private:
+  std::vector<std::string> files() const {
+    if (own_.word("data").empty()) return {};
+    return split(own_.word("data"), ',', line_.place("set:data"));
+  }
+
   FitOptions options(std::string_view integrator, std::string_view fit) const {
     FitOptions how;
     how.integrator = integrator;
@@ -186,8 +217,7 @@ class Cases {
   }
 
   void add_measured(const Scene& scene, FitRow work) {
-    for (const std::string& file :
-         split(own_.word("data"), ',', line_.place("set:data"))) {
+    for (const std::string& file : files()) {
       work.data = file;
       work.records = std::make_shared<const Records>(read_records(file, observed()));
       work.strands = strands_of(*work.records, scene);
@@ -229,8 +259,7 @@ class Cases {
 
   void add_measured() {
     const std::string_view fit = own_.word("fit");
-    for (const std::string& file :
-         split(own_.word("data"), ',', line_.place("set:data"))) {
+    for (const std::string& file : files()) {
       const auto records =
           std::make_shared<const Records>(read_records(file, observed()));
       for (const ModelEntry* model : model_catalogue()) {

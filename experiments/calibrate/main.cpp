@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/calibrate/calibrate.h"
+#include "experiments/calibrate/point_fit.h"
 #include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
 
@@ -19,15 +20,28 @@ constexpr Column columns[] = {
      "file, or the name of one in experiments/calibrate/data or of a scene, whose truth "
      "is known"},
     {"data_hash", "hash of the text of the data"},
-    {"signal", "displacement of the tip, or envelope of the displacement"},
+    {"scene", "scenes of records of points"},
+    {"signal", "displacement of the tip, envelope of the displacement, or points"},
     {"axis", "axis of the displacement"},
     {"fit", "fitted values; the others are known"},
+    {"bounds", "limits of fitted parameters, in their units"},
+    {"priors", "values and standard errors that were known before, in their units"},
     {"model", "catalogue id"},
     {"integrator", "method"},
     {"elements", "number of elements"},
     {"confidence", "confidence level of the intervals"},
     {"records", "oscillations fitted at once"},
-    {"points", "data points of all records"},
+    {"points", "data points, or measured coordinates, of all records"},
+    {"parameter", "fitted parameter of records of points: one row for each"},
+    {"unit", "unit of start, value, low and high"},
+    {"start", "value of the scene, from which the fit starts"},
+    {"value", "fitted value"},
+    {"low", "lower end of its interval; empty: the records do not determine it"},
+    {"high", "upper end of its interval"},
+    {"singular_value",
+     "singular values of the derivatives of the weighted coordinates with respect to the "
+     "unknowns (logarithms of positive parameters), descending from row to row"},
+    {"undetermined", "combinations of parameters that the records do not determine"},
     {"internal_friction_kg_m3_s", "internal friction"},
     {"internal_friction_low_kg_m3_s",
      "lower end of its interval; empty: known, not fitted"},
@@ -50,9 +64,12 @@ constexpr Column columns[] = {
     {"reduced_chi2", "sum of squares over sigma_m, over the degrees of freedom"},
     {"autocorrelation",
      "autocorrelation of successive residuals: near 0 for errors of measurement"},
-    {"step_shift", "largest move of a fitted value with half the step, half-intervals"},
+    {"step_shift",
+     "move of the fitted value with half the step, the largest one of oscillations, "
+     "half-intervals"},
     {"elements_shift",
-     "largest move of a fitted value with twice the elements, half-intervals"},
+     "move of the fitted value with twice the elements, the largest one of oscillations, "
+     "half-intervals"},
     {"degrees", "degrees of freedom"},
     {"evaluations", "simulations of all records"},
 };
@@ -66,6 +83,10 @@ bool finding(const Row& row) {
 
 /// The fitted values with their intervals.
 void answer(const CommandLine& line, const std::vector<Row>& rows) {
+  if (!rows.empty() && rows.front().text("signal") == "points") {
+    print_answer(line, point_answer(rows));
+    return;
+  }
   std::vector<std::string> lines;
   for (const Row& row : rows) {
     const auto value = [&](std::string_view what, std::string_view key,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/calibrate/simulated_records.h"
-#include "experiments/numerics/least_squares.h"
+#include "simulation/fit/least_squares.h"
 
 namespace tress::experiments::calibrate {
 

@@ -1,9 +1,11 @@
 // Derivatives of runs, and fits.
 #include <pybind11/stl.h>
 
+#include <map>
 #include <optional>
 
 #include "python/bindings/owned_system.h"
+#include "simulation/fit/scene_fit.h"
 #include "simulation/gradient/linearized_step.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/strand_tables.h"
@@ -130,11 +132,103 @@ py::dict step_matrices(const Scene& scene, std::size_t strand, double t,
       py::arg("q_next") = copy(found.q_next), py::arg("v_next") = copy(found.v_next));
 }
 
+// ---- fits
+
+using Scenes = std::vector<std::shared_ptr<Scene>>;
+using Texts = std::vector<std::pair<std::string, std::string>>;  // text, file
+using Pairs = std::map<std::string, std::pair<double, double>>;
+
+std::vector<std::string> fitted_names(const Scene& scene, const Names& by) {
+  if (by) return *by;
+  refuse_if(!scene.tables || !scene.tables->gradient,
+            "scene " + scene.name + " does not say what to fit", "by",
+            "give by=[\"youngs_modulus_pa\"], or [gradient] by in the scene");
+  return simulation::names_of(scene.tables->gradient->values().word("by"));
+}
+
+template <class Of>
+py::list of_each(const SceneFit& fit, const Of& of) {
+  py::list all;
+  for (const FittedParameter& one : fit.parameters) all.append(of(one));
+  return all;
+}
+
+py::array_t<double> numbers(const SceneFit& fit, double FittedParameter::*number) {
+  std::vector<double> all;
+  for (const FittedParameter& one : fit.parameters) all.push_back(one.*number);
+  return copy(all);
+}
+
+py::dict as_dict(const SceneFit& fit, const std::vector<PointRecord>& records) {
+  py::list measured, fitted;
+  for (std::size_t i = 0; i < fit.fitted.size(); ++i) {
+    std::vector<double> values;
+    for (const Observation& one : records[i].observations) values.push_back(one.value);
+    measured.append(copy(values));
+    fitted.append(copy(fit.fitted[i]));
+  }
+  return py::dict(
+      py::arg("names") = of_each(fit, [](const auto& one) { return one.name; }),
+      py::arg("units") = of_each(fit, [](const auto& one) { return one.unit; }),
+      py::arg("values") = numbers(fit, &FittedParameter::value),
+      py::arg("low") = numbers(fit, &FittedParameter::low),
+      py::arg("high") = numbers(fit, &FittedParameter::high),
+      py::arg("step_shift") = numbers(fit, &FittedParameter::step_shift),
+      py::arg("elements_shift") = numbers(fit, &FittedParameter::elements_shift),
+      py::arg("statuses") = of_each(fit, [](const auto& one) { return one.status; }),
+      py::arg("reasons") = of_each(fit, [](const auto& one) { return one.reason; }),
+      py::arg("status") = fit.status, py::arg("reason") = fit.reason,
+      py::arg("undetermined") = fit.undetermined,
+      py::arg("singular_values") = copy(fit.singular), py::arg("rms") = fit.rms,
+      py::arg("reduced_chi2") = fit.reduced_chi2,
+      py::arg("autocorrelation") = fit.autocorrelation, py::arg("degrees") = fit.degrees,
+      py::arg("evaluations") = fit.evaluations, py::arg("measured") = measured,
+      py::arg("fitted") = fitted);
+}
+
+py::dict fit(const Scenes& scenes, const Texts& texts, const Names& by,
+             const Pairs& bounds, const Pairs& priors, double confidence, bool shifts,
+             const py::object& progress) {
+  refuse_if(scenes.empty() || (scenes.size() > 1 && scenes.size() != texts.size()),
+            std::to_string(scenes.size()) + " scenes for " +
+                std::to_string(texts.size()) + " records",
+            "fit", "give one scene for all records, or one for each");
+  refuse_if(!(confidence > 0 && confidence < 1), "a confidence is between 0 and 1",
+            "confidence", "give 0.95");
+  std::vector<PointRecord> records;
+  for (const auto& [text, file] : texts)
+    records.push_back(parse_point_record(text, file));
+  FitTask task;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    task.records.push_back({scenes[scenes.size() > 1 ? i : 0].get(), &records[i]});
+  }
+  task.by = fitted_names(*scenes.front(), by);
+  for (const auto& [name, two] : bounds)
+    task.bounds.push_back({name, two.first, two.second});
+  for (const auto& [name, two] : priors)
+    task.priors.push_back({name, two.first, two.second});
+  task.confidence = confidence;
+  task.shifts = shifts;
+  task.place = "by";
+  task.progress = [&](int evaluations, double rms) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!progress.is_none()) progress(evaluations, rms);
+  };
+  SceneFit found;
+  {
+    const py::gil_scoped_release release;
+    found = fit_scenes(task);
+  }
+  return as_dict(found, records);
+}
+
 }  // namespace
 
 void add_gradients(py::module_& m) {
   m.def("gradient", gradient);
   m.def("linearized_step", step_matrices);
+  m.def("fit", fit);
 }
 
 }  // namespace tress::python

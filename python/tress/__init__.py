@@ -2,6 +2,7 @@
 
 from .errors import InputError, ProgramError, SolveError
 from ._core import load_plugin, scene_defaults, scene_schema, version as __version__
+from .fits import Fit, fit
 from .gradients import Gradient, LinearizedStep
 from .runs import Frames, HeadRun, StrandsRun
 from .scenes import Scene
@@ -19,6 +20,7 @@ from .systems import (
 from .tables import Table, experiment, programs_folder, read_table, unit_of
 
 __all__ = [
+    "Fit",
     "Frames",
     "Gradient",
     "HeadRun",
@@ -33,6 +35,7 @@ __all__ = [
     "Table",
     "experiment",
     "first_order",
+    "fit",
     "integrator_options",
     "integrators",
     "load_plugin",

@@ -41,8 +41,10 @@ def _corpus(preset, words, _):
 
 def _extremes(preset, words, _):
     (count, seed), _ = _given(words, "1000", "1")
-    build(preset, "simulate", "extreme_scenes", "paired_scenes")
+    build(preset, "simulate", "extreme_scenes", "paired_scenes", "test_scene_fit")
     folder = f"build/{preset}"
+    must("tests/test_scene_fit", "--gtest_filter=*Intervals*", cwd=folder,
+         env=os.environ | {"TRESS_FIT_RECORDS": count})
     must("tests/extreme_scenes", count, seed, PAIRED[0], cwd=folder)
     must("tests/paired_scenes", count, seed, *PAIRED, f"{os.getcwd()}/tests/fuzz/heads", cwd=folder)
 
@@ -118,7 +120,7 @@ COMMAND = Command(
          "refused in one line, with exit code 2?"),
         ("--extremes [-- COUNT SEED]", "random legal scenes of extreme numbers: does one crash, "
          "hang or end ok with what physics rules out? Are batches what single strands are? "
-         "(default: 1000 of each, seed 1)"),
+         "Do intervals of fits hold the truth? (default: 1000 of each, seed 1)"),
         ("--advice [-- COUNT SEED SECONDS]", "random scenes with references of their own: is what "
          "--advise promises true, and what stability_limit --scene prints, in runs at 0.9 and 1.5 "
          "times its steps? (default: 12, seed 1, 100 s a scene)"),

@@ -35,7 +35,7 @@ Parameters exact_options(const Scene& scene) {
   return options;
 }
 
-/// End of a step, and whether points are asked for there.
+/// End of a step; asked: points are wanted there.
 struct Stop {
   double t;
   bool asked;

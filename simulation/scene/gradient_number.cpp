@@ -82,6 +82,7 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
       all.component ? dot(axis_of(*all.component), values.vec(key)) : values.number(key);
   all.unit = unit_of(*p);
   all.measure = or_one(all.value);
+  all.positive = all.value > 0 && p->min >= 0;
   if (all.value <= p->min || all.value + reach * all.measure > p->max) {
     refuse_gradient(
         name,

@@ -149,7 +149,8 @@ class Finder {
     to.push_back({std::string(name), std::string(found->unit), value, value, false,
                   [scale = found->scale](Scene& scene, double s) {
                     for (Strand& strand : scene.strands) scale(strand, s);
-                  }});
+                  },
+                  true});
     return true;
   }
 
@@ -233,7 +234,8 @@ class Finder {
     }
     to.push_back({std::string(name), of.unit, of.value, of.measure, true,
                   [of](Scene& scene, double s) {
-                    Table table = scene.tables->root;
+                    auto tables = std::make_shared<StrandTables>(*scene.tables);
+                    Table& table = tables->root;
                     table.set(of.key, of.text(table.values(), s), table.place());
                     scene.head = head_motion(table);
                     const auto free_root = free_motion(table);
@@ -241,7 +243,9 @@ class Finder {
                       set_root(strand, scene.head, free_root, strand.root.position,
                                strand.root.frame);
                     }
-                  }});
+                    scene.tables = std::move(tables);
+                  },
+                  of.positive});
     return true;
   }
 
@@ -259,7 +263,8 @@ class Finder {
                   [of, i](Scene& scene, double s) {
                     EffectChoice& changed = scene.effects[i];
                     changed.parameters.set(of.key, of.text(changed.parameters, s));
-                  }});
+                  },
+                  of.positive});
     return true;
   }
 

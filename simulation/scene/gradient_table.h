@@ -20,6 +20,7 @@ struct GradientNumber {
   double value = 0;
   double measure = 1;  // a change by s is one by s times this
   std::string unit = {};
+  bool positive = false;  // no value below 0 is allowed
 
   /// The text of the key for Parameters::set, changed by s.
   std::string text(const Parameters& values, double s) const;
@@ -52,6 +53,7 @@ struct SceneParameter {
   /// damped start.
   bool moves_rest = false;
   std::function<void(Scene& scene, double s)> change;
+  bool positive = false;  // a number above 0, which a fit changes in proportion
 };
 
 /// Returns the parameters that the scene's [gradient] names. Throws InputError with its

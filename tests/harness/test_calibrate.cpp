@@ -12,7 +12,7 @@
 #include "contract/input_error.h"
 #include "experiments/calibrate/oscillation_fit.h"
 #include "experiments/calibrate/records.h"
-#include "experiments/numerics/least_squares.h"
+#include "simulation/fit/least_squares.h"
 #include "experiments/numerics/tip_signal.h"
 #include "simulation/files/files.h"
 

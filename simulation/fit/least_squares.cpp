@@ -1,4 +1,4 @@
-#include "experiments/numerics/least_squares.h"
+#include "simulation/fit/least_squares.h"
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
@@ -12,7 +12,7 @@
 #include <memory>
 #include <numeric>
 
-namespace tress::experiments {
+namespace tress::simulation {
 namespace {
 
 constexpr int most_iterations = 60;
@@ -31,15 +31,13 @@ using Vector = std::unique_ptr<gsl_vector, Release<gsl_vector, gsl_vector_free>>
 /// Callback data for GSL; it is C, so exceptions wait until it has returned.
 struct Problem {
   const ResidualAt& residual;
-  double difference;
-  std::vector<double> x, r, back;
-  int evaluations = 0;
+  const DerivativeAt& derivative;
+  std::vector<double> x, r, jacobian;
   std::exception_ptr thrown;
 
-  bool evaluate(Out r_out) {
-    ++evaluations;
+  bool guarded(const auto& function, Out values) {
     try {
-      return residual(x, r_out);
+      return function(x, values);
     } catch (...) {
       thrown = std::current_exception();
       return false;
@@ -52,7 +50,7 @@ struct Problem {
   static int value(const gsl_vector* x, void* self_pointer, gsl_vector* f) {
     auto& self = *static_cast<Problem*>(self_pointer);
     self.take(x);
-    const bool there = self.evaluate(self.r);
+    const bool there = self.guarded(self.residual, self.r);
     if (self.thrown) return GSL_EFAILED;
     for (std::size_t i = 0; i < self.r.size(); ++i) {
       gsl_vector_set(f, i, there ? self.r[i] : out_of_reach);
@@ -63,17 +61,11 @@ struct Problem {
   static int slopes(const gsl_vector* x, void* self_pointer, gsl_matrix* jacobian) {
     auto& self = *static_cast<Problem*>(self_pointer);
     self.take(x);
-    for (std::size_t j = 0; j < self.x.size(); ++j) {
-      const double at = self.x[j];
-      self.x[j] = at + self.difference;
-      bool there = self.evaluate(self.r);
-      self.x[j] = at - self.difference;
-      there = there && self.evaluate(self.back);
-      self.x[j] = at;
-      if (!there) return GSL_EFAILED;
-      for (std::size_t i = 0; i < self.r.size(); ++i) {
-        gsl_matrix_set(jacobian, i, j,
-                       (self.r[i] - self.back[i]) / (2 * self.difference));
+    if (!self.guarded(self.derivative, self.jacobian)) return GSL_EFAILED;
+    const std::size_t p = self.x.size();
+    for (std::size_t i = 0; i < self.r.size(); ++i) {
+      for (std::size_t j = 0; j < p; ++j) {
+        gsl_matrix_set(jacobian, i, j, self.jacobian[i * p + j]);
       }
     }
     return GSL_SUCCESS;
@@ -106,6 +98,65 @@ void add_covariance(LeastSquares& fit, const gsl_matrix& jacobian) {
   }
 }
 
+LeastSquares minimum(const ResidualAt& residual, const DerivativeAt& derivative, In start,
+                     std::size_t n, double tolerance,
+                     const gsl_multifit_nlinear_trs& method) {
+  gsl_set_error_handler_off();
+  const std::size_t p = start.size();
+  Problem problem{residual,
+                  derivative,
+                  {start.begin(), start.end()},
+                  std::vector<double>(n),
+                  std::vector<double>(n * p),
+                  {}};
+  gsl_multifit_nlinear_fdf function{};
+  function.f = Problem::value;
+  function.df = Problem::slopes;
+  function.n = n;
+  function.p = p;
+  function.params = &problem;
+  gsl_multifit_nlinear_parameters parameters =
+      gsl_multifit_nlinear_default_parameters();  // More's scaling
+  parameters.trs = &method;
+  const Workspace workspace(
+      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n, p));
+  const gsl_vector_const_view from = gsl_vector_const_view_array(start.data(), p);
+  int code = gsl_multifit_nlinear_init(&from.vector, &function, workspace.get());
+  if (code == GSL_SUCCESS) {
+    int why = 0;
+    double largest = 1;
+    for (const double x : start) largest = std::max(largest, std::abs(x));
+    // GSL's tolerance is relative to x; its unscaled tests of the gradient and of the sum
+    // are disabled.
+    code = gsl_multifit_nlinear_driver(most_iterations, tolerance / largest, 0, 0,
+                                       nullptr, nullptr, &why, workspace.get());
+  }
+  if (problem.thrown) std::rethrow_exception(problem.thrown);
+
+  LeastSquares fit;
+  if (code == GSL_EFAILED) {
+    fit.failure = "no residuals or derivatives at a trial value";
+    return fit;
+  }
+  const gsl_vector& x = *gsl_multifit_nlinear_position(workspace.get());
+  const gsl_vector& r = *gsl_multifit_nlinear_residual(workspace.get());
+  const gsl_matrix& jacobian = *gsl_multifit_nlinear_jac(workspace.get());
+  for (std::size_t j = 0; j < p; ++j) fit.x.push_back(gsl_vector_get(&x, j));
+  for (std::size_t i = 0; i < n; ++i) {
+    fit.residual.push_back(gsl_vector_get(&r, i));
+    for (std::size_t j = 0; j < p; ++j) {
+      fit.jacobian.push_back(gsl_matrix_get(&jacobian, i, j));
+    }
+  }
+  add_covariance(fit, jacobian);
+  if (fit.covariance.empty()) return fit;
+  const std::vector<double> left = fit.step(fit.residual);
+  const bool there =
+      std::ranges::all_of(left, [&](double dx) { return std::abs(dx) <= tolerance; });
+  if (!there) fit.failure = "not converged: " + std::string(gsl_strerror(code));
+  return fit;
+}
+
 }  // namespace
 
 std::vector<double> LeastSquares::step(In r) const {
@@ -135,61 +186,37 @@ std::vector<double> LeastSquares::half_intervals(double degrees,
 
 LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,
                            double difference, double tolerance) {
-  gsl_set_error_handler_off();
-  const std::size_t p = start.size();
-  Problem problem{residual,
-                  difference,
-                  {start.begin(), start.end()},
-                  std::vector<double>(n),
-                  std::vector<double>(n),
-                  0,
-                  {}};
-  gsl_multifit_nlinear_fdf function{};
-  function.f = Problem::value;
-  function.df = Problem::slopes;
-  function.n = n;
-  function.p = p;
-  function.params = &problem;
-  const gsl_multifit_nlinear_parameters parameters =
-      gsl_multifit_nlinear_default_parameters();  // Levenberg-Marquardt, More's scaling
-  const Workspace workspace(
-      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n, p));
-  const gsl_vector_const_view from = gsl_vector_const_view_array(start.data(), p);
-  int code = gsl_multifit_nlinear_init(&from.vector, &function, workspace.get());
-  if (code == GSL_SUCCESS) {
-    int why = 0;
-    double largest = 1;
-    for (const double x : start) largest = std::max(largest, std::abs(x));
-    // GSL's tolerance is relative to x; its unscaled tests of the gradient and of the sum
-    // are disabled.
-    code = gsl_multifit_nlinear_driver(most_iterations, tolerance / largest, 0, 0,
-                                       nullptr, nullptr, &why, workspace.get());
-  }
-  if (problem.thrown) std::rethrow_exception(problem.thrown);
-
-  LeastSquares fit;
-  fit.evaluations = problem.evaluations;
-  if (code == GSL_EFAILED) {
-    fit.failure = "no residuals beside a trial value";
-    return fit;
-  }
-  const gsl_vector& x = *gsl_multifit_nlinear_position(workspace.get());
-  const gsl_vector& r = *gsl_multifit_nlinear_residual(workspace.get());
-  const gsl_matrix& jacobian = *gsl_multifit_nlinear_jac(workspace.get());
-  for (std::size_t j = 0; j < p; ++j) fit.x.push_back(gsl_vector_get(&x, j));
-  for (std::size_t i = 0; i < n; ++i) {
-    fit.residual.push_back(gsl_vector_get(&r, i));
-    for (std::size_t j = 0; j < p; ++j) {
-      fit.jacobian.push_back(gsl_matrix_get(&jacobian, i, j));
+  int evaluations = 0;
+  const ResidualAt counted = [&](In x, Out r) {
+    ++evaluations;
+    return residual(x, r);
+  };
+  const DerivativeAt differences = [&, back = std::vector<double>(n),
+                                    forth = std::vector<double>(n)](
+                                       In x, Out jacobian) mutable {
+    std::vector<double> at(x.begin(), x.end());
+    for (std::size_t j = 0; j < at.size(); ++j) {
+      at[j] = x[j] + difference;
+      const bool there = counted(at, forth);
+      at[j] = x[j] - difference;
+      if (!there || !counted(at, back)) return false;
+      at[j] = x[j];
+      for (std::size_t i = 0; i < n; ++i) {
+        jacobian[i * at.size() + j] = (forth[i] - back[i]) / (2 * difference);
+      }
     }
-  }
-  add_covariance(fit, jacobian);
-  if (fit.covariance.empty()) return fit;
-  const std::vector<double> left = fit.step(fit.residual);
-  const bool there =
-      std::ranges::all_of(left, [&](double dx) { return std::abs(dx) <= tolerance; });
-  if (!there) fit.failure = "not converged: " + std::string(gsl_strerror(code));
+    return true;
+  };
+  LeastSquares fit =
+      minimum(counted, differences, start, n, tolerance, *gsl_multifit_nlinear_trs_lm);
+  fit.evaluations = evaluations;
   return fit;
 }
 
-}  // namespace tress::experiments
+LeastSquares least_squares(const ResidualAt& residual, const DerivativeAt& derivative,
+                           In start, std::size_t n, double tolerance) {
+  return minimum(residual, derivative, start, n, tolerance,
+                 *gsl_multifit_nlinear_trs_ddogleg);
+}
+
+}  // namespace tress::simulation

@@ -7,10 +7,13 @@
 
 #include "contract/basics.h"
 
-namespace tress::experiments {
+namespace tress::simulation {
 
 /// Fills the n residuals at x; false: not defined, x is too far off.
 using ResidualAt = std::function<bool(In x, Out r)>;
+
+/// Fills dr/dx (n x p, row-major) at x; false: not defined.
+using DerivativeAt = std::function<bool(In x, Out jacobian)>;
 
 /// Minimiser of the sum of n squared residuals r(x), with its statistics.
 struct LeastSquares {
@@ -21,7 +24,7 @@ struct LeastSquares {
   /// Empty when J is rank deficient to rounding.
   std::vector<double> covariance;
   double condition = 0;  // of J; infinite when rank deficient
-  int evaluations = 0;   // of r
+  int evaluations = 0;   // of r, where J is by differences
   std::string failure;   // empty: converged
 
   /// Gauss-Newton step -(J^T J)^-1 J^T r of x when the residuals become r.
@@ -33,11 +36,14 @@ struct LeastSquares {
   std::vector<double> half_intervals(double degrees, double confidence) const;
 };
 
-/// Levenberg-Marquardt by GSL's gsl_multifit_nlinear from `start`; J by central
-/// differences x_j +- difference, error difference^2 r'''/6. Converged when the remaining
-/// Gauss-Newton step is below `tolerance` in every x_j. Exceptions of `residual`
-/// propagate.
+/// Gauss-Newton steps within a trust region (double dogleg) by GSL's
+/// gsl_multifit_nlinear from `start`. Converged when the remaining Gauss-Newton step is
+/// below `tolerance` in every x_j. Exceptions of `residual` and `derivative` propagate.
+LeastSquares least_squares(const ResidualAt& residual, const DerivativeAt& derivative,
+                           In start, std::size_t n, double tolerance);
+/// Levenberg-Marquardt, with J by central differences x_j +- difference, error
+/// difference^2 r'''/6.
 LeastSquares least_squares(const ResidualAt& residual, In start, std::size_t n,
                            double difference, double tolerance);
 
-}  // namespace tress::experiments
+}  // namespace tress::simulation

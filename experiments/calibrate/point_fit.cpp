@@ -1,0 +1,169 @@
+#include "experiments/calibrate/point_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "simulation/files/csv.h"
+#include "simulation/files/parse.h"
+#include "simulation/scene/strand_tables.h"
+#include "simulation/scene/write_scene.h"
+
+namespace tress::experiments::calibrate {
+namespace {
+
+constexpr double most_work = 2e7;  // per run
+constexpr std::string_view of_oscillations[] = {"fit",       "signal",  "axis",
+                                                "horizon_s", "noise_m", "noise_seed"};
+
+std::vector<std::string> named_by(const Scene& scene) {
+  refuse_if(!scene.tables->gradient,
+            fmt::format("scene {} does not say what to fit", scene.name), "--set by",
+            "give --set by=youngs_modulus_pa, or [gradient] by in the scene");
+  return names_of(scene.tables->gradient->values().word("by"));
+}
+
+}  // namespace
+
+bool are_points(const std::vector<std::string>& files) {
+  return !files.empty() && has_points(read_csv(files.front()).header);
+}
+
+PointFit point_fit(const CommandLine& line, const Settings& settings) {
+  const Parameters& own = settings.experiment();
+  for (const std::string_view key : of_oscillations) {
+    refuse_if(
+        settings.chosen(key),
+        fmt::format("'{}' is of records of oscillations, and these are of points", key),
+        line.place(fmt::format("set:{}", key)),
+        key == "fit" ? "name the parameters by --set by" : "leave it out");
+  }
+  refuse_if(own.word("scenes").empty(),
+            "records of points need the scene of their strand", line.place("set:data"),
+            "give --scene my.toml");
+  leave_strands_to_the_scene(line);
+  settings.leave_models_to_the_scene();
+  refuse_if(line.integrators.size() > 1, "several methods for one fit",
+            line.place("--integrators"), "give one");
+  PointFit all;
+  all.scenes = read_scenes(split(own.word("scenes"), ',', line.place("scene")));
+  for (Scene& scene : all.scenes) {
+    if (!line.integrators.empty()) {
+      scene.integrator = find_integrator(line.integrators.front()).id;
+    }
+    scene.options = settings.options(scene.options);
+    if (scene.options.max_work == 0) scene.options.max_work = most_work;
+  }
+  for (const std::string& file : split(own.word("data"), ',', line.place("set:data"))) {
+    all.records.push_back(read_point_record(file));
+  }
+  refuse_if(
+      all.scenes.size() > 1 && all.scenes.size() != all.records.size(),
+      fmt::format("{} scenes for {} records", all.scenes.size(), all.records.size()),
+      line.place("scene"), "give one scene for all records, or one for each");
+  all.by =
+      own.word("by").empty() ? named_by(all.scenes.front()) : names_of(own.word("by"));
+  all.bounds = own.word("bounds");
+  all.priors = own.word("priors");
+  all.confidence = own.number("confidence");
+  parse_bounds(all.bounds, line.place("set:bounds"));
+  parse_priors(all.priors, line.place("set:priors"));
+  for (const Scene& scene : all.scenes) {  // refuses names before anything runs
+    static_cast<void>(gradient_parameters(scene, all.by, line.place("set:by")));
+  }
+  return all;
+}
+
+Row PointFit::identity() const {
+  Row hashed;
+  std::string data, scene;
+  std::size_t strands = 0;
+  for (const PointRecord& one : records) {
+    data += (data.empty() ? "" : ",") + one.file;
+    hashed.set("record " + one.file, one.hash);
+  }
+  for (const Scene& one : scenes) {
+    scene += (scene.empty() ? "" : ",") + one.name;
+    hashed.set("scene " + one.name, scene_text(one));
+    strands += one.strands.size();
+  }
+  const Scene& first = scenes.front();
+  Row row;
+  row.set("data", data).set("data_hash", run_id("records and scenes", hashed));
+  row.set("scene", scene)
+      .set("signal", "points")
+      .set("fit", fmt::format("{}", fmt::join(by, ",")));
+  row.set("bounds", bounds).set("priors", priors);
+  row.set("model", first.model->id).set("integrator", first.integrator);
+  row.set("elements", first.strands.empty() ? 0 : first.strands.front().segments.size());
+  row.set("confidence", confidence);
+  return row;
+}
+
+std::vector<Row> PointFit::rows(const Row& identity) const {
+  FitTask task{.by = by,
+               .bounds = parse_bounds(bounds, "--set bounds"),
+               .priors = parse_priors(priors, "--set priors"),
+               .confidence = confidence,
+               .place = "--set by"};
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    task.records.push_back({&scenes[scenes.size() > 1 ? i : 0], &records[i]});
+    points += records[i].observations.size();
+  }
+  const SceneFit fit = fit_scenes(task);
+  std::vector<Row> all;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FittedParameter& one = fit.parameters[k];
+    Row row = identity;
+    row.set("records", records.size()).set("points", points);
+    row.set("parameter", one.name).set("unit", one.unit).set("start", one.start);
+    row.set("value", one.value).set("low", one.low).set("high", one.high);
+    row.set("step_shift", one.step_shift).set("elements_shift", one.elements_shift);
+    if (k < fit.singular.size()) row.set("singular_value", fit.singular[k]);
+    row.set("residual_rms_m", fit.rms).set("reduced_chi2", fit.reduced_chi2);
+    row.set("autocorrelation", fit.autocorrelation).set("degrees", fit.degrees);
+    row.set("evaluations", fit.evaluations);
+    if (!fit.undetermined.empty()) row.set("undetermined", fit.undetermined);
+    if (one.status != "ok") row.failed(one.status, one.reason);
+    all.push_back(std::move(row));
+  }
+  return all;
+}
+
+std::vector<std::string> point_answer(const std::vector<Row>& rows) {
+  std::vector<std::string> lines, reasons;
+  for (const Row& row : rows) {
+    std::string text = fmt::format("{} = {:.4g} {}", row.text("parameter"),
+                                   row.number("value"), row.text("unit"));
+    if (row.has("low")) {
+      text += fmt::format(" ({:.4g} to {:.4g} at {:.3g} %)", row.number("low"),
+                          row.number("high"), 1e2 * row.number("confidence"));
+    }
+    if (row.has("step_shift")) {
+      text += fmt::format(
+          "; half the step moves it by {:.2g}, twice the elements by {:.2g} of half the "
+          "interval",
+          row.number("step_shift"), row.number("elements_shift"));
+    }
+    if (!row.ok()) text += fmt::format("; {}", row.status());
+    lines.push_back(std::move(text));
+    std::string reason(row.text("reason"));
+    if (!row.ok() && std::ranges::count(reasons, reason) == 0) {
+      reasons.push_back(std::move(reason));
+    }
+  }
+  if (!rows.empty()) {
+    const Row& row = rows.front();
+    lines.push_back(
+        fmt::format("{} coordinates; root mean square of measured less fitted {:.3g} mm",
+                    row.text("points"), 1e3 * row.number("residual_rms_m")));
+  }
+  lines.insert(lines.end(), reasons.begin(), reasons.end());
+  return lines;
+}
+
+}  // namespace tress::experiments::calibrate

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/run/settings.h"
+#include "simulation/files/row.h"
+#include "simulation/fit/scene_fit.h"
+
+namespace tress::experiments::calibrate {
+
+/// Records of points and the scenes that they are of.
+struct PointFit {
+  std::vector<Scene> scenes;  // one for all records, or one for each
+  std::vector<PointRecord> records;
+  std::vector<std::string> by;
+  std::string bounds, priors;  // as given
+  double confidence = 0.95;
+
+  Row identity() const;
+  /// A row for each fitted parameter.
+  std::vector<Row> rows(const Row& identity) const;
+};
+
+/// Whether these files are records of points: the header of the first decides.
+bool are_points(const std::vector<std::string>& files);
+
+/// The fit that the user asks for. Throws InputError on settings of oscillations.
+PointFit point_fit(const CommandLine& line, const Settings& settings);
+
+/// The fitted values in words, then what limits them, each reason once.
+std::vector<std::string> point_answer(const std::vector<Row>& rows);
+
+}  // namespace tress::experiments::calibrate

@@ -1,0 +1,108 @@
+"""Fits of scenes to records of points."""
+
+import csv
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import _core
+from .errors import InputError
+from .scenes import Scene
+from .tables import Table
+
+
+@dataclass
+class Fit:
+    """Fitted parameters of scenes, K of them, and what limits them."""
+
+    names: list  # (K)
+    units: list  # (K)
+    values: np.ndarray  # (K)
+    low: np.ndarray  # (K) lower ends of the intervals; nan: not determined
+    high: np.ndarray  # (K)
+    # (K) changes with half the step and with twice the elements, in half intervals; nan
+    # where they were not asked for
+    step_shift: np.ndarray
+    elements_shift: np.ndarray
+    statuses: list  # (K) of each parameter: ok, at_bound, not_identified, time_error, ...
+    reasons: list  # (K) in words
+    status: str  # the first of these that is not ok
+    reason: str
+    undetermined: str  # combinations that the records do not determine, in words
+    singular_values: np.ndarray  # of the weighted derivatives by the unknowns, descending
+    rms: float  # m, of measured less fitted
+    reduced_chi2: float  # nan without sigma_m
+    autocorrelation: float  # of successive residuals of a coordinate
+    degrees: int  # of freedom
+    evaluations: int  # runs of all records with their derivatives
+    measured: list  # of each record: its coordinates, m, row after row
+    fitted: list  # of each record: the same of the fitted scene, m
+
+    def __getitem__(self, name):
+        """(value, low, high) of one parameter."""
+        if name not in self.names:
+            raise InputError(f"no parameter '{name}' (fit): one of {', '.join(self.names)}")
+        k = self.names.index(name)
+        return self.values[k], self.low[k], self.high[k]
+
+
+def _text(record, number):
+    """(text, file) of a record: the name of a CSV, a Table, or a dict of columns."""
+    if isinstance(record, (str, Path)):
+        try:
+            return Path(record).read_text(), str(record)
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"cannot be read ({record}): {error}") from error
+    columns = {name: np.atleast_1d(column) for name, column in dict(record).items()}
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    lengths = {column.size for column in columns.values()}
+    if len(lengths) > 1:
+        raise InputError(
+            f"columns of {min(lengths)} and {max(lengths)} rows (record): give equal lengths"
+        )
+    for row in zip(*columns.values()):
+        writer.writerow([_cell(x) for x in row])
+    return text.getvalue(), f"record {number}"
+
+
+def _cell(x):
+    """nan: not measured."""
+    return "" if isinstance(x, (float, np.floating)) and np.isnan(x) else str(x)
+
+
+def _list(one_or_more, single):
+    return [one_or_more] if isinstance(one_or_more, single) else list(one_or_more)
+
+
+def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shifts=True,
+        progress=None):  # fmt: skip
+    """Fits parameters of a scene to points of its strands: Fit.
+
+    scene: a Scene, whose values the fit starts from; a list with one for each record.
+    record: a CSV file with the columns time_s, x_m, y_m, z_m, where needed strand, point
+        (default: the tip) and sigma_m, or a dict of such columns; a list of several, which
+        share the parameters. nan is a coordinate that was not measured.
+    by: names of parameters, as in ``Scene.gradient``; None: those of [gradient].
+    bounds: {name: (low, high)} in the units of the parameters.
+    priors: {name: (value, sigma)}, what is known without the records.
+    confidence: of the intervals.
+    shifts: runs again with half the step and with twice the elements, for ``step_shift``,
+        ``elements_shift`` and the statuses time_error and space_error.
+    progress: function of (evaluations, rms in m), called after each run.
+
+    Least squares by Gauss-Newton steps within a trust region, with the exact derivatives of
+    the runs; `calibrate` does the same. InputError with the place and the remedy.
+    """
+    records = _list(record, (str, Path, dict, Table))
+    texts = [_text(one, number) for number, one in enumerate(records)]
+    scenes = [one._core for one in _list(scene, Scene)]
+    names = [by] if isinstance(by, str) else by
+    pairs = [
+        {name: tuple(map(float, two)) for name, two in (given or {}).items()}
+        for given in (bounds, priors)
+    ]
+    return Fit(**_core.fit(scenes, texts, names, *pairs, confidence, shifts, progress))

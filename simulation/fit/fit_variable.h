@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/scene/gradient_table.h"
+
+namespace tress::simulation {
+
+/// Limits of a fitted parameter, in its unit.
+struct FitBound {
+  std::string name;
+  double low, high;
+};
+
+/// Knowledge of a parameter from before the records: a normal distribution, in its unit.
+struct FitPrior {
+  std::string name;
+  double value, sigma;
+};
+
+/// "NAME:LOW:HIGH,NAME:LOW:HIGH", and likewise "NAME:VALUE:SIGMA". Throw InputError
+/// naming `where`.
+std::vector<FitBound> parse_bounds(std::string_view text, const std::string& where);
+std::vector<FitPrior> parse_priors(std::string_view text, const std::string& where);
+
+/// A parameter p as an unknown. Statistics are those of
+///
+///     u = ln p where p must be positive, else p over its measure,
+///
+/// and the search is in x: u itself, or with bounds u = (a + b)/2 + (b - a)/2 sin x
+/// [James, Roos 1975, Comput. Phys. Commun. 10, 343 (MINUIT)].
+class FitVariable {
+ public:
+  /// Throws InputError naming `where` on bounds that leave no room or exclude the start.
+  FitVariable(const SceneParameter& parameter, std::span<const FitBound> bounds,
+              const std::string& where);
+
+  bool logarithmic() const { return logarithmic_; }
+  double start() const { return start_; }  // x
+  double u(double x) const;
+  double du_dx(double x) const;
+  double p(double u) const;
+  double dp_du(double u) const;
+  /// Whether x is at one of the bounds.
+  bool at_bound(double x) const;
+
+ private:
+  bool logarithmic_;
+  double measure_;
+  double middle_ = 0, reach_ = 0;  // of u; no bounds: 0
+  double start_;
+};
+
+}  // namespace tress::simulation

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contract/layers.h"
+
+namespace tress::simulation {
+
+/// One measured coordinate of a point of a strand.
+struct Observation {
+  std::size_t strand = 0;
+  std::optional<std::size_t> point = {};  // from the root; empty: the tip
+  double t = 0;                           // s
+  std::size_t component = 0;              // x, y, z
+  double value = 0;                       // m
+  std::size_t row = 0;                    // of the file, from 0
+};
+
+/// Points of strands over time, from t = 0 of the scene's run.
+struct PointRecord {
+  std::string file = {};
+  std::string hash = {};  // of the text, 16 hexadecimal digits
+  std::vector<Observation> observations = {};
+  std::vector<double> sigma = {};        // m, of each observation; empty: not known
+  std::vector<std::string> places = {};  // file:line:column of each row
+
+  const std::string& place(const Observation& one) const { return places[one.row]; }
+};
+
+/// Whether the header of a table names a coordinate (x_m, y_m or z_m).
+bool has_points(const std::vector<std::string>& header);
+
+/// Reads a CSV with the columns time_s and some of x_m, y_m and z_m. Optional columns are
+/// strand (0 where absent), point (the tip where absent, empty or "tip") and sigma_m, the
+/// standard error of every coordinate of the row. An empty coordinate was not measured.
+/// Throws InputError with file:line:column on other columns, numbers that are not finite,
+/// negative times, sigma_m that is not positive, and fewer than 3 coordinates.
+PointRecord parse_point_record(std::string_view text, const std::string& file);
+PointRecord read_point_record(const std::string& file);
+
+}  // namespace tress::simulation

@@ -1,0 +1,227 @@
+#include "simulation/fit/scene_fit.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "simulation/fit/fit_search.h"
+#include "simulation/fit/fit_words.h"
+
+namespace tress::simulation {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+using Finer = RecordRuns::Finer;
+
+constexpr double widest = 2.302585092994046;  // ln 10
+// Derivatives are exact to 1e-8: a smaller singular value is 0.
+constexpr double no_effect = 1e-6;
+constexpr double least_part = 0.1;  // of a unit vector: a parameter that belongs to it
+constexpr double largest_shift = 0.25;  // half intervals
+constexpr double deviations = 4;        // standard deviations of an autocorrelation
+constexpr double unlikely = 1e-3;       // probability of a larger sum of squares
+
+/// The statistics of a search at its end.
+class Fit {
+ public:
+  explicit Fit(const FitTask& task)
+      : task_(task), search_(task), runs_(search_.runs()), free_(search_.free()) {}
+  SceneFit result();
+
+ private:
+  void describe(SceneFit& fit);
+  void add_intervals(SceneFit& fit, const LinearizedFit& found);
+  void add_shifts(SceneFit& fit, const LinearizedFit& here, const MatrixXd& determined,
+                  const VectorXd& half);
+  VectorXd shifts(const LinearizedFit& here, const MatrixXd& determined, Finer finer);
+  void judge(SceneFit& fit) const;
+
+  const FitTask& task_;
+  FitSearch search_;
+  const RecordRuns& runs_;
+  const std::vector<std::size_t>& free_;
+};
+
+/// Change of the unknowns from one Gauss-Newton step of a finer run, within the
+/// combinations that are determined. Empty: its run fails.
+VectorXd Fit::shifts(const LinearizedFit& here, const MatrixXd& determined, Finer finer) {
+  const std::optional<LinearizedFit> there = search_.linear(finer);
+  if (!there) return {};
+  const auto step = [&](const LinearizedFit& one) -> VectorXd {
+    const MatrixXd j = one.j * determined;
+    return determined * j.colPivHouseholderQr().solve(-one.r);
+  };
+  return step(*there) - step(here);
+}
+
+void Fit::add_shifts(SceneFit& fit, const LinearizedFit& here, const MatrixXd& determined,
+                     const VectorXd& half) {
+  const auto add = [&](Finer finer, double FittedParameter::*shift) {
+    const VectorXd moved = shifts(here, determined, finer);
+    if (moved.size() == 0) return;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (half[k] > 0) fit.parameters[free_[i]].*shift = std::abs(moved[k]) / half[k];
+    }
+  };
+  add(Finer::half_step, &FittedParameter::step_shift);
+  add(Finer::twice_the_elements, &FittedParameter::elements_shift);
+}
+
+void Fit::describe(SceneFit& fit) {
+  const std::vector<double> p = search_.values();
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    fit.parameters[k].value = p[k];
+    if (search_.held(k)) {
+      fit.parameters[k].status = "at_bound";
+      fit.parameters[k].reason =
+          fmt::format("{} is at its bound", fit.parameters[k].name);
+    }
+  }
+  const std::optional<LinearizedFit> found = search_.linear(Finer::no);
+  if (!found) return;
+  fit.degrees = static_cast<int>(search_.rows() - free_.size());
+  const auto count = static_cast<Eigen::Index>(runs_.count());
+  const double squares = found->r.head(count).squaredNorm();
+  double metres = 0, chained = 0;
+  for (std::size_t i = 0; i < runs_.count(); ++i) {
+    metres += std::pow(runs_.measured()[i] - search_.simulated()[i], 2);
+  }
+  for (const auto& [i, j] : runs_.successive()) {
+    chained +=
+        found->r[static_cast<Eigen::Index>(i)] * found->r[static_cast<Eigen::Index>(j)];
+  }
+  fit.rms = std::sqrt(metres / static_cast<double>(runs_.count()));
+  if (squares > 0) fit.autocorrelation = chained / squares;
+  if (runs_.sigma_known()) fit.reduced_chi2 = found->r.squaredNorm() / fit.degrees;
+  std::size_t first = 0;
+  for (const FitRecord& record : task_.records) {
+    const std::size_t some = record.points->observations.size();
+    const In part = search_.simulated().subspan(first, some);
+    fit.fitted.emplace_back(part.begin(), part.end());
+    first += some;
+  }
+  if (!free_.empty()) add_intervals(fit, *found);
+}
+
+void Fit::add_intervals(SceneFit& fit, const LinearizedFit& found) {
+  const std::vector<double> u = search_.u();
+  const Eigen::JacobiSVD<MatrixXd> svd(found.j, Eigen::ComputeThinV);
+  const VectorXd& s = svd.singularValues();
+  fit.singular.assign(s.begin(), s.end());
+  const double upper = (1 + task_.confidence) / 2;
+  const double deviation = runs_.sigma_known()
+                               ? gsl_cdf_ugaussian_Pinv(upper)
+                               : gsl_cdf_tdist_Pinv(upper, fit.degrees) *
+                                     std::sqrt(found.r.squaredNorm() / fit.degrees);
+  Eigen::Index determined = 0;
+  while (determined < s.size() && s[determined] > no_effect * s[0] &&
+         deviation / s[determined] < widest) {
+    ++determined;
+  }
+  const MatrixXd& v = svd.matrixV();
+  const VectorXd half = deviation * (v.leftCols(determined) *
+                                     s.head(determined).cwiseInverse().asDiagonal())
+                                        .rowwise()
+                                        .norm();
+  std::vector<Combination> unknown;
+  for (Eigen::Index k = determined; k < s.size(); ++k) {
+    Combination& one = unknown.emplace_back();
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      one.push_back({&runs_.parameters()[free_[i]], v(static_cast<Eigen::Index>(i), k)});
+    }
+  }
+  fit.undetermined = in_words(unknown, least_part);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    FittedParameter& one = fit.parameters[free_[i]];
+    const FitVariable& variable = search_.variables()[free_[i]];
+    const auto k = static_cast<Eigen::Index>(i);
+    if (v.row(k).tail(s.size() - determined).norm() > least_part) {
+      one.status = "not_identified";
+      one.reason = fit.undetermined;
+      continue;
+    }
+    one.low = variable.p(u[free_[i]] - half[k]);
+    one.high = variable.p(u[free_[i]] + half[k]);
+  }
+  if (task_.shifts && determined > 0) {
+    add_shifts(fit, found, v.leftCols(determined), half);
+  }
+}
+
+/// The status of each parameter that has none yet, and that of the fit: the first.
+void Fit::judge(SceneFit& fit) const {
+  std::string misfit;
+  const auto pairs = static_cast<double>(runs_.successive().size());
+  if (pairs > 0 && fit.autocorrelation > deviations / std::sqrt(pairs)) {
+    misfit =
+        fmt::format("residuals are correlated in time ({:.2f})", fit.autocorrelation);
+  } else if (runs_.sigma_known() &&
+             fit.reduced_chi2 * fit.degrees > gsl_cdf_chisq_Qinv(unlikely, fit.degrees)) {
+    misfit = fmt::format("residuals are too large for sigma_m (reduced chi^2 {:.3g})",
+                         fit.reduced_chi2);
+  }
+  if (!misfit.empty()) {
+    misfit += ": the scene is not that of the records, and intervals are too narrow";
+  }
+  for (FittedParameter& one : fit.parameters) {
+    if (one.status != "ok") continue;
+    const auto say = [&](std::string_view status, std::string reason) {
+      one.status = status;
+      one.reason = std::move(reason);
+    };
+    if (task_.shifts && (std::isnan(one.step_shift) || std::isnan(one.elements_shift))) {
+      say("solver_error", "a run with half the step or twice the elements fails");
+    } else if (one.step_shift > largest_shift) {
+      say("time_error",
+          fmt::format("half the step moves {} by {:.3g} half intervals: time error, not "
+                      "noise, limits it; give a shorter step",
+                      one.name, one.step_shift));
+    } else if (one.elements_shift > largest_shift) {
+      say("space_error",
+          fmt::format("twice the elements move {} by {:.3g} half intervals: space error, "
+                      "not noise, limits it; give more elements",
+                      one.name, one.elements_shift));
+    } else if (!misfit.empty()) {
+      say("misfit", misfit);
+    }
+  }
+  const auto bad = std::ranges::find_if(
+      fit.parameters, [](const FittedParameter& one) { return one.status != "ok"; });
+  if (bad == fit.parameters.end()) return;
+  fit.status = bad->status;
+  fit.reason = bad->reason;
+}
+
+SceneFit Fit::result() {
+  SceneFit fit;
+  for (const SceneParameter& one : runs_.parameters()) {
+    fit.parameters.push_back(
+        {.name = one.name, .unit = one.unit, .start = one.value, .value = one.value});
+  }
+  std::string failed = search_.run();
+  describe(fit);
+  fit.evaluations = search_.evaluations();
+  if (failed.empty() && fit.fitted.empty()) failed = search_.failure();
+  if (failed.empty()) {
+    judge(fit);
+    return fit;
+  }
+  fit.status = "solver_error";
+  fit.reason = failed;
+  for (FittedParameter& one : fit.parameters) {
+    one.status = fit.status;
+    one.reason = failed;
+  }
+  return fit;
+}
+
+}  // namespace
+
+SceneFit fit_scenes(const FitTask& task) { return Fit(task).result(); }
+
+}  // namespace tress::simulation
