@@ -4,6 +4,8 @@ import numpy as np
 from .tables import groups, known, records
 from .words import must, number, percent, span, table
 
+_COARSE = 10  # elements of the runs in time
+_OTHER_STEPS = 40  # of runs without the damped start, and with the elastic Jacobian
 _KINKED = ["mass_spring", "inextensible_strand"]
 _DEFAULT = {"part": "time", "start": "damped", "jacobian": "exact"}
 
@@ -48,6 +50,11 @@ def _advice(tables, column):
     return f"take `{best}`: it needs {span(work[best], lambda x: number(x, 3))} linearizations of the run and its derivatives, {compared}"
 
 
+def tight_target(tables):
+    must(_work(tables, "linearizations_001_percent").notna().any().any(), "some method reaches it")
+    return percent(1e-4)
+
+
 def advice_1_percent(tables):
     return _advice(tables, "linearizations_1_percent")
 
@@ -86,12 +93,12 @@ def _not_converging(rows):
 
 def space_first(tables):
     rows = _rods(tables)
-    rows = rows[(rows["elements"] == 10) & (rows["model"] != "super_clothoid")]
+    rows = rows[(rows["elements"] == _COARSE) & (rows["model"] != "super_clothoid")]
     time = _smooth(tables)
-    time = time[(time["integrator"] == "tr_bdf2") & (time["steps"] == 40) & time["model"].isin(rows["model"])]
-    must(time["gradient_error_rel"].max() < rows["gradient_error_rel"].min(), "space limits the gradient at 10 elements")
-    return (f"with 10 elements the error in space is {span(rows['gradient_error_rel'], percent)}, and the error in time of `tr_bdf2` with "
-            f"40 steps is {span(time['gradient_error_rel'], percent)}. `super_clothoid` needs fewer elements")
+    time = time[(time["integrator"] == "tr_bdf2") & (time["steps"] == _OTHER_STEPS) & time["model"].isin(rows["model"])]
+    must(time["gradient_error_rel"].max() < rows["gradient_error_rel"].min(), "space limits the gradient")
+    return (f"with {_COARSE} elements the error in space is {span(rows['gradient_error_rel'], percent)}, and the error in time of `tr_bdf2` with "
+            f"{_OTHER_STEPS} steps is {span(time['gradient_error_rel'], percent)}. `super_clothoid` needs fewer elements")
 
 
 def reference_gap(tables):
@@ -140,10 +147,15 @@ def not_converging(tables):
             "with more elements.")
 
 
+def other_steps(tables):
+    must(not _measured(tables, {"part": "time", "start": "as_run", "steps": _OTHER_STEPS}).empty, "runs without the damped start")
+    return number(_OTHER_STEPS)
+
+
 def starts(tables):
     """Largest error over the smooth models with the start of the run itself, next to that with a damped start."""
     def at(start):
-        rows = _measured(tables, {**_DEFAULT, "start": start, "steps": 40})
+        rows = _measured(tables, {**_DEFAULT, "start": start, "steps": _OTHER_STEPS})
         return rows[~rows["model"].isin(_KINKED)]
 
     damped, as_run = at("damped"), at("as_run")
@@ -156,11 +168,11 @@ def starts(tables):
 
 
 def elastic(tables):
-    rows = _measured(tables, {"part": "time", "jacobian": "elastic", "steps": 40})
+    rows = _measured(tables, {"part": "time", "jacobian": "elastic", "steps": _OTHER_STEPS})
     exact = _smooth(tables).set_index(["model", "integrator", "steps"])["gradient_error_rel"]
     ratio = {key: row / exact[key] for key, row in rows.set_index(["model", "integrator", "steps"])["gradient_error_rel"].items()}
     worst = max(ratio, key=ratio.get)
-    return (f"the error with 40 steps is {number(min(ratio.values()))} to {number(max(ratio.values()))} times that with the exact one; "
+    return (f"the error with {_OTHER_STEPS} steps is {number(min(ratio.values()))} to {number(max(ratio.values()))} times that with the exact one; "
             f"the worst is `{worst[0]}` with `{worst[1]}`")
 
 
@@ -175,7 +187,7 @@ def contact(tables):
     for (law, method), members in groups(rows, ["law", "integrator"]):
         cells = {row["steps"]: percent(row["gradient_error_rel"]) for row in records(members)}
         lines.append([law, f"`{method}`", *(cells.get(one, "") for one in steps), percent(_finest(members)["tip_error_rel"].iloc[0])])
-    return table(["law", "method", *(f"{one} steps" for one in steps), "tip, most steps"], lines)
+    return table(["law", "method", *(f"{one} steps" for one in steps), f"tip, {steps[-1]} steps"], lines)
 
 
 def _exact(rows):
@@ -193,4 +205,4 @@ def contact_verdict(tables):
     ratio = fine["gradient_error_rel"] / fine["tip_error_rel"]
     return (f"A regularised gradient is exact for its run, but the contacts open and close at other steps than in a finer run: with "
             f"{rows['steps'].iloc[0]} steps and methods of higher order it is {span(ratio, lambda x: number(x, 2))} times as wrong as the tip. "
-            f"The error depends irregularly on the step: compare two steps.{_exact(rows)}")
+            f"The error depends irregularly on the step: compare runs with different steps.{_exact(rows)}")
