@@ -115,6 +115,7 @@ Status GradientRun::set_off() {
 
 /// Both methods from the present state.
 Status GradientRun::begin(std::string_view method, const Options& options) {
+  before_ = stats_;
   run_ = make_integrator(method, watched_, options);
   columns_ = make_integrator(method, variational_, linear_options(options));
   watched_.forget();
@@ -158,7 +159,14 @@ void GradientRun::keep(const Integrator& run, const Integrator& columns) {
   v_.assign(run.v().begin(), run.v().end());
   dq_.assign(columns.q().begin(), columns.q().end());
   dv_.assign(columns.v().begin(), columns.v().end());
-  stats_ = run.stats();
+  stats_ = before_;
+  for (const Stats& done : {run.stats(), columns.stats()}) {
+    stats_.residuals += done.residuals;
+    stats_.linearizations += done.linearizations;
+    stats_.solves += done.solves;
+  }
+  stats_.steps += run.stats().steps;
+  stats_.newton_iterations += run.stats().newton_iterations;
 }
 
 Status GradientRun::fail(Status s, std::string why) {

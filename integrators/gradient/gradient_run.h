@@ -70,7 +70,8 @@ class GradientRun {
   void points_by(std::size_t k, Out dx);
   /// Returns what ended the last advance(); empty if it ended well.
   const std::string& failure() const { return failure_; }
-  /// Work of the run, and of its derivatives in units of vectors of all columns.
+  /// Steps and Newton iterations of the run; residuals, linearizations and solves of both
+  /// the run and its derivatives, where one solve is that of all parameters.
   const Stats& stats() const { return stats_; }
 
  private:
@@ -93,7 +94,7 @@ class GradientRun {
   double t_ = 0;
   std::vector<double> q_, v_, dq_, dv_;
   std::string failure_;
-  Stats stats_;
+  Stats stats_, before_;  // before_: the present method
 };
 
 /// Returns the system. Throws InputError where its run by this method has no_gradient(),

@@ -142,6 +142,7 @@ test('MissingTables_SayHowToProduceThem', () => {
     'scaling',
     'force_transport',
     'damping',
+    'cost_of_gradient',
     'divided_heads',
     'block_descent',
   ]) {

@@ -10,6 +10,7 @@ import { validation_tests } from './validation_tests.mjs';
 import { bdf_order } from './bdf_order.mjs';
 import { block_descent } from './block_descent.mjs';
 import { cosserat_map } from './cosserat_map.mjs';
+import { cost_of_gradient } from './cost_of_gradient.mjs';
 import { damping } from './damping.mjs';
 import { divided_heads } from './divided_heads.mjs';
 import { figure_title } from './common.mjs';
@@ -54,6 +55,7 @@ export const figures = [
   swing,
   force_transport,
   damping,
+  cost_of_gradient,
   divided_heads,
   block_descent,
   cosserat_map,

@@ -87,6 +87,7 @@ const measurements = [
     tables: ['force_transport'],
   },
   { figure: 'damping', findings: () => [], tables: ['damping'] },
+  { figure: 'cost_of_gradient', findings: () => [], tables: ['cost_of_gradient'] },
   { figure: 'divided_heads', findings: () => [], tables: ['divided_heads'] },
   { figure: 'block_descent', findings: descent_findings, tables: ['block_descent'] },
   { figure: 'cosserat_map', findings: map_findings, tables: [] },

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "experiments/cost_of_gradient/cost_of_gradient.h"
+
+namespace tress::experiments::cost_of_gradient {
+namespace {
+
+using Selection = std::function<bool(const Row&)>;
+
+bool measured(const Row& row) { return row.has("gradient_error_rel"); }
+
+/// Rows on the curl as gradients are computed by default.
+bool by_default(const Row& row) {
+  return row.text("part") == "time" && row.text("start") == "damped" &&
+         row.text("jacobian") == "exact" && measured(row);
+}
+
+/// Models whose joints have no bending direction where they are straight: a curl of ten
+/// such elements snaps.
+bool kinked(const Row& row) {
+  return row.text("model") == "mass_spring" || row.text("model") == "inextensible_strand";
+}
+
+bool smooth(const Row& row) { return by_default(row) && !kinked(row); }
+
+Selection of(std::string_view method, int steps) {
+  return [=](const Row& row) {
+    return smooth(row) && row.text("integrator") == method &&
+           row.number("steps") == steps;
+  };
+}
+
+/// Largest value over the selected rows; the least with `sign` -1. NaN counts as such.
+struct Extreme {
+  double value = -std::numeric_limits<double>::infinity();
+  int rows = 0;
+};
+Extreme largest(const std::vector<Row>& rows, const Selection& selected,
+                const std::function<double(const Row&)>& value, double sign = 1) {
+  Extreme found;
+  for (const Row& row : rows) {
+    if (!selected(row)) continue;
+    ++found.rows;
+    const double own = sign * value(row);
+    if (!(own <= found.value)) found.value = own;
+  }
+  found.value *= sign;
+  return found;
+}
+
+double error(const Row& row) { return row.number("gradient_error_rel"); }
+
+class Judge {
+ public:
+  Judge(const std::vector<Row>& rows, Verdicts& verdicts)
+      : rows_(rows), verdicts_(verdicts) {}
+
+  void at_most(const char* claim, double bound, const Selection& selected,
+               const std::function<double(const Row&)>& value = error) {
+    const Extreme found = largest(rows_, selected, value);
+    decide(claim, found, found.value <= bound);
+  }
+  void at_least(const char* claim, double bound, const Selection& selected,
+                const std::function<double(const Row&)>& value = error) {
+    const Extreme found = largest(rows_, selected, value, -1);
+    decide(claim, found, found.value >= bound);
+  }
+  /// Of the largest value.
+  void reaches(const char* claim, double bound, const Selection& selected) {
+    const Extreme found = largest(rows_, selected, error);
+    decide(claim, found, found.value >= bound);
+  }
+
+ private:
+  void decide(const char* claim, const Extreme& found, bool holds) {
+    if (found.rows == 0) {
+      verdicts_.not_judged(claim);
+    } else {
+      verdicts_.check(claim, holds, found.value);
+    }
+  }
+
+  const std::vector<Row>& rows_;
+  Verdicts& verdicts_;
+};
+
+}  // namespace
+
+void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
+  Judge judge(rows, verdicts);
+  judge.at_most(
+      "80 steps and more: the order of the gradient is that of the tip within 0.3", 0.3,
+      [](const Row& row) {
+        return smooth(row) && row.number("steps") > 80 && row.has("gradient_order");
+      },
+      [](const Row& row) {
+        return std::abs(row.number("gradient_order") - row.number("tip_order"));
+      });
+  judge.at_least("the error of the gradient is 10 times that of the tip over the length",
+                 10, smooth,
+                 [](const Row& row) { return error(row) / row.number("tip_error_rel"); });
+  judge.at_least("backward_euler with 160 steps is 1 % off", 0.01,
+                 of("backward_euler", 160));
+  judge.at_most("tr_bdf2 with 80 steps gives 2 %", 0.02, of("tr_bdf2", 80));
+  judge.at_most("esdirk43 with 20 steps gives 1 %", 0.01, of("esdirk43", 20));
+  judge.at_most("esdirk43 with 160 steps gives 0.01 %", 1e-4, of("esdirk43", 160));
+  judge.reaches("without a damped start some gradient is all wrong with 40 steps", 1,
+                [](const Row& row) {
+                  return row.text("start") == "as_run" && row.number("steps") == 40 &&
+                         measured(row) && !kinked(row);
+                });
+  judge.at_least(
+      "with 10 elements the error in space is 5 % at least", 0.05, [](const Row& row) {
+        return row.text("part") == "space" && measured(row) &&
+               row.number("elements") == 10 && row.text("model") != "super_clothoid";
+      });
+  judge.at_least(
+      "regularised contact: the gradient is 30 times as wrong as the tip", 30,
+      [](const Row& row) {
+        return row.text("part") == "contact" && row.text("law").starts_with("regul") &&
+               measured(row);
+      },
+      [](const Row& row) { return error(row) / row.number("tip_error_rel"); });
+}
+
+}  // namespace tress::experiments::cost_of_gradient
