@@ -5,8 +5,9 @@
 
 namespace tress::models {
 
-/// The same strand four times as one system, whose residual costs little more than that
-/// of one: for many states of one strand. Null where the model or its options have none.
+/// Makes a system of four copies of a strand, whose residual costs little more than that
+/// of one: for several states of the strand. Null where the model or its options have
+/// none.
 inline std::unique_ptr<System> strand_copies(const ModelEntry& model,
                                              const Strand& strand, Parameters options,
                                              const Effects& effects) {

@@ -52,7 +52,7 @@ inline constexpr Target targets[] = {{1e-2, "linearizations_1_percent"},
                                      {1e-4, "linearizations_001_percent"}};
 
 /// Fills in the orders at which errors fall with the step or the elements' length,
-/// between a row and the one with half as many, and the work for `targets`.
+/// between a row and the row with half the number, and the work for `targets`.
 void compare(std::vector<Row>& rows);
 void judge(const std::vector<Row>& rows, Verdicts& verdicts);
 

@@ -32,10 +32,10 @@ simulation::Scene with(const simulation::Scene& scene, std::string_view model,
 
 std::unique_ptr<System> system_of(const simulation::Scene& scene);
 
-/// How derivatives are computed.
+/// Selects how derivatives are computed.
 struct Way {
   integrators::GradientStart start = integrators::GradientStart::damped;
-  /// With the model's elastic Jacobian in place of the exact one, in the run and in its
+  /// Uses the model's elastic Jacobian in place of the exact one, in the run and in its
   /// variational equations.
   bool elastic = false;
 };

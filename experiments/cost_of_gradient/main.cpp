@@ -25,17 +25,17 @@ constexpr Column columns[] = {
     {"gradient_error_rel",
      "error of the derivative of the tip at ten frames over its size, root mean squares; "
      "the largest of the four parameters"},
-    {"modulus_error_rel", "that of the derivative by Young's modulus"},
-    {"friction_error_rel", "that by the internal friction"},
-    {"drag_error_rel", "that by the drag"},
-    {"curvature_error_rel", "that by the natural curvature"},
+    {"modulus_error_rel", "error of the derivative by Young's modulus"},
+    {"friction_error_rel", "error of the derivative by the internal friction"},
+    {"drag_error_rel", "error of the derivative by the drag"},
+    {"curvature_error_rel", "error of the derivative by the natural curvature"},
     {"reference_gap", "uncertainty of the reference, as gradient_error_rel"},
     {"tip_order", "order of tip_error_rel between this row and the one before"},
     {"gradient_order", "order of gradient_error_rel"},
     {"linearizations_1_percent",
      "linearizations for a gradient_error_rel of 1 %, by the power law between rows of "
      "the same method; empty: no row is as accurate"},
-    {"linearizations_001_percent", "those for 0.01 %"},
+    {"linearizations_001_percent", "linearizations for a gradient_error_rel of 0.01 %"},
     {"linearizations", "linearizations of the run and of its derivatives"},
     {"time_s", "processor time of the run with four derivatives, s", true},
 };

@@ -31,7 +31,7 @@ class AdjointRun {
   /// is repeated.
   static constexpr std::size_t most_record = std::size_t{64} << 20;  // bytes
 
-  /// As GradientRun.
+  /// Takes the arguments of GradientRun.
   AdjointRun(System& system, std::unique_ptr<System> exact,
              std::span<const RunParameter> parameters, const GradientRun::Method& method,
              std::size_t record_bytes = most_record);

@@ -23,7 +23,7 @@ class PulledNatural {
   PulledNatural(System& system, Dynamics& dynamics);
 
   std::size_t count() const { return stiffness_.size(); }
-  /// Of several mu (n) at once, each with its n_hat.
+  /// Adds to each n_hat what belongs to its mu (n).
   Status pull(const WatchedSystem::Motion& at, std::span<const std::vector<double>> mu,
               std::span<std::vector<double>> n_hat) noexcept;
 
@@ -52,13 +52,13 @@ class PulledParameters {
                    const Options& options);
 
   std::size_t count() const { return natural_by_.size(); }
-  /// Begins a sweep of so many numbers.
+  /// Begins a sweep of several numbers.
   void begin(std::size_t numbers);
   /// The systems remember what the run did, relative to what each began with: reference
   /// frames at the start depend on parameters.
   void recall(In memory);
-  /// Of x (n + m) for each number. `starts`: of the equations of an acceleration, in
-  /// which constraints are g'' = 0.
+  /// Adds the part of a stage with x (n + m) for each number. `starts`: the stage is an
+  /// acceleration, in which constraints are g'' = 0.
   Status pull(const WatchedSystem::Motion& at, bool starts,
               std::span<const std::vector<double>> x) noexcept;
   /// Adds the part of the start: q_hat and v_hat, (n) for each number.
@@ -73,7 +73,7 @@ class PulledParameters {
   std::vector<std::vector<double>> natural_by_;  // empty: by a stencil
   std::vector<VariedSystem> varied_;
   std::vector<std::size_t> index_;  // of varied_
-  /// Of each system of varied_: memory at the start less that of the run's system.
+  /// Memory at the start of each system of varied_, less that of the run's system.
   std::vector<std::vector<double>> began_;
   Linearized stages_;
   std::optional<Linearized> starts_;  // where there are constraints

@@ -42,7 +42,7 @@ class Tape {
 /// damped start, if there is one, then the method.
 class RecordedRun {
  public:
-  /// Where a run can be continued.
+  /// A place at which a run can be continued.
   struct Place {
     std::size_t method = 0;
     double t = 0;

@@ -9,13 +9,13 @@ namespace tress::integrators {
 namespace {
 
 /// Of a direction's length over System::scale. At fixed q the residual is quadratic in
-/// velocities but for laws of friction and drag, and what does not depend on them cancels
-/// in a difference but for its last digit.
+/// velocities but for laws of friction and drag. What does not depend on them cancels in
+/// a difference but for its last digit.
 constexpr double distance = 1e-5;
 /// Likewise of dq in reduced coordinates: of order 4, its error is 1e-18 f'''''' and
 /// 5e-12 f from rounding, which the smallest inertia enlarges in accelerations.
 constexpr double distance_along = 3e-5;
-/// Copies pay where their state serves more than one direction.
+/// Copies are worthwhile where their state serves more than one direction.
 constexpr std::size_t fewest_for_copies = 2;
 
 /// y += A x

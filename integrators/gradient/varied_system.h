@@ -43,8 +43,8 @@ inline constexpr Stencil central_stencil{0, central_at, central_weight};
 /// s. Motions of roots, of periods and durations from milliseconds to seconds, are not at
 /// rest at all of these times.
 inline constexpr double probed_times[] = {0, 0.0137, 0.373, 2.91};
-/// dr/ds = constant + by_q q + by_v v, entry by entry, in every state and at all times:
-/// of a modulus, an internal friction or a natural strain in coordinates that are
+/// dr/ds = constant + by_q q + by_v v, entry by entry, in every state and at all times.
+/// Moduli, internal frictions and natural strains have it in coordinates that are
 /// strains.
 struct SimpleDerivative {
   std::vector<double> constant, by_q, by_v;
@@ -55,12 +55,10 @@ struct SimpleDerivative {
 struct VariedSystem {
   Stencil stencil;                               // stencil of the derivative
   std::vector<std::unique_ptr<System>> systems;  // systems at the stencil's distances
-  std::optional<SimpleDerivative>
-      simple;  // derivative of the residual, where it is simple
+  std::optional<SimpleDerivative> simple;        // where the residual has one
 };
 
-/// What the systems of a stencil remember: what their own runs would, or the memory of
-/// the run itself.
+/// Memory of the systems of a stencil: that of their own runs, or that of the run itself.
 enum class VariedMemory { own, of_run };
 
 /// With the affine stencil where residual, start and points are affine in s: measured at

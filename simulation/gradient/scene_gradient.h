@@ -11,9 +11,10 @@
 
 namespace tress::simulation {
 
-/// Which points are differentiated.
+/// Points that are differentiated.
 enum class GradientOf { points, tip, last_tip };
-/// By GradientRun or AdjointRun. automatic: the one that is expected to cost less.
+/// Computes derivatives by GradientRun or AdjointRun. automatic: the one that is expected
+/// to cost less.
 enum class GradientWay { forward, adjoint, automatic };
 
 /// Asks for derivatives of the points of strands.
@@ -57,7 +58,7 @@ void check_derivatives(const Scene& scene, const std::string& place);
 /// Whether a run starts damped, by a word of [gradient] start.
 bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters);
 
-/// By words of [gradient] of and way.
+/// Returns what a word of [gradient] of or way means.
 GradientOf gradient_of(std::string_view word);
 GradientWay gradient_way(std::string_view word);
 

@@ -35,9 +35,9 @@ constexpr Parameter gradient_keys[] = {
     {.name = "way",
      .help =
          "direction of the derivatives in time. forward: along with the run, one more "
-         "solution per parameter; adjoint: one sweep backward, one solution per number "
-         "that is differentiated; auto: adjoint where the parameters are more than 3 "
-         "times these numbers, 3 for each point and frame",
+         "solution per parameter. adjoint: one sweep backward, one solution per number "
+         "that is differentiated. auto: adjoint where the parameters outnumber these "
+         "numbers, 3 for each point and frame, more than 3 to 1",
      .choices = "auto|forward|adjoint"},
     {.name = "start",
      .help = "start of the run. damped: two short steps of backward Euler; auto: damped "
