@@ -4,7 +4,8 @@
 
 namespace tress::models {
 
-/// `alone` makes a single strand; One, Two and Three are the kernels for as many modes.
+/// `alone` makes a single strand; One, Two and Three are the kernels for 1, 2 and 3
+/// modes.
 template <template <class, int> class Mechanics, class One, class Two, class Three>
 std::unique_ptr<System> make_batch(
     std::span<const Strand> strands, Unknown unknown, const ReducedOptions& given,

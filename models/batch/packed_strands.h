@@ -16,7 +16,8 @@ struct PackedStrands {
   std::vector<Effects> effects;   // one per strand
 };
 
-/// These options with the largest number of quadrature points that any strand needs.
+/// Returns these options with the largest number of quadrature points that any strand
+/// needs.
 ReducedOptions with_same_points(std::span<const Strand> strands, Unknown unknown,
                                 ReducedOptions options);
 

@@ -37,7 +37,7 @@ class RecursiveMechanics {
   Status solve(In b, Out x) { return solver_.solve(b, x); }
 
   using Load = typename TreeSolver<MassShapeOf<Kernel, modes>>::Load;
-  /// How tips of a chain respond to loads on them.
+  /// Computes the response of tips of a chain to loads on them.
   bool respond(std::span<const Load> loads, Out blocks) {
     return solver_.respond(loads, blocks);
   }
@@ -264,7 +264,7 @@ class ReducedBatch final : public StrandBlock,
     return true;
   }
 
-  /// Those of all points are found at once, when the first are asked for.
+  /// Finds the responses of all points at once, with the first request.
   bool responses(double t, In q, std::span<const int> points, Out blocks) override {
     if (!responds_at_once() || factored_ != Status::ok) return false;
     if (!std::exchange(responded_, true)) respond(t, q);

@@ -5,9 +5,9 @@
 
 namespace tress::models {
 
-/// Energies of clamped strands, side by side, in consistent units. As ReducedSystem has
-/// them: mass at the Gauss-Legendre points of the elements, rotors at their ends. Kind:
-/// see models/head/reduced_kernel.h.
+/// Energies of clamped strands in SIMD lanes, in consistent units, with the
+/// discretisation of ReducedSystem: mass at the Gauss-Legendre points of the elements,
+/// rotors at their ends. Kind: see models/head/reduced_kernel.h.
 template <class Kind>
 class ReducedEnergies {
  public:

@@ -10,7 +10,7 @@
 
 namespace tress::models {
 
-/// What the elements of a strand have in common, in consistent units.
+/// Properties common to all elements of a strand, in consistent units.
 template <class T>
 struct ReducedMaterial {
   T length;           // of an element
@@ -43,7 +43,7 @@ template <class T>
 struct SeenPoint {
   Vec3<T> position, velocity;
 };
-/// The same of its tip, with the turn of the tip's frame.
+/// Position, velocity and turn of an element's tip, seen from the element's start.
 template <class T>
 struct SeenTip {
   Vec3<T> position, velocity;
@@ -64,15 +64,17 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///
 ///     delta = -S(w)^-1 r(q, v, a),   S = w.acc M + w.vel C + w.pos K
 ///
-/// in three sweeps over the elements that keep all of an element in registers: motion
-/// from the root to the tip, then residual wrenches and articulated inertias back to the
-/// root [Featherstone 1983], then delta to the tip. The equations of ReducedSystem with
-/// gravity and linear drag, and with the loads of other effects on points if a step is
-/// given them, for as many strands as T has lanes. Lanes do not mix: a lane that is not
-/// finite leaves the others as they are, and results are the same bits for any number of
-/// lanes and whether or not others have loads.
+/// in three sweeps over the elements that keep all of an element in registers. The first
+/// carries motion from the root to the tip. The second carries residual wrenches and
+/// articulated inertias back to the root [Featherstone 1983]. The third finds delta from
+/// the root to the tip. The equations are those of ReducedSystem with gravity, linear
+/// drag and, where a step is given them, the loads of other effects on points.
 ///
-/// A Kind of element says how its unknowns move it (models/head/helix_strand.h,
+/// Each lane of T holds one strand, and lanes do not mix. A lane that is not finite does
+/// not change the others. Results are bit-identical for any number of lanes, and whether
+/// or not other lanes have loads.
+///
+/// A Kind of element defines how its unknowns move it (models/head/helix_strand.h,
 /// chain_strand.h). It has
 ///
 ///     Real                          // T
@@ -103,10 +105,10 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 ///     rotors_of_root, rotors_of_last          // shares of a rotor that turn with these
 ///     straight                      // whether elements are
 ///
-/// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed, as it stands; results
-/// differ from ReducedSystem's by what a relative change of the state by 1e-12, of chains
-/// by 3e-11, makes (tests/models/head/test_reduced_head.cpp). Chains whose joints are
-/// soft would lose all digits in that difference (ChainKind::eliminate()). Cost:
+/// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed, without refinement.
+/// Results differ from ReducedSystem's as by a relative change of the state of 1e-12, of
+/// 3e-11 for chains (tests/models/head/test_reduced_head.cpp). Chains with soft joints
+/// would lose all digits in that difference (ChainKind::eliminate()). Cost:
 /// O(elements), of helices O(elements points).
 template <class Kind>
 class ReducedKernel {
@@ -118,7 +120,7 @@ class ReducedKernel {
   using Motion = ReducedMotion<T>;
   using Sum = ArticulatedSum<T>;
 
-  /// Of an element, between sweeps.
+  /// State of an element between sweeps.
   struct Scratch {
     typename Kind::Kept kept;
     Symmetric3<T> pivot;         // H_kk^-1
@@ -144,9 +146,9 @@ class ReducedKernel {
   double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
   double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
 
-  /// One linear solve per step h (LinearlyImplicitStep) in two parts, between which loads
-  /// of effects are found: motion at q + h v and v in `scratch`; then q and v (elements)
-  /// are updated. The first returns what the second needs.
+  /// Starts a step h of one linear solve (LinearlyImplicitStep). Writes the motion at
+  /// q + h v and v to `scratch` and returns that of the tip. The caller then finds the
+  /// loads of effects and calls linearly_implicit_step().
   TRESS_FLATTEN Motion move(const Material& m, const Motion& root, double h, const Vec* q,
                             const Vec* v, Scratch* scratch) const {
     const T step(h);
@@ -157,8 +159,8 @@ class ReducedKernel {
     }
     return at;
   }
-  /// `end`: what move() returned. `loads`: of an element null or its loads; null if there
-  /// are none.
+  /// Finishes the step: updates q and v (elements). `end`: result of move(). `loads`: for
+  /// each element its loads or null; null without loads.
   TRESS_FLATTEN void linearly_implicit_step(const Material& m, const Motion& end,
                                             const LoadSums<T>* const* loads,
                                             const Vec* rest, double h, Vec* q, Vec* v,
@@ -172,8 +174,8 @@ class ReducedKernel {
     });
   }
 
-  /// The residual r at any state; `scratch` and `end`: what Kind::move made of it and of
-  /// the tip. `rest(i)`: of an element.
+  /// Computes the residual r at any state. `scratch` and `end`: results of Kind::move for
+  /// the elements and the tip. `rest(i)`: unknowns of element i at rest.
   template <class Rest>
   TRESS_FLATTEN void residual(const Material& m, const Motion& end,
                               const LoadSums<T>* const* loads, Rest rest, const Vec* v,
@@ -190,7 +192,7 @@ class ReducedKernel {
     }
   }
 
-  /// Elastic and viscous moments of an element, and their diagonal in S.
+  /// Elastic and viscous moments of an element, and the diagonal that they add to S.
   struct Bending {
     Vec moment, tangent;
   };
@@ -212,11 +214,11 @@ class ReducedKernel {
          pos * stiffness.z + damping}};
   }
 
-  /// What weighs acceleration in S: of a length, and of a rotor.
+  /// Factors of the acceleration in S: of a unit of length, and of a rotor.
   struct Inertia {
     T of_length, acc;
   };
-  /// Of an element with all that hangs on it, in its axes.
+  /// Sums of an element with all that hangs on it, in its axes.
   struct Uneliminated {
     Sum sum;
     Symmetric3<T> own;           // H_kk
@@ -286,7 +288,7 @@ class ReducedKernel {
     return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
   }
 
-  /// From the root, which does not move, to the tip.
+  /// Finds the unknowns from the root, which does not move, to the tip.
   template <class Use>
   void solve(const Scratch* scratch, Use use) const {
     Vec l, a;

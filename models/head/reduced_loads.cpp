@@ -140,10 +140,10 @@ bool ReducedLoads<Kind>::add_up(std::size_t i, const OnElement& points) {
 }
 
 /// All points are within the ellipsoid of revolution about the tips whose axis is the
-/// length l of the element: with the chord c, a convex function phi is at least
+/// length l of the element. With the chord c, its middle m and g = grad phi, a convex
+/// function phi is at least
 ///
-///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2,   m the chord's middle, g = grad
-///     phi.
+///     phi(m) - sqrt((l^2 - c^2) |g|^2 + (g.c)^2)/2
 template <class Kind>
 TRESS_FLATTEN void ReducedLoads<Kind>::look_for(const NearBody& body,
                                                 std::span<char> near) const {

@@ -10,11 +10,11 @@
 
 namespace tress::models {
 
-/// Loads of effects on the points of a block of strands in one step, between the sweeps
-/// of ReducedKernel, for a Kind of it. Bodies: all strands at once, a point only if its
-/// element's ball comes near enough. Other effects: strand by strand, as ReducedSystem
-/// calls them. Elements that nothing loads are left alone. Compiled without fused
-/// products, whose choice depends on the number of lanes: the same bits for all.
+/// Loads of effects on the points of a block of strands in one step, found between the
+/// sweeps of ReducedKernel. Bodies act on all strands at once, on the points of elements
+/// whose ball comes near enough. Other effects act strand by strand, as in ReducedSystem.
+/// Elements without loads cost nothing. Compiled without fused products, whose choice
+/// depends on the number of lanes: results are bit-identical.
 template <class Kind>
 class ReducedLoads {
  public:
@@ -48,10 +48,10 @@ class ReducedLoads {
     std::span<const NearBody> bodies;
     std::span<const std::vector<const Effect*>> others;  // (strands), or empty
   };
-  /// Of each element its loads, or null; from the motion at the step's end.
+  /// Finds the loads of each element, or null, from the motion at the step's end.
   const LoadSums<T>* const* find(const Block& block, const Vec3T* v,
                                  const Element* elements);
-  /// The same by points, with all derivatives; bodies alone act.
+  /// Finds the loads of bodies point by point, with all derivatives.
   const ExactPoint<T>* const* find_exact(const Block& block, const Vec3T* v,
                                          const Element* elements);
 

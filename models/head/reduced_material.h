@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// What elements of this Kind of a strand have in common, of a lane.
+/// Sets the properties common to all elements of a strand, in one lane.
 template <class Kind>
 void set_material(const Strand& strand, const LaneOptions& options,
                   const HeadUnits& units, int lane,

@@ -118,7 +118,7 @@ class ArcOf {
   Acceleration acceleration(const Vec& rate, const Vec& second) const {
     return {k_, rate.y, second.y};
   }
-  /// Its derivative along x.
+  /// Returns the derivative of acceleration() along x.
   AccelerationSlope acceleration_slope(const Vec& rate, const Vec& second,
                                        const Vec& x) const {
     return {this->second(second, x), third(rate, rate, x)};

@@ -12,9 +12,9 @@ namespace tress::models {
 /// angles [Hadap, Magnenat-Thalmann 2001; Hadap 2006]. Unknowns are the rotation vectors
 /// of the joints (rad). A joint represents half of each adjacent link: stiffness
 /// diag(GJ, EI1, EI2)/l with l that arc length, so the joint at the clamp is twice as
-/// stiff. A free root is the frame before the first joint: without mass, so that the
-/// joint is at rest in it, and the first link moves as if it were the root
-/// (Traits::regular_mass is false, and there is no ExplicitForm). Solved by
+/// stiff. A free root is the frame before the first joint. It has no mass, so the joint
+/// is at rest in it, and the first link moves as if it were the root.
+/// (Traits::regular_mass is then false, and there is no ExplicitForm.) Solved by
 /// Featherstone's articulated-body sweep with stiffness and friction inside, or by the
 /// dense matrix of composite bodies. Throws InputError (see reduced_strand).
 std::unique_ptr<System> articulated_chain(const Strand& strand,

@@ -22,12 +22,12 @@ template <int rows>
   for (int i = 0; i < rows; ++i) sum[i] += weight * a[i];
 }
 
-/// c (+)= sign a b for small column-major blocks of fixed size inside larger ones, given
-/// by their first entries and column strides; b also has a row stride and may be
-/// transposed. Loops replace Eigen's products, which unroll completely: a 9 x 6 x 21
-/// product then takes the compiler minutes. A column of c stays in vector registers;
-/// without `unroll 1` the compiler unrolls its loop before vectorising it, and the
-/// product takes more than twice as long; packs are vectors already. Inlined, so that
+/// Computes c (+)= sign a b for small column-major blocks of fixed size inside larger
+/// ones, given by their first entries and column strides. The block b also has a row
+/// stride and may be transposed. Loops replace Eigen's products, which unroll completely:
+/// a 9 x 6 x 21 product then takes the compiler minutes. A column of c stays in vector
+/// registers. Without `unroll 1` the compiler unrolls its loop before vectorising it, and
+/// the product takes more than twice as long. Packs are vectors already. Inlined, so that
 /// strides are constants.
 template <int sign, bool onto, int rows, int inner, int columns, class T>
 [[gnu::always_inline]] inline void multiply(const T* a, int a_stride, const T* b,
@@ -45,7 +45,7 @@ template <int sign, bool onto, int rows, int inner, int columns, class T>
   }
 }
 
-/// The same product, unrolled completely, for the smallest blocks.
+/// Computes multiply() unrolled completely, for the smallest blocks.
 template <int sign, bool onto, int rows, int inner, int columns, class T>
 [[gnu::always_inline]] inline void multiply_small(const T* a, int a_stride, const T* b,
                                                   int b_step, int b_stride, T* c,
@@ -116,7 +116,7 @@ inline void add(const A& a, B&& b, double factor = 1) {
   }
 }
 
-/// The same for matrices and parts of them; a is column-major.
+/// Computes c (+)= sign a b for matrices and parts of matrices; a is column-major.
 template <int sign, bool onto, class A, class B, class C>
 inline void multiply(const A& a, const B& b, C&& c) {
   constexpr int rows = A::RowsAtCompileTime, inner = A::ColsAtCompileTime,

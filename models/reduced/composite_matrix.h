@@ -10,9 +10,9 @@
 namespace tress::models {
 
 /// The dense matrix of all unknowns, as in [Bertails et al. 2006], but assembled in
-/// O(N^2) by composite bodies [Featherstone's CRBA]: the bodies beyond a tip, with their
-/// joints locked, are summed once from the free ends; column block i then takes one walk
-/// to the root (and, for an exact Jacobian, one through the segments below).
+/// O(N^2) by composite bodies [Featherstone's CRBA]. The bodies beyond a tip, with their
+/// joints locked, are summed once from the free ends. Column block i then takes one walk
+/// to the root and, for an exact Jacobian, one through the segments below.
 template <class Shape>
 class CompositeMatrix {
  public:

@@ -9,9 +9,10 @@
 
 namespace tress::models {
 
-/// Contribution of a contact to an exact Jacobian (ExactTangent): derivatives of the
-/// positions and velocities of its points by their segments' states and unknowns, and the
-/// effect of a force on them, at the motion held by Kinematics. O(1) per contact.
+/// Contribution of a contact to an exact Jacobian (ExactTangent), at the motion held by
+/// Kinematics. It consists of the derivatives of the positions and velocities of the
+/// contact's points by their segments' states and unknowns, and of the effect of a force
+/// on these. O(1) per contact.
 template <class Kernel, int modes>
 class ContactTangent {
  public:

@@ -10,8 +10,8 @@
 namespace tress::models {
 
 /// The couplings of a tangent in terms of all unknowns: the dependence of each y on them,
-/// and the contribution of y to their equations, by one walk from the far end of each to
-/// the root, O(N) per coupling. The product of the two is O(N^2) per coupling.
+/// and the contribution of y to their equations. Both take one walk from the far end of
+/// each coupling to the root, O(N). The product of the two is O(N^2) per coupling.
 template <class Shape>
 class CoupledMatrix {
  public:

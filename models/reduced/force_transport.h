@@ -15,13 +15,13 @@ namespace tress::models {
 ///
 ///     r_l'' = int_0^l (omega' x d3 + omega x (omega x d3)) ds,
 ///
-/// "the rest segments will move together": each segment's omega' follows from the forces
-/// on it and on all segments beyond it, minus the centripetal part, as if those beyond
-/// turned with it.
+/// "the rest segments will move together". The omega' of a segment follows from the
+/// forces on it and on all segments beyond it, minus the centripetal part. The segments
+/// beyond turn with it.
 ///
 /// This is a reconstruction: the surviving text of the thesis lacks its equations.
 /// Kinematics, gravity, velocity terms, effects, bending and twist, rest angles and
-/// friction are those of articulated_chain; in M(q) a = f(q, v) each joint keeps its own
+/// friction are those of articulated_chain. In M(q) a = f(q, v) each joint keeps its own
 /// acceleration and those of the joints before it, and drops those beyond it:
 ///
 ///     M_ft(q) a = f(q, v),    M_ft = block lower triangle of M, diagonal included,
@@ -39,9 +39,9 @@ namespace tress::models {
 ///   equations do not tend to those of the rod;
 /// - M_ft is not symmetric, and energy is not conserved: the omitted inertia does work,
 ///   v^T (M - M_ft) a, which `power` counts;
-/// - M_ft^-1 K is far from normal: without gravity every mode keeps its amplitude, yet
-///   small random motions of a straight hair in the plane gain energy by a factor of 25
-///   at 5 segments, 400 at 10, a million at 40 within 0.1 s
+/// - M_ft^-1 K is far from normal. Without gravity every mode keeps its amplitude. Yet
+///   small random motions of a straight hair in the plane gain energy within 0.1 s. The
+///   factor is 25 at 5 segments, 400 at 10, a million at 40
 ///   (experiments/force_transport/main.cpp);
 /// - under gravity small oscillations about rest grow: two hanging links without springs
 ///   have omega^2 = (0.89 +- 0.22 i) g/l. Smaller steps do not help; damping is needed.

@@ -23,9 +23,10 @@ class FreeRootFrame {
   explicit FreeRootFrame(const FreeRoot& start)
       : start_(start), reference_(start.frame) {}
 
-  void initial_state(Out q, Out v) const;  // (6), (6)
-  /// Sets the position used by all calls below except rebase().
-  void place(In q);  // (6)
+  /// Writes the initial coordinates and rates (6 each).
+  void initial_state(Out q, Out v) const;
+  /// Sets the position (6) used by all calls below except rebase().
+  void place(In q);
   FrameMotion motion(In q, In v, In a) const;
   /// Generalised forces of a wrench at the root, in the root's components.
   void residual(const Vec& force, const Vec& moment, Out r) const;

@@ -15,10 +15,10 @@ namespace tress::models {
 ///     P(s) = W(s) e0                             position
 ///
 /// Derivatives with respect to kappa are directional and multilinear: dW[x] y is the
-/// derivative of W y along x, d2W[x1, x2] y the second one; those of P follow with y =
-/// e0. Each is a sum of a few constant vectors weighted by the functions, prepared once
-/// per element and evaluated at any s (a number or a pack). Straight elements need no
-/// special case. T = double, or Pack for four elements; s is then a pack.
+/// derivative of W y along x, d2W[x1, x2] y the second one. Derivatives of P follow with
+/// y = e0. Each is a sum of a few constant vectors weighted by the functions, prepared
+/// once per element and evaluated at any s (a number or a pack). Straight elements need
+/// no special case. T = double, or Pack for four elements; s is then a pack.
 template <class T>
 class HelixOf {
  public:
@@ -119,7 +119,7 @@ class HelixOf {
     const Second b = this->second(rate, rate);
     return {f.A, f.A1 + b.A1, b.A2, f.B + b.B, f.B1 + b.B1, b.B2};
   }
-  /// Its derivative along x.
+  /// Returns the derivative of acceleration() along x.
   AccelerationSlope acceleration_slope(const Vec& rate, const Vec& second,
                                        const Vec& x) const {
     const Second a = this->second(second, x);

@@ -14,10 +14,10 @@ struct WrenchOf {
 };
 using Wrench = WrenchOf<double>;
 
-/// The residual of a reduced-coordinate tree by the recursive Newton-Euler scheme: motion
-/// from the root to the tips (Kinematics), d'Alembert forces m p'' - f at the quadrature
-/// points (gravity as an acceleration of the root [Luh, Walker, Paul 1980]), wrenches
-/// from the tips to the root. O(N). For as many strands as Kinematics.
+/// The residual of a reduced-coordinate tree by the recursive Newton-Euler scheme. Motion
+/// goes from the root to the tips (Kinematics), d'Alembert forces m p'' - f act at the
+/// quadrature points, and wrenches go from the tips to the root. Gravity is an
+/// acceleration of the root [Luh, Walker, Paul 1980]. O(N). One strand, or one per lane.
 template <class Kernel, int modes>
 class InverseDynamics {
  public:
@@ -125,7 +125,7 @@ class InverseDynamics {
   void derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks, [](const Effect&) { return true; });
   }
-  /// The same for effects without couplings.
+  /// Computes derivatives() of the effects without couplings.
   void uncoupled_derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks,
                 [](const Effect& effect) { return !effect.needs().couplings; });

@@ -100,7 +100,7 @@ class Kinematics {
     return segment.mounted ? mounted_[i] : parent_tip(segment);
   }
   const FrameMotion& root() const { return root_; }
-  /// Without branches.
+  /// Whether the strand has no branches.
   bool is_chain() const {
     int before = -1;
     return std::ranges::all_of(segments_, [&before](const Segment& segment) {
@@ -182,7 +182,7 @@ class Kinematics {
     return (free_root_ ? free_root_->frame() : root_motions_.front().at(t).frame) * frame;
   }
 
-  /// Where a tip is and how it moves; v and omega in the components of its frame.
+  /// Position and motion of a tip; v and omega in the components of its frame.
   struct Tip {
     Frame frame;
     Vec x, v, omega;
@@ -286,7 +286,7 @@ class Kinematics {
     }
   }
 
-  /// What tips() reads: shapes are kept where they are dear, for who asks at q next.
+  /// Returns the shape that tips() reads. Expensive shapes are kept for the next call.
   decltype(auto) read_kernel(const Segment& segment, In q, std::size_t i) const {
     if constexpr (collocated) {
       return (geometry_[i].kernel);

@@ -135,7 +135,7 @@ bool like_masses(const Kinematics<Kernel, modes>& kinematics, std::size_t i,
 
 /// Mass, friction and elastic stiffness of one segment, w.acc M + w.vel C + w.pos K: the
 /// tangent of the linearly implicit step. The motion of its points and tip is linear in
-/// the acceleration of its start and in its unknowns, J = [I, -[P]x, dP/dq]; the matrix
+/// the acceleration of its start and in its unknowns, J = [I, -[P]x, dP/dq]. The matrix
 /// is sum m J^T J over the quadrature points. `of_effects`: w.vel and w.pos times minus
 /// the derivatives of the loads, (9) per point, or empty. Expects tip to be zero or the
 /// result of an earlier call.
@@ -252,7 +252,7 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   copy(part(transfer).transpose(), tangent.lift);
 }
 
-/// The same for the free root of one strand.
+/// Computes the mass tangent of a free root.
 template <class Kernel, int modes>
 void mass_root_tangent(const Kinematics<Kernel, modes>& kinematics, Weights w,
                        RootTangent<MassShapeOf<Kernel, modes>>& root) {

@@ -9,8 +9,8 @@ namespace tress::models {
 /// A 3x3 matrix for each of four points, in the components of a segment's start.
 struct PointMatrix {
   PointMatrix() = default;
-  /// From row-major matrices (9 per point) in world components, `step` points apart; f is
-  /// the frame of the start.
+  /// Takes row-major matrices (9 per point) in world components, `step` points apart; f
+  /// is the frame of the start.
   template <class Real>
   PointMatrix(const double* matrices, std::size_t step, const FrameOf<Real>& f) {
     const Vec3<Pack> axes[3] = {Vec3<Pack>(f.e0), Vec3<Pack>(f.e1), Vec3<Pack>(f.e2)};
@@ -37,7 +37,8 @@ inline Pack first_entries(const double* matrices, std::size_t step) {
   return gather3(matrices, 9 * step).x;
 }
 
-/// As of drag. False for one that is not finite.
+/// Whether a matrix is a number times the unit matrix, as of drag. False for a matrix
+/// that is not finite.
 inline bool is_multiple_of_unit(const double* m) {
   return m[4] == m[0] && m[8] == m[0] && m[1] == 0 && m[2] == 0 && m[3] == 0 &&
          m[5] == 0 && m[6] == 0 && m[7] == 0;

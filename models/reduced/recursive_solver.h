@@ -18,20 +18,19 @@ namespace tress::models {
 ///     L = V^T local V + (transfer V)^T L_tip (transfer V),
 /// a sum of positive semidefinite terms. The plain form L = P - Y H^-1 Y^T, with H, Y and
 /// P the blocks of local + lift L_tip transfer, reads only one half of that matrix.
-/// Rounding makes L unsymmetric, and near a straight rod, where rotation about its own
-/// axis moves almost no mass, every segment amplifies the asymmetry: after some twenty
-/// segments no digit is left (tests/models/reduced/test_solvers.cpp measures it).
-/// Averaging L with L^T, or eliminating without using symmetry as for exact Jacobians,
-/// also prevents it.
+/// Rounding makes L unsymmetric. Near a straight rod, where rotation about its own axis
+/// moves almost no mass, every segment amplifies the asymmetry. After twenty segments no
+/// digit is left (tests/models/reduced/test_solvers.cpp measures it). Averaging L with
+/// L^T, or eliminating without using symmetry as for exact Jacobians, also prevents this.
 ///
-/// A pivot may be nearly singular although the whole matrix is far from it: of exact
-/// tangents, which are not definite, by contact, wind and drag; of symmetric ones by a
-/// joint that is soft beside the inertia of a link and bent so far that its unknowns turn
-/// the link about its own axis. Without row exchange the corresponding digits are lost:
-/// up to five in 300 random exact states, eleven in soft chains. solve() then applies
-/// iterative refinement [Higham 2002, Accuracy and Stability of Numerical
-/// Algorithms, chapter 12], which leaves a difference of some eps cond(S). Problems side
-/// by side are refined each by its own pivots.
+/// A pivot may be nearly singular although the whole matrix is not. Exact Jacobians,
+/// which are not definite, have such pivots by contact, wind and drag. Symmetric ones
+/// have them by a joint that is soft compared with the inertia of its link, where its
+/// unknowns turn the link about its own axis. Without row exchange the corresponding
+/// digits are lost: up to five in 300 random exact states, eleven in soft chains. solve()
+/// then applies iterative refinement [Higham 2002, Accuracy and Stability of Numerical
+/// Algorithms, chapter 12], which leaves a difference of a few eps cond(S).
+/// Each lane is refined according to its own pivots.
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
@@ -161,11 +160,11 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
   }
 
-  /// O(segments + loads^2): beyond the tip i of a load, whose own unknowns x do not feel
-  /// it, states are passed on as s_tip = T s, T = transfer [I; -Z]; a wrench reaches the
-  /// start of a segment as T^T w. So Omega, the response of a tip's state to a wrench on
-  /// it, follows from the root: Omega_tip = T Omega T^T + transfer_x H^-1 transfer_x^T
-  /// [Wensing et al. 2012].
+  /// Costs O(segments + loads^2). The unknowns x beyond the tip i of a load do not feel
+  /// it. There, states are passed on as s_tip = T s, T = transfer [I; -Z], and a wrench
+  /// reaches the start of a segment as T^T w. So Omega, the response of a tip's state to
+  /// a wrench on it, follows from the root: Omega_tip = T Omega T^T + transfer_x H^-1
+  /// transfer_x^T [Wensing et al. 2012].
   bool respond_of_chain(std::span<const Load> loads, Out blocks) noexcept {
     using Response = Eigen::Matrix<Real, states, wrench>;
     const TreeTangent<Shape>& tangent = *tangent_;
@@ -319,7 +318,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     return is_finite(inverse.sum());
   }
 
-  /// By the two halves of the unknowns: with S = D - C A^-1 C^T,
+  /// Inverts by the two halves of the unknowns. With S = D - C A^-1 C^T,
   /// [A C^T; C D]^-1 = [A^-1 + Y^T S^-1 Y, -Y^T S^-1; -S^-1 Y, S^-1], Y = C A^-1.
   static void invert_definite(const Square& h, Square& inverse) {
     constexpr int half = n / 2;

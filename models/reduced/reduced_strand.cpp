@@ -105,8 +105,8 @@ void add_points(ReducedStrand& reduced, ReducedSegment& segment, double density_
 
 /// Each segment's inertia about its tangent. For a helix, half of it is lumped at its
 /// start, where its parent's tip turns; for a rigid link all of it. The difference of a
-/// clothoid's twist turns neither end, but what is between by l x (x - 1): of that the
-/// inertia is l^3/30, without its coupling to the turning of the ends.
+/// clothoid's twist turns neither end. It turns the section at x by l x (x - 1), with the
+/// inertia l^3/30. Its coupling to the turning of the ends is omitted.
 void add_rotors(ReducedStrand& reduced, const Strand& strand, Unknown unknown) {
   const bool rigid = unknown == Unknown::joint_angle;
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {

@@ -78,8 +78,8 @@ struct ReducedOptions {
 std::span<const Parameter> reduced_parameters();
 ReducedOptions reduced_options(const Parameters& parameters);
 
-/// Unknowns of a segment: the curvatures of a helix, those of a clothoid, two for each
-/// component, or the rotation vector of a ball joint, which represents the bending of
+/// Unknowns of a segment: the curvatures of a helix, those of a clothoid (two for each
+/// component), or the rotation vector of a ball joint. A joint represents the bending of
 /// half of each adjacent link.
 enum class Unknown { curvature, linear_curvature, joint_angle };
 
@@ -100,9 +100,10 @@ struct ReducedStrand {
   bool regular_mass = true;
 };
 
-/// A typical unknown: one radian over the length, in joints over their number.
+/// Returns a typical unknown: one radian over the length, in joints over their number.
 double reduced_scale(const Strand& strand, bool joints);
-/// 1/s, root of the summed squares of swinging and bending rates.
+/// Returns a typical rate (1/s), the root of the summed squares of swinging and bending
+/// rates.
 double reduced_rate(const Strand& strand);
 
 /// Throws InputError if modes and geometry are incompatible: a branched, twisted or
@@ -110,13 +111,15 @@ double reduced_rate(const Strand& strand);
 ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
                              const ReducedOptions& options, Effects effects);
 
-/// Gauss-Legendre points for a segment that winds by `angle` (rad), such that the mass
-/// matrix is within 1e-8 of its integral (tests/models/reduced/test_quadrature.cpp).
+/// Returns the number of Gauss-Legendre points of a segment that winds by `angle` (rad),
+/// such that the mass matrix is within 1e-8 of its integral
+/// (tests/models/reduced/test_quadrature.cpp).
 int quadrature_points(double angle);
 
-/// The same for a segment whose curvature varies linearly, where the points carry the
-/// integrals of kinematics too: those of the tip are within 1e-11 of the length. `angle`
-/// is the sum of those of mean and half, at most most_clothoid_winding, or InputError.
+/// Returns that number for a segment whose curvature varies linearly. Its points also
+/// carry the integrals of kinematics; those of the tip are within 1e-11 of the length.
+/// `angle` is the sum of the angles of mean and half. Throws InputError above
+/// most_clothoid_winding.
 int clothoid_points(double angle);
 inline constexpr double most_clothoid_winding = 24;
 inline constexpr int most_clothoid_points = 32;

@@ -154,7 +154,7 @@ class ReducedSystem : public System,
 
   ExplicitForm* explicit_form() override { return regular_mass_ ? this : nullptr; }
   Energetics* energetics() override { return this; }
-  /// Of a free root, whose frame turns as far as it likes.
+  /// Returns the history of a free root, whose frame may turn without limit.
   History* history() override { return kinematics_.free() ? this : nullptr; }
   MaterialPoints* material_points() override { return this; }
   ContactForm* contact_form() override { return held_contacts_.form(); }

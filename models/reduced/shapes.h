@@ -5,10 +5,10 @@
 
 namespace tress::models {
 
-/// The directions in which the frames of a strand move. With two or three modes, the
-/// components of strain that are unknowns, this is all of space; a strand with one mode
-/// (bending about e1 only) stays in its plane of e0 and e2: two translations and one
-/// rotation.
+/// The directions in which the frames of a strand move. Modes are the components of
+/// strain that are unknowns. With two or three modes the frames move in all of space. A
+/// strand with one mode (bending about e1 only) stays in its plane of e0 and e2: two
+/// translations and one rotation.
 template <int modes>
 struct Space {
   static constexpr int translations = modes == 1 ? 2 : 3;

@@ -135,7 +135,8 @@ class SparseTreeSolver final : public TreeSolver<Shape> {
     if (tangent.free_root) put(sink, root, root, 1, tangent.root.local);
   }
 
-  /// Also fills place_, the index of each emitted entry among the pattern's values.
+  /// Makes the pattern and fills place_, the index of each emitted entry among its
+  /// values.
   Pattern make_pattern(const TreeTangent<Shape>& structure) {
     std::vector<std::pair<int, int>> entries;  // column, row
     emit(structure,

@@ -24,10 +24,11 @@ TreeTangent<Shape> empty_tangent(const K& kinematics) {
 }
 
 /// Mass, friction and elastic stiffness of all segments, w.acc M + w.vel C + w.pos K,
-/// plus the derivatives of effects by the position and velocity of each point, made
-/// symmetric and semidefinite so that the sum stays definite: a repulsion is stiff along
-/// its gap but has negative stiffness force/gap across it, more than mass and elasticity
-/// can balance. The dependence of loads on the strand's tangent is omitted.
+/// plus the derivatives of effects by the position and velocity of each point. The latter
+/// are made symmetric and semidefinite so that the sum stays definite. A repulsion is
+/// stiff along its gap but has the negative stiffness force/gap across it, more than mass
+/// and elasticity can balance. The dependence of loads on the strand's tangent is
+/// omitted.
 template <class Kernel, int modes>
 class StiffTangent {
  public:

@@ -10,13 +10,13 @@ struct StrandEnergies {
   Real kinetic{0}, elastic{0};
 };
 
-/// Of a frame that spins about its e0, J.
+/// Returns the kinetic energy (J) of a frame that spins about its e0.
 template <class Real>
 Real rotor_energy(const Real& inertia, const FrameMotionOf<Real>& m) {
   return Real(0.5) * inertia * m.omega.x * m.omega.x;
 }
 
-/// Those of (q, v), where Kinematics have moved; of every lane.
+/// Computes the energies of each lane at (q, v), to which Kinematics have moved.
 template <class Kernel, int modes>
 StrandEnergies<typename Kernel::Real> strand_energies(
     const Kinematics<Kernel, modes>& kinematics, std::span<const typename Kernel::Real> q,

@@ -10,13 +10,13 @@
 namespace tress::models {
 
 /// M_ft of ForceTransport: the block lower triangle, diagonal included, of the mass
-/// matrix of a chain of rigid links with ball joints. With I_j the composite inertia of
-/// link j and all beyond it as one rigid body, and S_j the axes of joint j, both in the
-/// frame at the start of link j,
+/// matrix of a chain of rigid links with ball joints:
 ///
-///     (M_ft a)_j = S_j^T I_j (c_j + S_j a_j),
+///     (M_ft a)_j = S_j^T I_j (c_j + S_j a_j)
 ///
-/// with c_j the acceleration of that frame due to the joints before it. Frames, wrenches
+/// I_j is the composite inertia of link j and all beyond it as one rigid body. S_j holds
+/// the axes of joint j. Both are in the frame at the start of link j, and c_j is the
+/// acceleration of that frame due to the joints before it. Frames, wrenches
 /// and blocks are as in TreeTangent. Products and solves are sweeps from the root, O(N).
 template <class Kernel, int dofs>
 class TransportMatrix {
@@ -88,14 +88,14 @@ class TransportMatrix {
     }
   }
 
-  /// dense += factor d(M_ft a)/dq. A rotation of joint m moves everything beyond it as
-  /// one body: for the twist xi = S_m e its motions change by xi x, its wrenches by xi
-  /// x*, so for j < m the composite inertia I_j changes by that of I_m,
+  /// Adds factor d(M_ft a)/dq to `dense`. A rotation of joint m moves everything beyond
+  /// it as one body. For the twist xi = S_m e its motions change by xi x, its wrenches by
+  /// xi x*. So for j < m the composite inertia I_j changes by that of I_m,
   ///
   ///     dI_m b = xi x* (I_m b) - I_m (xi x b).
   ///
-  /// The links before m do not move, so c_j changes for j > m only: at the start of link
-  /// m by -xi x (c_m + S_m a_m) + dS_m a_m, passed on rigidly.
+  /// The links before m do not move, so c_j changes for j > m only. At the start of link
+  /// m the change is -xi x (c_m + S_m a_m) + dS_m a_m. It is passed on rigidly.
   void add_slope(const Kinematics<Kernel, dofs>& kinematics, double factor, In a,
                  Eigen::MatrixXd& dense) {
     sweep(a);

@@ -32,14 +32,16 @@ class TreeSolver {
   virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;
   virtual Status solve(In b, Out x) noexcept = 0;  // b and x may be the same
 
-  /// How tips of a chain respond to loads on them. With P_i the load's columns, wrenches
-  /// on the tip of segment i (-1: on the root), and s_ji P_i the state of tip j that they
-  /// cause: blocks P_j^T s_ji P_i by rows, for the first i all j, for the second ... Of
-  /// ascending segments. False: to be had from solve().
+  /// Loads on the tip of a segment (-1: on the root).
   struct Load {
     int segment;
     Eigen::Matrix<typename Shape::Real, Shape::wrench, 3> columns;
   };
+  /// Computes the response of tips of a chain to loads on these tips, in ascending order
+  /// of segments. The columns P_i of a load are wrenches, which cause the states s_ji P_i
+  /// of tip j. Writes the blocks P_j^T s_ji P_i by rows: for the first i all j, then for
+  /// the second. Returns false where the solver has no such response; solve() then
+  /// serves.
   virtual bool respond(std::span<const Load>, Out /*blocks*/) noexcept { return false; }
 };
 

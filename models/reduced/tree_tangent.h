@@ -37,9 +37,9 @@ struct TreeShape {
 ///
 /// and the equations to solve are r = b. Symmetric: lift = transfer^T, local and tip are
 /// symmetric. Exact: transfer maps displacement to displacement, velocity to velocity and
-/// acceleration, acceleration to acceleration; in the plane, where a rotation changes the
-/// components of the clamp's omega, also displacement to acceleration. `stiffness` is the
-/// diagonal part of local from friction and elasticity.
+/// acceleration, acceleration to acceleration. In the plane, where a rotation changes the
+/// components of the clamp's omega, it also maps displacement to acceleration.
+/// `stiffness` is the diagonal part of local from friction and elasticity.
 template <class Shape>
 struct SegmentTangent {
   template <int r, int c>
@@ -52,7 +52,7 @@ struct SegmentTangent {
   Matrix<Shape::dofs, 1> stiffness;
 };
 
-/// c += m transfer, for m with as many columns as states; uses the zero blocks of
+/// Adds m transfer to c, where m has one column per state; skips the zero blocks of
 /// transfer.
 template <class M, class Shape, class C>
 void add_pulled(const M& m, const SegmentTangent<Shape>& segment, C& c) {
@@ -86,8 +86,8 @@ auto with_hanging(
   return full;
 }
 
-/// Jacobian of a free root: its 6 unknowns y give the state s = transfer y at the start
-/// of the first segments, and local y + lift (sum of their w) = b.
+/// Jacobian of a free root. Its 6 unknowns y give the state s = transfer y at the start
+/// of the first segments, and satisfy local y + lift (sum of their w) = b.
 template <class Shape>
 struct RootTangent {
   template <int r, int c>

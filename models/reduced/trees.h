@@ -16,8 +16,8 @@ namespace tress::models {
 /// - complex_tree, 50 elements, 4.0 m: trunk of 5, 5 branches of 3, each with 2 of 2,
 ///   each of those with 1 of 1; golden-angle azimuths.
 /// - man, 81 elements, 0.81 m above the pelvis, which is the root, 1.7 m from sole to
-///   crown: spine of 4, neck, head of 2; 2 arms of 6, each with 5 fingers of 2; 2 legs of
-///   6; 10 hairs of 3.
+///   crown. Spine of 4, neck, head of 2. 2 arms of 6, each with 5 fingers of 2. 2 legs of
+///   6, 10 hairs of 3.
 /// - willow, 242 elements, 4.1 m: trunk of 4, 7 limbs of 4, each with 6 hanging twigs of
 ///   5.
 ///
@@ -35,8 +35,9 @@ inline constexpr std::string_view tree_choices =
 /// Parents before children, all lengths and radii in m. Throws InputError on other names.
 std::vector<Segment> tree_segments(std::string_view name);
 
-/// A plausible isotropic material with which the tree stands under gravity: green wood
-/// (E = 6 GPa, nu = 0.3), kelp (20 MPa, 0.5) and soft rubber for the man (10 MPa, 0.5).
+/// Returns a plausible isotropic material with which the tree stands under gravity. The
+/// materials are green wood (E = 6 GPa, nu = 0.3), kelp (20 MPa, 0.5) and soft rubber for
+/// the man (10 MPa, 0.5).
 /// Internal friction gamma is the same for all sections: about 10 ms EI of the thinnest
 /// one; thick ones relax faster and are damped less. Throws InputError on other names.
 Material tree_material(std::string_view name);

@@ -17,9 +17,9 @@ struct UncutStrand {
 /// that hangs at rest is within `tolerance` (m). The number is the least of 2, 3, 4, 6,
 /// 8, 12, 16 ... up to `most`.
 ///
-/// Where curvature k(s) is replaced by its mean over elements of length h, the tangent is
-/// off by k' ((s - s_c)^2 - h^2/4)/2 within an element and right at its ends. All that
-/// follows an element is therefore moved by k' h^3/12. Summed over the strand,
+/// The curvature k(s) is replaced by its mean over elements of length h. The error of the
+/// tangent is then k' ((s - s_c)^2 - h^2/4)/2 within an element and 0 at its ends. All
+/// that follows an element is therefore moved by k' h^3/12. Summed over the strand,
 ///
 ///     e = h^2/12 |int k' n ds| <= h^2/12 K,    n = L sqrt(K/(12 e)),
 ///

@@ -10,7 +10,7 @@ namespace tress::models {
 ///
 /// The equations are those of models/reduced/exact_tangent.h. A frame's state is the
 /// variation of its velocity (v, omega) and acceleration (a, alpha) in its own
-/// components, in which gravity, inertia and linear drag do not depend on displacements.
+/// components. In these, gravity, inertia and linear drag do not depend on displacements.
 /// Where bodies load the part that hangs on an element, the state includes its
 /// displacement (d, phi). For an element with the state s at its start, unknowns x and
 /// the wrench w_tip on its tip

@@ -59,9 +59,9 @@ struct ElementSums {
   Matrix3<T> spin;       // rows j: w P x d_j
   Vec3<T> moved;         // w P'
   Matrix3<T> moving;     // w P' P^T
-  /// Rows j: w ((d_j.omega) P + (P.omega) d_j - 2 (d_j.P) omega + 2 P' x d_j), the effect
-  /// on unknown j of a change of the start's angular velocity omega through centrifugal
-  /// and Coriolis forces.
+  /// Rows j: w ((d_j.omega) P + (P.omega) d_j - 2 (d_j.P) omega + 2 P' x d_j). They are
+  /// the effect on unknown j of a change of the start's angular velocity omega, through
+  /// centrifugal and Coriolis forces.
   Matrix3<T> convective;
 };
 

@@ -17,10 +17,10 @@
 
 namespace tress::models {
 
-/// A head of strands of this Kind of element (models/head/reduced_kernel.h): blocks of as
-/// many as its numbers have lanes, each a step of ReducedKernel with the loads of
-/// ReducedLoads between its sweeps. Of a strand it keeps coordinates, rates and rest
-/// shape, material and root.
+/// A batch of strands of this Kind of element (models/head/reduced_kernel.h), one strand
+/// per lane of a block. A step is that of ReducedKernel with the loads of ReducedLoads
+/// between its sweeps. Of a strand the batch keeps coordinates, rates, rest shape,
+/// material and root.
 template <class Kind>
 class ReducedHead : public Head {
  public:
@@ -159,8 +159,8 @@ class ReducedHead : public Head {
               std::span<double> v) const override {
     places(block, t).write(strands_of(block), x, v);
   }
-  /// Of an arc of length l over a chord c no point is farther from the chord than
-  /// sqrt(l^2 - c^2)/2; l allows for what chords are rounded by.
+  /// The points of an arc of length l over a chord c are at most sqrt(l^2 - c^2)/2 from
+  /// the chord. The length includes the rounding of chords.
   void ahead(std::size_t block, double t, double h, std::span<double> x,
              std::span<double> bulge) const override {
     std::vector<Vec3<T>> q(n_);

@@ -87,7 +87,7 @@ class ReducedModel {
     return frame_of(head) * strand.root.from;
   }
 
-  /// In the state in which ReducedHead starts.
+  /// Describes a strand in the initial state of ReducedHead.
   void describe(const models::Strand& strand, const Vec& centre, const HeadUnits& units,
                 int lane, Strand& to, Element* elements, Real* q, Real* v) const {
     set_lane(to.root.from, lane, (1 / units.length) * (strand.root.position - centre));
@@ -120,7 +120,7 @@ class ReducedModel {
     for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];
   }
 
-  /// Which they are; newton() and again() find the loads at their states.
+  /// Notes the bodies; newton() and again() find the loads at their states.
   void find_loads(const Strand& strand, std::span<const NearBody> bodies,
                   const RootPose& pose, const HeadUnits& units, double h,
                   const Real* /*q*/, const Real* /*v*/, Scratch& scratch) const {
