@@ -234,7 +234,7 @@ class ReducedSystem : public System,
     fill_tangent(w, effects, v, a, full_);
   }
 
-  /// At the motion of the last residual().
+  /// Fills in the matrices of all segments, at the motion of the last residual().
   void fill_tangent(Weights w,
                     const typename ExactTangent<Kernel, modes>::EffectBlocks& effects,
                     In v, In a, TreeTangent<Exact>& to) const {
