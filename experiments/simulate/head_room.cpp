@@ -35,12 +35,13 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
                memory = each * ranks.on_this_machine() + first, free = free_memory(),
                frames = static_cast<double>(scene.last_frame() + 1);
   if (memory > free) {
-    throw InputError(fmt::format("a batch of {} strands of {} elements needs about {:.2g} "
-                                 "GB of memory, {:.2g} GB are free",
-                                 strands, elements, memory / 1e9, free / 1e9),
-                     scene.name,
-                     without ? "give fewer strands or elements"
-                             : "give fewer strands or elements, or --precision 32");
+    throw InputError(
+        fmt::format("a batch of {} strands of {} elements needs about {:.2g} "
+                    "GB of memory, {:.2g} GB are free",
+                    strands, elements, memory / 1e9, free / 1e9),
+        scene.name,
+        without ? "give fewer strands or elements"
+                : "give fewer strands or elements, or --precision 32");
   }
   std::error_code unknown;
   const auto disk =

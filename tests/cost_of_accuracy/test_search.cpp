@@ -181,8 +181,8 @@ TEST(Search, OrdersSayWhatMeetsATightTargetSoonest) {
   EXPECT_EQ(found->method, 1u);
   // After the two probes it alone was tried until it met the target.
   const auto& runs = search.runs();
-  const auto met = std::ranges::find_if(
-      runs, [](const Trial& run) { return run.error <= 0.001; });
+  const auto met =
+      std::ranges::find_if(runs, [](const Trial& run) { return run.error <= 0.001; });
   EXPECT_TRUE(std::all_of(runs.begin() + 2, met,
                           [](const Trial& run) { return run.method == 1; }));
 }
@@ -197,7 +197,8 @@ TEST(Search, CombFindsWhatBisectionMisses) {
   };
   const double target = 0.001;
   SearchPlan made = plan({target});
-  Search search(made, 1, uneven, [](const Trial&, Neighbour) { return 0.0; }, no_end);
+  Search search(
+      made, 1, uneven, [](const Trial&, Neighbour) { return 0.0; }, no_end);
   search.coarse();
   search.refine();
   const Trial* found = search.robust(target);

@@ -12,9 +12,9 @@
 #include "contract/input_error.h"
 #include "experiments/calibrate/oscillation_fit.h"
 #include "experiments/calibrate/records.h"
-#include "simulation/fit/least_squares.h"
 #include "experiments/numerics/tip_signal.h"
 #include "simulation/files/files.h"
+#include "simulation/fit/least_squares.h"
 
 namespace tress::test_calibrate {
 
