@@ -38,9 +38,13 @@ class AdjointRun {
 
   /// Starts at t = 0 from initial_state().
   Status start();
+  /// Advances to t_end and records the stages. Not `ok`: failure() gives the reason.
   Status advance(double t_end);
+  /// Returns the time of the state, s.
   double time() const { return run_.time(); }
+  /// Returns the coordinates (n).
   In q() const { return run_.q(); }
+  /// Returns the rates (n).
   In v() const { return run_.v(); }
 
   /// Adds to x_hat, (3 points), the derivatives of a number by the points at a stop. Stop
@@ -49,13 +53,16 @@ class AdjointRun {
   /// Computes the derivatives of several numbers, (numbers x parameters).
   Status sweep(std::size_t numbers, const Seed& seed, Out by);
 
+  /// Returns the reason of the last failure; empty if there was none.
   const std::string& failure() const { return failure_; }
   /// Whether sweep() failed since reference frames (History) moved during the run, which
   /// it does not differentiate. GradientRun does.
   bool frames_moved() const { return frames_moved_; }
+  /// Returns the counters of the method in progress, without those of sweeps.
   const Stats& stats() const { return stats_; }
-  /// Size of the record in memory, and the number of its parts.
+  /// Returns the size of the record in memory, bytes.
   std::size_t record_bytes() const;
+  /// Returns the number of parts of the record.
   std::size_t parts() const { return parts_.size(); }
 
  private:

@@ -48,11 +48,12 @@ class GradientRun {
   Status start();
   /// A state on the way of a run of an equal system, and its derivatives there.
   struct State {
-    double t = 0;
-    std::vector<double> q, v;
+    double t = 0;                // time, s
+    std::vector<double> q, v;    // coordinates and rates (n)
     std::vector<double> memory;  // System::memory()
     std::vector<double> dq, dv;  // parameter after parameter
   };
+  /// Starts at such a state, with its memory and its derivatives.
   Status start(const State& from);
   /// Advances run and derivatives to t_end. Not `ok`: failure() tells why.
   Status advance(double t_end);

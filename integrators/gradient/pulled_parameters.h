@@ -10,6 +10,7 @@
 
 namespace tress::integrators {
 
+/// Returns the scalar product of two vectors of equal length.
 inline double product(In x, In y) {
   return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
 }
@@ -22,6 +23,7 @@ class PulledNatural {
   /// `system` must outlive it and have the form.
   PulledNatural(System& system, Dynamics& dynamics);
 
+  /// Returns the number of natural strains.
   std::size_t count() const { return stiffness_.size(); }
   /// Adds to each n_hat what belongs to its mu (n).
   Status pull(const WatchedSystem::Motion& at, std::span<const std::vector<double>> mu,
@@ -51,6 +53,7 @@ class PulledParameters {
   PulledParameters(System& system, std::span<const RunParameter> parameters,
                    const Options& options);
 
+  /// Returns the number of parameters.
   std::size_t count() const { return natural_by_.size(); }
   /// Begins a sweep of several numbers.
   void begin(std::size_t numbers);

@@ -13,24 +13,28 @@ namespace tress::integrators {
 /// stage takes 3 n + m + 1 numbers. Steps of equal length share their table.
 class Tape {
  public:
+  /// State of a stage: time, q, v, a and multipliers.
   using Motion = WatchedSystem::Motion;
 
   /// A step, or the start of a method.
   struct Step {
-    std::shared_ptr<const StepTable> table;
-    std::size_t at;      // of its operations' motions
+    std::shared_ptr<const StepTable> table;  // program of the step
+    std::size_t at;                          // of its operations' motions
     std::size_t common;  // entries of the system's memory that it left as they were
   };
 
+  /// Removes all steps.
   void clear();
   /// Adds a step: the motions of its operations in order, and the memory before it.
   void add(std::shared_ptr<const StepTable> table, std::span<const Motion* const> motions,
            In memory_before, In memory_after);
+  /// Returns the steps in the order in which they were taken.
   const std::vector<Step>& steps() const { return steps_; }
   /// Reads the motion of an operation.
   void read(const Step& step, std::size_t operation, Motion& motion) const;
   /// Turns the memory after a step into that before it.
   void step_back(const Step& step, std::vector<double>& memory) const;
+  /// Returns the number of doubles in the record.
   std::size_t doubles() const { return numbers_.size(); }
 
  private:
@@ -44,9 +48,10 @@ class RecordedRun {
  public:
   /// A place at which a run can be continued.
   struct Place {
-    std::size_t method = 0;
-    double t = 0;
-    std::vector<double> state, memory;
+    std::size_t method = 0;      // 0: damped start, 1: method of the run
+    double t = 0;                // time, s
+    std::vector<double> state;   // FixedStep::state(), one vector behind the other
+    std::vector<double> memory;  // System::memory()
   };
 
   /// `system` must outlive it.
@@ -57,13 +62,20 @@ class RecordedRun {
   /// Takes steps no longer than those of the method. `each_step` after every one.
   Status advance(double t_end, Tape& tape,
                  const std::function<void(double t)>& each_step);
+  /// Returns the place that the run has reached.
   Place place() const;
+  /// Moves the run and the memory of its system to a place.
   Status go_to(const Place& place);
 
+  /// Returns the time of the state, s.
   double time() const { return now().time(); }
+  /// Returns the coordinates (n).
   In q() const { return now().q(); }
+  /// Returns the rates (n).
   In v() const { return now().v(); }
+  /// Returns the counters of the method in progress.
   Stats stats() const { return now().stats(); }
+  /// Returns what ended the last advance() of the method in progress.
   std::string failure() const { return now().failure(); }
 
  private:

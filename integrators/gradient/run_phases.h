@@ -9,10 +9,12 @@ namespace tress::integrators {
 
 /// The method of a damped start (GradientStart): some steps of a part of the step each.
 struct DampedStart {
-  static constexpr std::string_view method = "backward_euler";
+  static constexpr std::string_view method = "backward_euler";  // id of the integrator
+  /// Length of its steps over that of the run.
   static constexpr double part = 1.0 / 16;
-  static constexpr int steps = 2;
+  static constexpr int steps = 2;  // number of steps
 
+  /// Returns the options of a run with its step shortened, without options of its method.
   static Options options(Options of_run) {
     of_run.step *= part;
     of_run.own.clear();

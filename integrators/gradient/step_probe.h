@@ -16,26 +16,31 @@ namespace tress::integrators {
 /// their order. Everything else in a step is linear algebra on these vectors that is the
 /// same for every coordinate.
 struct StepTable {
+  /// Vector of the step times a factor.
   struct Term {
-    std::size_t vector;
-    double factor;
+    std::size_t vector;  // index among the vectors of the step
+    double factor;       // factor of the vector
   };
+  /// Sum of terms: a linear combination of the vectors of the step.
   using Combination = std::vector<Term>;
 
+  /// Nonlinear part of a step, from combinations of earlier vectors to new vectors.
   struct Operation {
     /// stage: a with r(q + w.pos a, v + w.vel a, a) = 0. acceleration: the same with
     /// w.pos = w.vel = 0. accept: (q, v) to (q, v), by History. carry: (q, v, a) to
     /// (q, v, a), by MovingHistory.
-    enum class Kind { stage, acceleration, accept, carry } kind;
-    std::array<Combination, 3> of;  // q, v and a
-    Weights w;
+    enum class Kind { stage, acceleration, accept, carry } kind;  // kind of operation
+    std::array<Combination, 3> of;                                // q, v and a
+    Weights w;          // weights of a in q and v
     std::size_t first;  // of its results
   };
 
-  std::size_t inputs = 0, vectors = 0;
-  std::vector<Operation> operations;
-  std::vector<Combination> results;  // the vectors of state()
+  std::size_t inputs = 0;             // number of inputs
+  std::size_t vectors = 0;            // number of inputs and of results of operations
+  std::vector<Operation> operations;  // operations in their order
+  std::vector<Combination> results;   // the vectors of state()
 
+  /// Returns whether both are the same program with the same factors.
   bool operator==(const StepTable& other) const;
 };
 

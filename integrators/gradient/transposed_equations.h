@@ -29,7 +29,9 @@ class TransposedEquations {
   /// `sparse`: as ResidualDerivative. `system` must outlive this.
   TransposedEquations(System& system, const Options& options, bool sparse);
 
+  /// Returns the number of coordinates.
   std::size_t n() const { return n_; }
+  /// Returns the number of constraints.
   std::size_t m() const { return m_; }
   /// Computes the accelerations and multipliers of a motion from q and v.
   Status accelerate(WatchedSystem::Motion& motion) noexcept {
@@ -39,6 +41,7 @@ class TransposedEquations {
   Status move(const WatchedSystem::Motion& state, Weights w) noexcept;
   /// Solves for x = (mu, nu), (n + m), from b in the first n numbers.
   Status solve(InOut x) noexcept;
+  /// Subtracts R_q^T x from q_hat and R_v^T x from v_hat, x = (mu, nu).
   void pull(In x, InOut q_hat, InOut v_hat) noexcept;
 
  private:

@@ -47,7 +47,7 @@ inline constexpr double probed_times[] = {0, 0.0137, 0.373, 2.91};
 /// Moduli, internal frictions and natural strains have it in coordinates that are
 /// strains.
 struct SimpleDerivative {
-  std::vector<double> constant, by_q, by_v;
+  std::vector<double> constant, by_q, by_v;  // coefficients of the entries (n)
 };
 
 /// A parameter's stencil with its systems. Each follows the run, at the state q + s dq:
@@ -58,7 +58,8 @@ struct VariedSystem {
   std::optional<SimpleDerivative> simple;        // where the residual has one
 };
 
-/// Memory of the systems of a stencil: that of their own runs, or that of the run itself.
+/// Memory of the systems of a stencil: that of their own runs (`own`), or that of the run
+/// itself (`of_run`).
 enum class VariedMemory { own, of_run };
 
 /// With the affine stencil where residual, start and points are affine in s: measured at

@@ -14,9 +14,11 @@ namespace tress::integrators {
 /// All else it passes on.
 class WatchedSystem final : public System, public StageWatcher, private MovingHistory {
  public:
+  /// State with its accelerations and multipliers.
   struct Motion {
-    double t = 0;
-    std::vector<double> q, v, a, lambda;
+    double t = 0;                 // time, s
+    std::vector<double> q, v, a;  // coordinates, rates and accelerations (n)
+    std::vector<double> lambda;   // multipliers of the constraints (m)
   };
 
   /// `system` must outlive it.
@@ -28,6 +30,7 @@ class WatchedSystem final : public System, public StageWatcher, private MovingHi
   std::span<const Motion> carried() const { return carried_.all(); }
   /// The state that accept() was given, and its answer.
   const Motion& accepted() const { return accepted_; }
+  /// Returns the answer of the last accept(): whether it changed the equations.
   bool moved() const { return moved_; }
   /// Begins a new record.
   void forget() { stages_.count = carried_.count = 0; }

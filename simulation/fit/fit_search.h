@@ -13,8 +13,8 @@ namespace tress::simulation {
 /// Weighted residuals of records, then of priors, and their derivatives by the free
 /// unknowns u of FitVariable.
 struct LinearizedFit {
-  Eigen::VectorXd r;
-  Eigen::MatrixXd j;
+  Eigen::VectorXd r;  // weighted residuals (n)
+  Eigen::MatrixXd j;  // dr/du (n x free unknowns)
 };
 
 /// The search for the least squares of fit_scenes(). Parameters that come to a bound are
@@ -27,21 +27,28 @@ class FitSearch {
   /// Returns why the search did not converge; empty: it did.
   std::string run();
 
+  /// Returns the runs of the records.
   const RecordRuns& runs() const { return runs_; }
+  /// Returns the variables of all parameters, in order.
   const std::vector<FitVariable>& variables() const { return variables_; }
   /// Parameters that are not held at a bound, in order.
   const std::vector<std::size_t>& free() const { return free_; }
+  /// Returns whether parameter k is held at a bound.
   bool held(std::size_t k) const { return held_[k].has_value(); }
   /// Unknowns of all parameters where the search is.
   std::vector<double> u() const { return u_of(x_); }
+  /// Returns the values of all parameters at u(), in their units.
   std::vector<double> values() const { return values(u()); }
+  /// Returns the number of residuals: coordinates of the records, then priors.
   std::size_t rows() const { return runs_.count() + priors_.size(); }
+  /// Returns the number of runs of all records with their derivatives.
   int evaluations() const { return evaluations_; }
   /// Returns both at u(), from runs that are refined. Empty: a run fails, for the reason
   /// failure().
   std::optional<LinearizedFit> linear(RecordRuns::Finer finer) {
     return finer == RecordRuns::Finer::no ? at(x_) : linear(u(), finer);
   }
+  /// Returns why a run of the last evaluation failed; empty if none did.
   const std::string& failure() const { return failure_; }
   /// Coordinates of the last linear() (m).
   In simulated() const { return simulated_; }

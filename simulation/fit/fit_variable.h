@@ -11,19 +11,20 @@ namespace tress::simulation {
 
 /// Limits of a fitted parameter, in its unit.
 struct FitBound {
-  std::string name;
-  double low, high;
+  std::string name;  // name of the parameter
+  double low, high;  // lower and upper limit
 };
 
 /// Knowledge of a parameter from before the records: a normal distribution, in its unit.
 struct FitPrior {
-  std::string name;
-  double value, sigma;
+  std::string name;     // name of the parameter
+  double value, sigma;  // mean and standard deviation
 };
 
-/// "NAME:LOW:HIGH,NAME:LOW:HIGH", and likewise "NAME:VALUE:SIGMA". Throw InputError
-/// naming `where`.
+/// Returns the bounds of "NAME:LOW:HIGH,NAME:LOW:HIGH". Throws InputError naming `where`.
 std::vector<FitBound> parse_bounds(std::string_view text, const std::string& where);
+/// Returns the priors of "NAME:VALUE:SIGMA,NAME:VALUE:SIGMA". Throws InputError naming
+/// `where`.
 std::vector<FitPrior> parse_priors(std::string_view text, const std::string& where);
 
 /// A parameter p as an unknown. Statistics are those of
@@ -38,11 +39,16 @@ class FitVariable {
   FitVariable(const SceneParameter& parameter, std::span<const FitBound> bounds,
               const std::string& where);
 
+  /// Returns whether u = ln p.
   bool logarithmic() const { return logarithmic_; }
   double start() const { return start_; }  // x
+  /// Returns the unknown u at x.
   double u(double x) const;
+  /// Returns the derivative of u by x.
   double du_dx(double x) const;
+  /// Returns the value of the parameter at u, in its unit.
   double p(double u) const;
+  /// Returns the derivative of the parameter by u, in its unit.
   double dp_du(double u) const;
   /// Whether x is at one of the bounds.
   bool at_bound(double x) const;

@@ -9,9 +9,10 @@ namespace tress::simulation {
 
 /// A direction of the unknowns, as parts of a unit vector.
 struct CombinationPart {
-  const SceneParameter* parameter;
-  double part;
+  const SceneParameter* parameter;  // parameter of the unknown
+  double part;                      // component of the unit vector
 };
+/// Direction of the unknowns, with a part for each.
 using Combination = std::vector<CombinationPart>;
 
 /// Returns in words what records do not determine: "the records do not determine

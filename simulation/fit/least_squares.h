@@ -17,8 +17,8 @@ using DerivativeAt = std::function<bool(In x, Out jacobian)>;
 
 /// Minimiser of the sum of n squared residuals r(x), with its statistics.
 struct LeastSquares {
-  std::vector<double> x;  // (p)
-  std::vector<double> residual;
+  std::vector<double> x;         // (p)
+  std::vector<double> residual;  // (n) r(x)
   std::vector<double> jacobian;  // (n x p) dr/dx, row-major
   /// (J^T J)^-1 (p x p): times the variance of a residual it is the covariance of x.
   /// Empty when J is rank deficient to rounding.

@@ -12,7 +12,7 @@ namespace tress::simulation {
 
 /// One measured coordinate of a point of a strand.
 struct Observation {
-  std::size_t strand = 0;
+  std::size_t strand = 0;                 // index of the strand in the scene
   std::optional<std::size_t> point = {};  // from the root; empty: the tip
   double t = 0;                           // s
   std::size_t component = 0;              // x, y, z
@@ -22,12 +22,13 @@ struct Observation {
 
 /// Points of strands over time, from t = 0 of the scene's run.
 struct PointRecord {
-  std::string file = {};
-  std::string hash = {};  // of the text, 16 hexadecimal digits
-  std::vector<Observation> observations = {};
-  std::vector<double> sigma = {};        // m, of each observation; empty: not known
-  std::vector<std::string> places = {};  // file:line:column of each row
+  std::string file = {};                       // name of the CSV file
+  std::string hash = {};                       // of the text, 16 hexadecimal digits
+  std::vector<Observation> observations = {};  // coordinates in the order of rows
+  std::vector<double> sigma = {};              // m, of each observation; empty: not known
+  std::vector<std::string> places = {};        // file:line:column of each row
 
+  /// Returns the place of an observation in the file: file:line:column.
   const std::string& place(const Observation& one) const { return places[one.row]; }
 };
 
@@ -40,6 +41,7 @@ bool has_points(const std::vector<std::string>& header);
 /// Throws InputError with file:line:column on other columns, numbers that are not finite,
 /// negative times, sigma_m that is not positive, and fewer than 3 coordinates.
 PointRecord parse_point_record(std::string_view text, const std::string& file);
+/// Reads a CSV file as parse_point_record() does.
 PointRecord read_point_record(const std::string& file);
 
 }  // namespace tress::simulation

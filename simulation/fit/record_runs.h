@@ -17,14 +17,16 @@ class RecordRuns {
   /// Throws InputError as fit_scenes() does. `task` must outlive it.
   explicit RecordRuns(const FitTask& task);
 
-  /// Refinement of the runs.
+  /// Refinement of the runs: `no`, `half_step` or `twice_the_elements`.
   enum class Finer { no, half_step, twice_the_elements };
 
+  /// Returns the fitted parameters, with the values of the first record.
   const std::vector<SceneParameter>& parameters() const { return records_[0].parameters; }
   /// Coordinates of all records.
   std::size_t count() const { return sigma_.size(); }
   /// Standard errors of all coordinates (m): a thousandth of the strand where unknown.
   In sigma() const { return sigma_; }
+  /// Returns whether every record has standard errors.
   bool sigma_known() const { return known_; }
   /// Pairs of the same coordinate at successive times.
   std::span<const std::pair<std::size_t, std::size_t>> successive() const {
@@ -34,6 +36,7 @@ class RecordRuns {
   /// Fills simulated coordinates (m), and their derivatives by the parameters
   /// (count x parameters, row-major, m per unit). Returns why a run fails.
   std::string run(In values, Finer finer, Out simulated, Out by) const;
+  /// Returns the measured coordinates of all records (m).
   In measured() const { return measured_; }
 
  private:
@@ -41,6 +44,7 @@ class RecordRuns {
   struct OfStrand {
     std::size_t strand = 0;
     std::vector<double> times;  // s, ascending
+    /// One observed coordinate.
     struct Cell {
       std::size_t time;                  // index in times
       std::optional<std::size_t> point;  // empty: the tip

@@ -13,16 +13,17 @@ namespace tress::simulation {
 
 /// A record and the scene of the strands that it shows.
 struct FitRecord {
-  const Scene* scene = nullptr;
-  const PointRecord* points = nullptr;
+  const Scene* scene = nullptr;         // scene of the strands
+  const PointRecord* points = nullptr;  // measured points
 };
 
+/// Records, parameters and settings of a fit.
 struct FitTask {
-  std::vector<FitRecord> records = {};
-  std::vector<std::string> by = {};  // parameters, by the names of [gradient]
-  std::vector<FitBound> bounds = {};
-  std::vector<FitPrior> priors = {};
-  double confidence = 0.95;  // of the intervals
+  std::vector<FitRecord> records = {};  // records that are fitted together
+  std::vector<std::string> by = {};     // parameters, by the names of [gradient]
+  std::vector<FitBound> bounds = {};    // limits of some of the parameters
+  std::vector<FitPrior> priors = {};    // priors of some of the parameters
+  double confidence = 0.95;             // of the intervals
   /// Runs again with half the step and with twice the elements.
   bool shifts = true;
   std::string place = "fit";  // of `by`, in messages
@@ -31,16 +32,17 @@ struct FitTask {
   std::function<void(int evaluations, double rms)> progress = {};
 };
 
+/// Value of statistics that a fit does not have: NaN.
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 
 /// A fitted value. Status as that of SceneFit, of this parameter alone.
 struct FittedParameter {
-  std::string name = {}, unit = {};
-  double start = 0, value = 0;
+  std::string name = {}, unit = {};  // name and unit of the parameter
+  double start = 0, value = 0;       // value of the scene and fitted value, in the unit
   double low = not_there, high = not_there;  // interval; NaN: none
   /// Changes with half the step and with twice the elements, over half the interval.
   double step_shift = not_there, elements_shift = not_there;
-  std::string status = "ok", reason = {};
+  std::string status = "ok", reason = {};  // status and its reason in words
 };
 
 /// A fit and its statistics. Status:
@@ -56,7 +58,7 @@ struct FittedParameter {
 ///                     scene is not that of the records, and intervals are too narrow
 ///     solver_error    the fit did not converge, or a run failed
 struct SceneFit {
-  std::vector<FittedParameter> parameters = {};
+  std::vector<FittedParameter> parameters = {};  // parameters in the order of FitTask::by
   /// Singular values of the derivatives of the weighted residuals by the unknowns
   /// (logarithms of positive parameters, others over their measure), descending. Those of
   /// parameters at a bound are left out.
@@ -68,7 +70,7 @@ struct SceneFit {
   int degrees = 0;      // of freedom: coordinates and priors less fitted values
   int evaluations = 0;  // runs of all records with their derivatives
   std::vector<std::vector<double>> fitted = {};  // of each record: m, as its observations
-  std::string status = "ok", reason = {};
+  std::string status = "ok", reason = {};        // status and its reason in words
 };
 
 /// Fits parameters of scenes to points of their strands: least squares of

@@ -15,11 +15,11 @@ namespace tress::simulation {
 /// The parameters act during the step alone. A product of the A of successive steps is
 /// the derivative of a run by its initial state.
 struct LinearizedStep {
-  double t = 0, t_next = 0;  // s
-  std::vector<double> q, v, q_next, v_next;
-  std::vector<double> by_state;       // A (2n x 2n), row-major
-  std::vector<double> by_parameters;  // B (2n x P), row-major, per unit of each
-  std::string unfinished;             // why the run failed, with no matrices; empty: not
+  double t = 0, t_next = 0;                  // s
+  std::vector<double> q, v, q_next, v_next;  // coordinates and rates (n) at t and t_next
+  std::vector<double> by_state;              // A (2n x 2n), row-major
+  std::vector<double> by_parameters;         // B (2n x P), row-major, per unit of each
+  std::string unfinished;  // why the run failed, with no matrices; empty: not
 };
 
 /// Runs a strand to `t` and linearizes the step that follows, of length `step`. Throws

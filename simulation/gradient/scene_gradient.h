@@ -11,20 +11,21 @@
 
 namespace tress::simulation {
 
-/// Points that are differentiated.
+/// Points that are differentiated: all (`points`), the tip, or the tip at the last time
+/// (`last_tip`).
 enum class GradientOf { points, tip, last_tip };
-/// Computes derivatives by GradientRun or AdjointRun. automatic: the one that is expected
-/// to cost less.
+/// Method of the derivatives: GradientRun (`forward`), AdjointRun (`adjoint`), or the one
+/// that is expected to cost less (`automatic`).
 enum class GradientWay { forward, adjoint, automatic };
 
 /// Asks for derivatives of the points of strands.
 struct GradientTask {
-  std::vector<SceneParameter> parameters;
-  bool damped = false;        // GradientStart
-  std::vector<double> times;  // s, ascending, from 0
-  int parts = 1;              // of every step
-  GradientOf of = GradientOf::points;
-  GradientWay way = GradientWay::forward;
+  std::vector<SceneParameter> parameters;  // parameters of the derivatives
+  bool damped = false;                     // GradientStart
+  std::vector<double> times;               // s, ascending, from 0
+  int parts = 1;                           // of every step
+  GradientOf of = GradientOf::points;      // differentiated points
+  GradientWay way = GradientWay::forward;  // method of the derivatives
 };
 
 /// The points of one strand at the times of its task, and their derivatives.
@@ -58,8 +59,9 @@ void check_derivatives(const Scene& scene, const std::string& place);
 /// Whether a run starts damped, by a word of [gradient] start.
 bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters);
 
-/// Returns what a word of [gradient] of or way means.
+/// Returns the points that a word of [gradient] of names.
 GradientOf gradient_of(std::string_view word);
+/// Returns the method that a word of [gradient] way names.
 GradientWay gradient_way(std::string_view word);
 
 /// Times of all frames, from 0.
@@ -69,8 +71,9 @@ std::vector<double> times_of_frames(const Scene& scene);
 StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
                                const GradientTask& task);
 
-/// Makes the model of a strand, with the model's own Jacobian or the exact one.
+/// Makes the model of a strand, with the model's own Jacobian.
 std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand);
+/// Makes the model of a strand, with the exact Jacobian.
 std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand);
 /// The systems of a strand at changed values of the parameters, which both must outlive.
 std::vector<integrators::RunParameter> run_parameters(

@@ -15,12 +15,12 @@ namespace tress::simulation {
 
 /// A number of a table, or a component of one, by which [gradient] differentiates.
 struct GradientNumber {
-  std::string key;
+  std::string key;                            // key of the number in its table
   std::optional<std::size_t> component = {};  // of three
-  double value = 0;
-  double measure = 1;  // a change by s is one by s times this
-  std::string unit = {};
-  bool positive = false;  // no value below 0 is allowed
+  double value = 0;                           // value in the scene, in the unit
+  double measure = 1;                         // a change by s is one by s times this
+  std::string unit = {};                      // unit of the value
+  bool positive = false;                      // no value below 0 is allowed
 
   /// The text of the key for Parameters::set, changed by s.
   std::string text(const Parameters& values, double s) const;
@@ -38,6 +38,7 @@ std::optional<std::size_t> take_component(std::string_view& name);
 /// Unit vector of the world's axis k.
 Vec axis_of(std::size_t k);
 
+/// Throws InputError: the motion has no derivative by `name`, with reason and remedy.
 [[noreturn]] void refuse_gradient(std::string_view name, std::string_view reason,
                                   const std::string& place, std::string_view remedy);
 
@@ -46,12 +47,13 @@ std::span<const Parameter> gradient_table_parameters();
 
 /// One such number. Where strands have several values, all change in the same proportion.
 struct SceneParameter {
-  std::string name, unit;
-  double value = 0;    // of the first strand, in the unit
-  double measure = 1;  // s = 1 changes the value by so much
+  std::string name, unit;  // name as in [gradient], and unit of the value
+  double value = 0;        // of the first strand, in the unit
+  double measure = 1;      // s = 1 changes the value by so much
   /// Whether it moves the shape at rest, the start or the roots: the run then needs a
   /// damped start.
   bool moves_rest = false;
+  /// Changes the value in a scene by s times the measure.
   std::function<void(Scene& scene, double s)> change;
   bool positive = false;  // a number above 0, which a fit changes in proportion
 };
