@@ -79,7 +79,7 @@ def _list(one_or_more, single):
 
 
 def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shifts=True,
-        progress=None):  # fmt: skip
+        progress=None):
     """Fits parameters of a scene to points of its strands: Fit.
 
     scene: a Scene, whose values the fit starts from; a list with one for each record.
