@@ -75,7 +75,8 @@ def doxygen(out):
         return
     settings = (HERE / "Doxyfile").read_text()
     settings += f"OUTPUT_DIRECTORY = {out / 'doxygen'}\nSTRIP_FROM_PATH = {ROOT}\n"
-    (out / "doxygen").mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(out / "doxygen", ignore_errors=True)  # names of headers that have gone
+    (out / "doxygen").mkdir(parents=True)
     run("doxygen", "-", input=settings, cwd=ROOT)
 
 

@@ -1,3 +1,4 @@
+"""Scripts of python/examples; first_run is the one of docs/python.md."""
 import math
 import os
 import subprocess

@@ -23,7 +23,7 @@ BEFORE = {
     ],
     # The scene of the page.
     "docs/start/gradients.md": [
-        "sed -n '/^```toml/,/^```/{/^```/!p}' docs/start/gradients.md > curl.toml",
+        "sed -n '/^```toml/,/^```/{//!p;/^```$/q}' docs/start/gradients.md > curl.toml",
     ],
     "experiments/calibrate/data/README.md": [
         "cut -d, -f1,2 experiments/calibrate/data/one_length.csv > measured.csv",
