@@ -5,7 +5,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/command_line.h"
-#include "models/pitfalls.h"
+#include "models/reduced/pitfalls.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene_tables.h"
 

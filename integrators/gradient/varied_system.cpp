@@ -167,6 +167,8 @@ std::vector<double> natural_direction(System& system, const RunParameter& parame
   const double far = affine_stencil.at[0];
   const std::vector<double> natural = at(far, alone);
   if (!alone) return {};
+  // One that changes no natural strain acts elsewhere, at other states perhaps.
+  if (natural == here) return {};
   const std::vector<double> middle = at(far / 2, alone);
   const bool straight = affine(here, middle, natural);
   const Stencil stencil = straight ? affine_stencil : central_stencil;
@@ -188,7 +190,9 @@ VariedSystem varied_system(System& system, const RunParameter& parameter,
     const auto middle = parameter(affine_stencil.at[0] / 2);
     const auto at_0 = probe.of(system), at_half = probe.of(*middle),
                at_1 = probe.of(*far);
-    bool all_affine = true;
+    // A parameter that does not act at these states, of what is not touched yet, may be
+    // anything.
+    bool all_affine = at_0 != at_1;
     for (std::size_t i = 0; i < at_0.size(); ++i) {
       all_affine = all_affine && affine(at_0[i], at_half[i], at_1[i]);
     }

@@ -7,7 +7,7 @@
 #include "contract/constants.h"
 #include "contract/input_error.h"
 #include "math/gauss_legendre.h"
-#include "models/pitfalls.h"
+#include "models/reduced/pitfalls.h"
 #include "models/strand/geometry.h"
 
 namespace tress::models {

@@ -153,7 +153,10 @@ LeastSquares minimum(const ResidualAt& residual, const DerivativeAt& derivative,
   const std::vector<double> left = fit.step(fit.residual);
   const bool there =
       std::ranges::all_of(left, [&](double dx) { return std::abs(dx) <= tolerance; });
-  if (!there) fit.failure = "not converged: " + std::string(gsl_strerror(code));
+  if (there) return fit;
+  fit.failure = "not converged: ";
+  fit.failure +=
+      code == GSL_SUCCESS ? "the last step was still too long" : gsl_strerror(code);
   return fit;
 }
 

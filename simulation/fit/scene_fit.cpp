@@ -211,10 +211,13 @@ SceneFit Fit::result() {
     judge(fit);
     return fit;
   }
-  fit.status = "solver_error";
-  fit.reason = failed;
+  // Steps along what the records do not determine need not end.
+  const bool known = fit.undetermined.empty();
+  fit.status = known ? "solver_error" : "not_identified";
+  fit.reason = known ? failed : fit.undetermined;
   for (FittedParameter& one : fit.parameters) {
-    one.status = fit.status;
+    if (one.status == "not_identified") continue;
+    one.status = "solver_error";
     one.reason = failed;
   }
   return fit;

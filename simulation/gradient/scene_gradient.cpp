@@ -113,12 +113,11 @@ double farthest(const std::vector<double>& x, const std::vector<double>& y) {
   return most;
 }
 
-GradientRun::Method method_of(const Scene& scene, bool with_damping, int parts) {
+GradientRun::Method method_of(const Scene& scene, bool with_damping) {
   GradientRun::Method method{.id = scene.integrator, .options = scene.options};
   method.start = with_damping ? GradientStart::damped : GradientStart::as_run;
   method.sparse = !needs(make_effects(scene)).couplings;
   if (scene.options.tolerance == 0) {
-    method.options.step /= parts;
     return method;
   }
   constexpr double one_step = 1e30;  // to the next stop
@@ -137,9 +136,10 @@ class StrandRun {
         chosen_(scene.options.tolerance > 0),
         system_(system_of(scene, strand)),
         parameters_(run_parameters(scene, strand, task.parameters)),
-        method_(method_of(scene, task.damped, task.parts)) {
+        method_(method_of(scene, task.damped)) {
     if (chosen_) accepted_ = accepted_steps(scene, strand, task.times);
     stops_ = chosen_ ? divided(accepted_.stops, task.parts) : stops_at(task.times);
+    if (!chosen_) divide_steps();
     found_.by.resize(task.parameters.size());
     found_.unfinished = accepted_.unfinished;
   }
@@ -158,6 +158,16 @@ class StrandRun {
   }
 
  private:
+  /// Divides the steps that the run takes, which end at stops.
+  void divide_steps() {
+    double before = 0, longest = 0;
+    for (const Stop& stop : stops_) {
+      longest = std::max(longest, stop.t - before);
+      before = stop.t;
+    }
+    double& step = method_.options.step;
+    if (task_.parts > 1) step = std::min(step, longest) / task_.parts;
+  }
   bool from_start() const { return !task_.times.empty() && task_.times.front() <= 0; }
 
   /// see(k) at every time, where k advances have led to it.

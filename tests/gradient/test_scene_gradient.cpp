@@ -152,6 +152,19 @@ TEST(SceneGradient, ByTheAdjointIsThatForwardForEveryKindOfParameter) {
   }
 }
 
+// Parameters of what does not act at the start of a run.
+TEST(SceneGradient, SeesWhatActsLater) {
+  const auto text = [](const std::string& word) {
+    return scene_text(
+        "[effects.tether]\nstiffness_n_m = 1e-5\ntarget_m = [0.05, 0, 0]\nt_on_s = "
+        "0.05\n[gradient]\nby = [\"tether.stiffness_n_m\"]\nway = \"" +
+        word + "\"\n");
+  };
+  expect_differences(text("forward"));
+  expect_same_tip(scene_gradient(parse_scene(text("adjoint"), "s.toml")),
+                  scene_gradient(parse_scene(text("forward"), "s.toml")));
+}
+
 // 3 numbers by 15 parameters. An edge of der that turns by 60 degrees moves its frame.
 TEST(SceneGradient, TakesTheAdjointWhereItIsExpectedToCostLess) {
   const auto found = [](const std::string& model, const std::string& more) {

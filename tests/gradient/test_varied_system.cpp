@@ -68,6 +68,7 @@ TEST(VariedSystem, IsNotSimpleWhereAParameterDoesNotActYet) {
   const VariedSystem one =
       varied_system(system, [](double s) { return std::make_unique<FarSpring>(s); });
   EXPECT_FALSE(one.simple.has_value());
+  EXPECT_EQ(one.systems.size(), 4u);  // nor is it believed to be affine
 }
 
 }  // namespace tress::test_varied_system

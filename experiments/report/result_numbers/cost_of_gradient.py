@@ -42,9 +42,9 @@ def work_001_percent(tables):
 
 def _advice(tables, column):
     """Returns the method whose linearizations are never far from the fewest, among those that reach the target on every model."""
-    work = _work(tables, column).dropna(how="all")
-    work = work.dropna(axis=1, how="any") if work.notna().all().any() else work
-    over = work.div(work.min(axis=1), axis=0).max()
+    tried = _work(tables, column).dropna(how="all")
+    work = tried.dropna(axis=1, how="any") if tried.notna().all().any() else tried
+    over = work.div(tried.min(axis=1), axis=0).max()
     best = over.idxmin()
     compared = "the fewest on every model" if over[best] == 1 else f"at most {number(over[best], 3)} times the fewest on any model"
     return f"take `{best}`: it needs {span(work[best], lambda x: number(x, 3))} linearizations of the run and its derivatives, {compared}"
