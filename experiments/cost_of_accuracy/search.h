@@ -44,17 +44,17 @@ double ladder_slack(const SearchPlan& plan, double noise);
 
 /// Search for the cheapest run for each target error, in stages:
 ///
-///   probe    every method once in the middle of the ladders; those that would meet the
-///            tightest target soonest, by their orders, go first, so that later ones can
-///            be compared with them
-///   coarse   every method climbs from few elements and long steps: more substeps until
-///            they gain little (the remaining error is spatial), then more elements,
-///            from a step or two longer than where the last climb ended; a method of a
-///            kind that has climbed begins near the answer of that kind
-///   prune    for each target the methods within `slack` of the cheapest continue
-///   refine   from a method's cheapest run so far, numbers of elements around it, each
-///            with the fewest substeps that meet the target, by bisection; repeated from
-///            the cheapest of those until it no longer changes
+///   probe    Every method runs once in the middle of the ladders. Those that would meet
+///            the tightest target soonest, by their orders, climb first.
+///   coarse   A method climbs from few elements and long steps. It takes more substeps
+///            until they gain little (the remaining error is spatial), then more
+///            elements. A method of a kind that has climbed begins near the answer of
+///            that kind.
+///   prune    For each target the methods within `slack` of the cheapest continue.
+///   refine   From a method's cheapest run so far, numbers of elements around it are
+///   tried,
+///            each with the fewest substeps that meet the target, by bisection. This is
+///            repeated from the cheapest of those until it no longer changes.
 ///
 /// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
 /// accurate runs are passed over. `stop` decides how far the search goes; the search

@@ -61,6 +61,7 @@ Status ResidualDerivative::move(double t, In q, In v, In a, In lambda) noexcept 
   v_ = v;
   a_ = a;
   lambda_ = lambda;
+  known_by_q_ = false;
   for (std::size_t k = 0; k < count_; ++k) {
     std::ranges::copy(q, Out(q_copies_).subspan(k * q.size()).begin());
   }
@@ -151,14 +152,21 @@ Status ResidualDerivative::along(In dq, In dv, In da, Out dr, Out dc) noexcept {
     if (s != Status::ok) return s;
   }
   if (sparse_ == nullptr) return Status::ok;
-  Status s = sparse_->values(t_, q_, v_, a_, {0, 0, 1}, by_q_);
-  if (s == Status::ok && dynamics_.m() > 0) {
-    s = dynamics_.constraints()->add_curvature(t_, q_, lambda_, -1, by_q_);
-  }
+  const Status s = known_by_q_ ? Status::ok : find_by_q();
   std::ranges::fill(dr, 0.0);
   add_product(sparse_->pattern(), by_a_, da, dr);
   add_product(sparse_->pattern(), by_v_, dv, dr);
   add_product(sparse_->pattern(), by_q_, dq, dr);
+  return s;
+}
+
+/// At the state of move(), once for all directions.
+Status ResidualDerivative::find_by_q() noexcept {
+  Status s = sparse_->values(t_, q_, v_, a_, {0, 0, 1}, by_q_);
+  if (s == Status::ok && dynamics_.m() > 0) {
+    s = dynamics_.constraints()->add_curvature(t_, q_, lambda_, -1, by_q_);
+  }
+  known_by_q_ = s == Status::ok;
   return s;
 }
 

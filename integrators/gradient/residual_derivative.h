@@ -25,6 +25,7 @@ class ResidualDerivative {
   Status along(In dq, In dv, In da, Out dr, Out dc) noexcept;
 
  private:
+  Status find_by_q() noexcept;
   Status difference(In dv, In da, Out dr, Out dc) noexcept;
   Status differences(In dq, In dv, In da, Out dr, Out dc) noexcept;
   Status differences_of_copies(In dv, In da, Out dr) noexcept;
@@ -37,6 +38,7 @@ class ResidualDerivative {
   double t_ = 0;
   In q_, v_, a_, lambda_;
   std::vector<double> by_q_, by_v_, by_a_;  // values of the matrices
+  bool known_by_q_ = false;                 // by_q_ is that of this state
   bool constant_by_a_ = false;              // by_a_ is that of all states
   std::vector<double> none_;                // (n) zeros
   std::vector<double> q_shift_, v_shift_, a_shift_, a_typ_, r_, c_;

@@ -43,8 +43,7 @@ TransposedEquations::TransposedEquations(System& system, const Options& options,
       of_r_(matrix_.add_block(pattern_, 0, 0, true)),
       of_lambda_(0),
       none_(n_),
-      unit_(n_),
-      none_m_(m_) {
+      unit_(n_) {
   if (m_ > 0) {
     const Pattern& gradient = dynamics_.constraints()->pattern();
     of_lambda_ = matrix_.add_block(gradient, static_cast<int>(n_), 0, true);

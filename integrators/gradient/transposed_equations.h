@@ -63,7 +63,7 @@ class TransposedEquations {
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> inverse_;  // (n x n) S^-1, column by column
   std::vector<double> product_q_, product_v_;
-  std::vector<double> combined_, gradient_, none_, unit_, none_m_;
+  std::vector<double> combined_, gradient_, none_, unit_;
 };
 
 }  // namespace tress::integrators

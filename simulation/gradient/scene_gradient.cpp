@@ -117,9 +117,7 @@ GradientRun::Method method_of(const Scene& scene, bool with_damping) {
   GradientRun::Method method{.id = scene.integrator, .options = scene.options};
   method.start = with_damping ? GradientStart::damped : GradientStart::as_run;
   method.sparse = !needs(make_effects(scene)).couplings;
-  if (scene.options.tolerance == 0) {
-    return method;
-  }
+  if (scene.options.tolerance == 0) return method;
   constexpr double one_step = 1e30;  // to the next stop
   method.options.tolerance = 0;
   method.options.step = one_step;
