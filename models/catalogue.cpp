@@ -13,6 +13,7 @@
 #include "models/constrained/tinkertoys.h"
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/force_transport.h"
+#include "models/reduced/four_strands.h"
 #include "models/reduced/super_helix.h"
 
 namespace tress::models {
@@ -33,20 +34,13 @@ ModelEntry lifted_curls_entry();
 
 namespace {
 
-using Batch = std::unique_ptr<System>(std::span<const Strand>, const ReducedOptions&,
-                                      std::vector<Effects>);
-
-/// Null for options that batches do not support.
-template <Batch* make>
+/// Makes one system of several strands; null where options or strands have no such form.
+template <Unknown unknown>
 std::unique_ptr<System> together(std::span<const Strand> strands,
                                  const Parameters& parameters,
                                  std::vector<Effects> effects) {
-  const ReducedOptions options = reduced_options(parameters);
-  const bool can = options.jacobian == ReducedJacobian::elastic &&
-                   options.method == TreeMethod::recursive &&
-                   !strands.front().free_root &&
-                   std::ranges::none_of(effects, hold_contacts);
-  return can ? make(strands, options, std::move(effects)) : nullptr;
+  if (std::ranges::any_of(effects, hold_contacts)) return nullptr;
+  return four_strands(strands, unknown, reduced_options(parameters), effects);
 }
 
 // clang-format off
@@ -59,12 +53,12 @@ std::vector<ModelEntry> built_in_models() {
       andrews_squeezer_entry(),
       slider_crank_entry(),
       beam_entry(),
-      ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), on_described_strand<make_super_helix>, make_super_helix, together<super_helix_batch>},
+      ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), on_described_strand<make_super_helix>, make_super_helix, together<Unknown::curvature>},
       ModelEntry{"super_helix_tree", "super_helix with branches: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
-      ModelEntry{"super_clothoid", "inextensible rod of n clothoids; 6n, 4n or 2n curvatures and twists", "Casati 2013", super_clothoid_parameters(), on_described_strand<make_super_clothoid>, make_super_clothoid, together<super_clothoid_batch>, Roots::clamped_or_free, 4},
+      ModelEntry{"super_clothoid", "inextensible rod of n clothoids; 6n, 4n or 2n curvatures and twists", "Casati 2013", super_clothoid_parameters(), on_described_strand<make_super_clothoid>, make_super_clothoid, nullptr, Roots::clamped_or_free, 4},
       ModelEntry{"super_clothoid_tree", "super_clothoid with branches: the trees of super_helix_tree", "Casati 2013", super_clothoid_tree_parameters(), make_super_clothoid_tree, nullptr, nullptr, Roots::clamped_or_free, 4},
-      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), on_described_strand<make_articulated_chain>, make_articulated_chain, together<articulated_chain_batch>},
-      ModelEntry{"force_transport", "articulated_chain whose part beyond a joint moves rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), on_described_strand<make_force_transport>, make_force_transport, together<force_transport_batch>, Roots::clamped},
+      ModelEntry{"articulated_chain", "n rigid links with ball joints and springs; 3n, 2n or n angles", "Hadap 2001, 2006; Featherstone 1983", articulated_chain_parameters(), on_described_strand<make_articulated_chain>, make_articulated_chain, together<Unknown::joint_angle>},
+      ModelEntry{"force_transport", "articulated_chain whose part beyond a joint moves rigidly with it: our reconstruction", "Wang, thesis, NCTU", force_transport_parameters(), on_described_strand<make_force_transport>, make_force_transport, nullptr, Roots::clamped},
       der_entry(),
       corde_entry(),
       xpbd_cosserat_entry(),

@@ -1,6 +1,7 @@
-// One strand of 10 edges, one step: its System with an integrator, and a batch of one
+// One strand of 10 elements, one step: its System with an integrator, and a batch of one
 // strand in one SIMD lane, as multiples of the reference kernel. Both call the same
-// kernel, so neither may be slower than the other by much.
+// kernel, so neither may be slower than the other by much. Exact Jacobians of reduced
+// models are the exception: a System computes them by code of its own.
 #include <fmt/format.h>
 
 #include <ctime>
@@ -15,6 +16,7 @@
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "models/effects/gravity.h"
+#include "models/reduced/reduced_strand.h"
 #include "simulation/head/make_head.h"
 
 namespace tress::experiments::benchmarks {
@@ -24,12 +26,12 @@ using models::Head;
 using simulation::HeadMethod;
 
 constexpr int steps = 4000, rounds = 8;
-constexpr double most = 1.1;  // System over batch
 
 struct Model {
   std::string_view id;
   std::unique_ptr<Head> (*batch)(const simulation::HeadOptions&, const models::HeadPack&);
   std::string_view approximate;  // Jacobian of the batch with linearly_implicit_euler
+  double most = 1.1;             // System over batch
 };
 struct Method {
   std::string_view id;
@@ -37,8 +39,16 @@ struct Method {
   bool exact;
 };
 
-constexpr Model strand_models[] = {{"mass_spring", simulation::spring_head, "filtered"},
-                                   {"der", simulation::der_head, "elastic"}};
+/// A System has sweeps of its own for matrix, residual and solution, where a batch has
+/// one for all three. In chains, whose elements are closed sums, that is a third of the
+/// time.
+constexpr double articulated_most = 1.4;
+
+constexpr Model strand_models[] = {
+    {"mass_spring", simulation::spring_head, "filtered"},
+    {"der", simulation::der_head, "elastic"},
+    {"super_helix", simulation::helix_head, "elastic"},
+    {"articulated_chain", simulation::chain_head, "elastic", articulated_most}};
 constexpr Method methods[] = {
     {"linearly_implicit_euler", HeadMethod::linearly_implicit_euler, false},
     {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint, true}};
@@ -49,6 +59,7 @@ const Vec gravity{0, 0, -earth_gravity};
 struct Timed {
   std::string name;
   std::function<void()> go;  // `steps` steps
+  double most = 0;           // over the one before; 0: is not compared
   double least = std::numeric_limits<double>::infinity();
 };
 
@@ -70,6 +81,8 @@ std::function<void()> batch_steps(const Model& model, const Method& method) {
   options.elements = reference_elements;
   options.longest = reference_length;
   options.gravity = gravity;
+  options.points =
+      models::quadrature_points(curl(0) * reference_length / reference_elements);
   const std::shared_ptr<Head> batch =
       model.batch(options, {models::HeadNumber::float64, 1});
   batch->add(reference_hair(0));
@@ -108,7 +121,7 @@ std::vector<Timed> all_steps() {
     for (const Method& method : methods) {
       const std::string name = fmt::format("{}, {}", model.id, method.id);
       all.push_back({name + ", batch", batch_steps(model, method)});
-      all.push_back({name + ", System", system_steps(model, method)});
+      all.push_back({name + ", System", system_steps(model, method), model.most});
     }
   }
   return all;
@@ -137,9 +150,10 @@ bool costs_met() {
                1e9 * one.least / (steps * reference_elements), one.least / all[0].least);
   }
   bool met = true;
-  for (std::size_t k = 1; k < all.size(); k += 2) {
-    met = kept("one strand", all[k + 1].name + " over batch,",
-               all[k + 1].least / all[k].least, most) &&
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    if (all[k].most == 0) continue;
+    met = kept("one strand", all[k].name + " over batch,",
+               all[k].least / all[k - 1].least, all[k].most) &&
           met;
   }
   return met;

@@ -9,8 +9,7 @@
 #include "experiments/problems/strand_scenes.h"
 #include "models/catalogue.h"
 #include "models/reduced/arc.h"
-#include "models/reduced/articulated_chain.h"
-#include "models/reduced/force_transport.h"
+#include "models/reduced/four_strands.h"
 #include "models/reduced/helix.h"
 #include "models/reduced/kinematics.h"
 #include "models/reduced/mass_tangent.h"
@@ -268,35 +267,32 @@ void register_steps() {
 
 // ---- strands by four ----------------------------------------------------------------
 
-using MakeBatch = decltype(super_helix_batch);
-
 /// Four strands at rest.
-Moving batch_of(MakeBatch* make, int elements) {
+Moving batch_of(models::Unknown unknown, int elements) {
   const Parameters p = parameters_of({"recursive", "elastic", "bend_twist"}, elements);
   const std::vector<Strand> strands(4, strand(p));
   Moving batch;
-  batch.system = make(strands, reduced_options(p),
-                      std::vector<Effects>(strands.size(), strand_effects(p)));
+  batch.system = four_strands(strands, unknown, reduced_options(p),
+                              std::vector<Effects>(strands.size(), strand_effects(p)));
   batch.state = initial_state(*batch.system);
   return batch;
 }
 
 void register_batches() {
   constexpr std::array sizes = {5, 10, 20};
-  const auto add = [&](const std::string& name, MakeBatch* make) {
+  const auto add = [&](const std::string& name, models::Unknown unknown) {
     auto* registered = benchmark::RegisterBenchmark(
         ("step/linearly_implicit_euler/four/" + name).c_str(),
-        [make](benchmark::State& state) {
+        [unknown](benchmark::State& state) {
           const auto elements = static_cast<int>(state.range(0));
-          step_benchmark(state, batch_of(make, elements), "linearly_implicit_euler");
+          step_benchmark(state, batch_of(unknown, elements), "linearly_implicit_euler");
           state.SetComplexityN(elements);
           count_per_element(state, 4 * elements);
         });
     with_sizes(registered, sizes);
   };
-  add("super_helix", super_helix_batch);
-  add("articulated_chain", articulated_chain_batch);
-  add("force_transport", force_transport_batch);
+  add("super_helix", models::Unknown::curvature);
+  add("articulated_chain", models::Unknown::joint_angle);
 }
 
 }  // namespace

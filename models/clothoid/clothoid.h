@@ -6,7 +6,7 @@
 #include "math/frame.h"
 #include "models/clothoid/collocation.h"
 #include "models/clothoid/turning.h"
-#include "models/reduced/shapes.h"
+#include "models/reduced/tree/shapes.h"
 
 namespace tress::models {
 

@@ -7,11 +7,10 @@
 
 namespace tress::models {
 
-/// Values of a vector at the points of an element, four a block (or, if Real is a pack,
-/// one point of four elements), and at its tip.
+/// Values of a vector at the points of an element, four a block, and at its tip.
 template <class Real>
 struct AlongOf {
-  static constexpr int most_blocks = most_clothoid_points * lanes<Real> / Pack::lanes;
+  static constexpr int most_blocks = most_clothoid_points / Pack::lanes;
 
   // Only those in use are set and copied.
   AlongOf() {}                                      // NOLINT
@@ -54,7 +53,7 @@ class Collocation {
   /// only.
   Collocation(std::span<const PointBlock> points, const Real& length)
       : blocks_(static_cast<int>(points.size())) {
-    constexpr int width = lanes<Real> == 1 ? Pack::lanes : 1;  // points in a block
+    constexpr int width = Pack::lanes;  // points in a block
     const Pack over = Pack(1) / Pack(length);
     std::array<double, most_clothoid_points> place{}, share{};
     for (int b = 0; b < blocks_; ++b) {
@@ -74,11 +73,7 @@ class Collocation {
     for (std::size_t i = 0; i < all; ++i) {
       for (std::size_t j = 0; j < all; ++j) {
         const double a = share[j] * integral(place[i], place[j], nodes);
-        if constexpr (width == 1) {
-          to_[i][j] = Pack(a);
-        } else {
-          to_[i / width][j].set(static_cast<int>(i % width), a);
-        }
+        to_[i / width][j].set(static_cast<int>(i % width), a);
       }
     }
   }
@@ -86,7 +81,7 @@ class Collocation {
   int blocks() const { return blocks_; }
   const Pack& place(int b) const { return place_[b]; }  // 2 x - 1
 
-  /// length times the integral to each point and the tip.
+  /// Returns length times the integral to each point and the tip.
   AlongOf<Real> integral(const AlongOf<Real>& f, const Real& length) const {
     AlongOf<Real> sum(blocks_);
     const Pack scale(length);
@@ -94,15 +89,11 @@ class Collocation {
       Vec3<Pack> at{Pack(0), Pack(0), Pack(0)};
       for (int j = 0; j < blocks_; ++j) {
         const Vec3<Pack> from = f[j];
-        if constexpr (lanes<Real> == 1) {
-          for (int lane = 0; lane < Pack::lanes; ++lane) {
-            const Pack& a = to_[b][Pack::lanes * j + lane];
-            at.x += a * Pack(from.x[lane]);
-            at.y += a * Pack(from.y[lane]);
-            at.z += a * Pack(from.z[lane]);
-          }
-        } else {
-          at = at + to_[b][j] * from;
+        for (int lane = 0; lane < Pack::lanes; ++lane) {
+          const Pack& a = to_[b][Pack::lanes * j + lane];
+          at.x += a * Pack(from.x[lane]);
+          at.y += a * Pack(from.y[lane]);
+          at.z += a * Pack(from.z[lane]);
         }
       }
       sum.set(b, scale * at);
@@ -110,13 +101,13 @@ class Collocation {
     sum.tip = to_tip(f, length);
     return sum;
   }
-  /// length times the integral over the whole.
+  /// Returns length times the integral over the whole.
   Vec3<Real> to_tip(const AlongOf<Real>& f, const Real& length) const {
     Vec3<Pack> sum;
     for (int b = 0; b < blocks_; ++b) sum = sum + weight_[b] * f[b];
     return length * sum_over<Real>(sum);
   }
-  /// The integral of (2 x - 1) f, the same way.
+  /// Returns length times the integral of (2 x - 1) f over the whole.
   Vec3<Real> moment(const AlongOf<Real>& f, const Real& length) const {
     Vec3<Pack> sum;
     for (int b = 0; b < blocks_; ++b) sum = sum + (weight_[b] * place_[b]) * f[b];

@@ -36,7 +36,7 @@ std::unique_ptr<System> super_clothoid(const Strand& strand,
   return make_reduced_system<ClothoidOf<double, 3>, ClothoidOf<double, 1>,
                              ClothoidOf<double, 2>>(
       reduced_strand(strand, Unknown::linear_curvature, options, std::move(effects)),
-      options.dofs);
+      Unknown::linear_curvature, options.dofs);
 }
 
 std::span<const Parameter> super_clothoid_parameters() {

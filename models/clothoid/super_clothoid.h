@@ -22,11 +22,6 @@ namespace tress::models {
 std::unique_ptr<System> super_clothoid(const Strand& strand,
                                        const ReducedOptions& options, Effects effects);
 
-/// One to four strands as one system: see super_helix_batch.
-std::unique_ptr<System> super_clothoid_batch(std::span<const Strand> strands,
-                                             const ReducedOptions& options,
-                                             std::vector<Effects> effects);
-
 std::span<const Parameter> super_clothoid_parameters();
 std::unique_ptr<System> make_super_clothoid(const Strand& strand,
                                             const Parameters& parameters,

@@ -31,9 +31,6 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
   std::size_t strands() const { return strands_.size(); }
   /// Returns the system of strand k.
   System& strand(std::size_t k) const { return *strands_[k]; }
-  /// Whether pull_back() and responses() are known, and of all strands cost little more
-  /// than of one.
-  virtual bool responds_at_once() const { return false; }
 
  protected:
   /// Number of coordinates before strand k.

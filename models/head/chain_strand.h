@@ -26,7 +26,8 @@ struct ChainKind {
   using Matrix = Matrix3<T>;
   using Material = ReducedMaterial<T>;
   using Motion = ReducedMotion<T>;
-  using Sum = ArticulatedSum<T>;
+  using Wrench = WrenchOf<T>;
+  using Hanging = ArticulatedInertia<T>;
 
   struct Kept {
     Vec v, omega;           // of its joint, in the link's axes
@@ -38,7 +39,7 @@ struct ChainKind {
   /// The clamp's joint is half as long as others (reduced_strand()).
   static constexpr double first_stiffness = 2;
   static constexpr double rotors_of_root = 0, rotors_of_last = 1;
-  static constexpr bool straight = true, eliminates = true;
+  static constexpr bool straight = true, cancels = false;
   static double unit(double /*length*/) { return 1; }
   static double moment(double length) { return 1 / length; }
   /// Halves of two links' angles; `shape`: natural or initial.
@@ -80,23 +81,45 @@ struct ChainKind {
     at.a = at.a + m.length * bent;
   }
 
-  static Sum last(const Material& /*m*/, const Motion& /*tip*/, const T& /*acc*/) {
-    return {};
+  /// Sums over the points of a link are closed.
+  struct Sums {};
+  template <bool accelerated, class Kernel>
+  static void add_up(const Kernel& /*kernel*/, const Material& /*m*/, const Vec& /*q*/,
+                     const Vec& /*rate*/, const Vec& /*acceleration*/, const Kept& /*e*/,
+                     Sums& /*sums*/) {}
+
+  static Wrench last_wrench(const Material& /*m*/, const Motion& /*tip*/) { return {}; }
+  // One code with and without loads: the same bits for strands that have none. The wrench
+  // is that of inertia less loads.
+  static void bear(const Vec& /*q*/, const Vec& /*rate*/, const Sums& /*sums*/,
+                   const LoadSums<T>* of_effects, const Kept& e, Wrench& wrench,
+                   Vec& unknown) {
+    unknown = {};
+    lift(e, wrench, unknown);
+    wrench.force = e.force + wrench.force;
+    wrench.moment = e.moment + wrench.moment;
+    if (of_effects == nullptr) [[likely]] {
+      return;
+    }
+    of_effects->add_to(wrench.force, Vec{} - of_effects->force);
+    of_effects->add_to(wrench.moment, Vec{} - of_effects->moment);
+  }
+  static Vec felt(const Kept& e, const Wrench& wrench, const Vec& /*unknown*/) {
+    return Vec{} - e.turn * wrench.moment;
+  }
+  static void pass_wrench(const Material& /*m*/, const Kept& e, Wrench& wrench) {
+    set_back(e, wrench);
   }
 
-  template <bool accelerated, class Kernel>
-  static void carry(const Kernel& /*kernel*/, const Material& m,
-                    const typename Kernel::Inertia& inertia, const Vec& /*q*/,
-                    const Vec& /*rate*/, const Vec& /*acceleration*/, const Sum& hanging,
-                    const LoadSums<T>* of_effects, const Kept& e,
-                    typename Kernel::Uneliminated& to) {
+  static Hanging last(const Material& /*m*/, const T& /*acc*/) { return {}; }
+  static void carry(const Material& m, const ReducedInertia<T>& inertia, const Vec& /*q*/,
+                    const Vec& /*rate*/, const Sums& /*sums*/, const Hanging& hanging,
+                    const LoadSums<T>* of_effects, const Kept& /*e*/,
+                    UneliminatedInertia<T>& to) {
     const T& l = m.length;
     const T mass = inertia.of_length * l, first = T(0.5) * l * mass,
             second = T(2.0 / 3) * l * first;
-    Sum& all = to.sum;
-    const Vec tip_force = l * hanging.force;
-    all.force = e.force + hanging.force;
-    all.moment = e.moment + hanging.moment + Vec{T(0), -tip_force.z, tip_force.y};
+    Hanging& all = to.sum;
     // By a turn of the link the tip moves by -[l e0]x.
     const Symmetric3<T>& ll = hanging.ll;
     const Matrix& la = hanging.la;
@@ -116,27 +139,35 @@ struct ChainKind {
     all.ll.xx += mass;
     all.ll.yy += mass;
     all.ll.zz += mass;
-    // One code with and without loads: the same bits for strands that have none. The
-    // wrench is that of inertia less loads.
-    if (of_effects != nullptr) [[unlikely]] {
-      of_effects->add_to(all.force, Vec{} - of_effects->force);
-      of_effects->add_to(all.moment, Vec{} - of_effects->moment);
-      of_effects->add_to(all.ll, of_effects->ll);
-      of_effects->add_to(all.la, of_effects->la);
-      of_effects->add_to(all.aa, of_effects->aa);
+    if (of_effects == nullptr) [[likely]] {
+      return;
     }
-    to.of_force = e.turn * all.la.transposed();
-    to.of_moment = e.turn * full(all.aa);
-    to.own = upper(to.of_moment, e.turn);
-    to.unknown = Vec{} - e.turn * all.moment;
+    of_effects->add_to(all.ll, of_effects->ll);
+    of_effects->add_to(all.la, of_effects->la);
+    of_effects->add_to(all.aa, of_effects->aa);
   }
 
-  /// Adds `sum` in the axes of the link before.
-  static void pass(const Material& /*m*/, const T& /*acc*/, const Kept& e, Sum& sum) {
+  /// `sum` in the axes of the link before.
+  static void pass(const Material& /*m*/, const T& /*acc*/, const Kept& e, Hanging& sum) {
     const Matrix& r = e.rotation;
-    sum = {r * sum.force, r * sum.moment, congruent(r, sum.ll), congruent(r, sum.aa),
-           r * sum.la * r.transposed()};
+    sum = {congruent(r, sum.ll), congruent(r, sum.aa), r * sum.la * r.transposed()};
   }
+
+  /// The unknowns of a turn y: x_k = of[k].y and y = sum x_k w_k, w_k the rows of W.
+  /// Without twist the sum has the last two terms and y is normal to `normal`.
+  struct Unknowns {
+    Unknowns() = default;
+    Unknowns(const Matrix& w, bool twist) {
+      const Vec across = cross(w.row[1], w.row[2]), first = twist ? w.row[0] : across;
+      const T by = T(1) / dot(first, across);
+      of[0] = by * across;
+      of[1] = by * cross(w.row[2], first);
+      of[2] = by * cross(first, w.row[1]);
+      if (!twist) normal = square_root(by) * across;
+    }
+    Vec of[3];  // rows of D
+    Vec normal;
+  };
 
   /// Eliminates the joint's unknown from the articulated inertia. The unknown is the turn
   /// y = W^T x of the link by the joint, in the link's axes, with x = D y. K and b are
@@ -160,61 +191,77 @@ struct ChainKind {
   /// n/(n.Q n),
   ///
   ///     P = Q - Q n m_n^T,    I - aa P = D^T K D P + n m_n^T
-  template <class Bending, class Element>
-  static Sum eliminate(const Bending& by, bool twist, const Sum& all, Element& e) {
-    const Unknowns x(e.kept.turn, twist);
-    const T first = twist ? by.tangent.x : T(0);
-    const Matrix stiffer{
-        {first * x.of[0], by.tangent.y * x.of[1], by.tangent.z * x.of[2]}};
-    const Symmetric3<T> k = upper(stiffer.transposed(), x.turned);
-    const Vec moment =
-        x.turned * Vec{twist ? by.moment.x : T(0), by.moment.y, by.moment.z};
+  struct Joint {
+    Unknowns of;
+    Symmetric3<T> stiffness;  // D^T K D
+    Vec about;                // m_n
+  };
+  template <class Element>
+  static Hanging eliminate(const Vec& tangent, bool twist,
+                           const UneliminatedInertia<T>& from, Element& e, Joint& joint) {
+    const Hanging& all = from.sum;
+    joint.of = Unknowns(e.kept.turn, twist);
+    const Unknowns& x = joint.of;
+    const T first = twist ? tangent.x : T(0);
+    const Matrix stiffer{{first * x.of[0], tangent.y * x.of[1], tangent.z * x.of[2]}};
+    const Symmetric3<T> k =
+        upper(stiffer.transposed(), Matrix::columns(x.of[0], x.of[1], x.of[2]));
+    joint.stiffness = k;
     const Matrix inertia = full(all.aa);
     Symmetric3<T> p = all.aa + k;
     if (!twist) p = p + (k.xx + k.yy + k.zz) * squared(x.normal);
     p = inverse(p);
-    Vec about;
     if (!twist) {
       const Vec turned = p * x.normal;
-      about = (T(1) / dot(x.normal, turned)) * turned;
-      p = p - upper(dyad(turned, about));
+      joint.about = (T(1) / dot(x.normal, turned)) * turned;
+      p = p - upper(dyad(turned, joint.about));
     }
     const Matrix shift = all.la * full(p), turn = inertia * full(p);
     e.pivot = p;
     e.of_force = all.la.transposed();
     e.of_moment = inertia;
-    const Vec freed = p * all.moment;
-    e.unknown = Vec{} - freed - p * moment;
-    Sum passed;
+    Hanging passed;
     passed.aa = upper(turn, full(k));
     passed.la = shift * full(k);
     passed.ll = all.ll - upper(shift, all.la);
-    passed.moment = k * freed - turn * moment;
-    passed.force = all.force - shift * (all.moment + moment);
     if (!twist) {
-      passed.aa = passed.aa + upper(dyad(all.aa * about, x.normal));
-      passed.la = passed.la + dyad(all.la * about, x.normal);
-      passed.moment = passed.moment + dot(about, all.moment) * x.normal;
+      passed.aa = passed.aa + upper(dyad(all.aa * joint.about, x.normal));
+      passed.la = passed.la + dyad(all.la * joint.about, x.normal);
     }
     return passed;
   }
+  /// `b`: moment of the joint on its unknowns, less that of its stiffness.
   template <class Element>
-  static Vec follow(const Element& e, bool twist, Vec& l, Vec& a) {
+  static void reduce(const Vec& b, bool twist, const Joint& joint, Element& e,
+                     Wrench& wrench) {
+    const Vec(&x)[3] = joint.of.of;
+    Vec own = b.y * x[1] + b.z * x[2];
+    if (twist) own = own + b.x * x[0];
+    const Vec freed = e.pivot * wrench.moment, held = e.pivot * own;
+    e.unknown = held - freed;
+    wrench.force = wrench.force + e.of_force.back(e.unknown);
+    Vec passed = joint.stiffness * freed + e.of_moment * held;
+    if (!twist) passed = passed + dot(joint.about, wrench.moment) * joint.of.normal;
+    wrench.moment = passed;
+  }
+  template <class Element>
+  static Vec follow(const Element& e, bool twist, const Joint& joint, Vec& l, Vec& a) {
+    const Vec(&x)[3] = joint.of.of;
+    l = e.kept.rotation.back(l);
+    a = e.kept.rotation.back(a);
     const Vec y = e.unknown - e.pivot * (e.of_force * l + e.of_moment * a);
-    leave(e.kept, y, l, a);
-    const Unknowns x(e.kept.turn, twist);
-    const T first = twist ? dot(x.of[0], y) : T(0);
-    return {first, dot(x.of[1], y), dot(x.of[2], y)};
+    a = a + y;
+    l = l + cross(a, e.kept.position);
+    return {twist ? dot(x[0], y) : T(0), dot(x[1], y), dot(x[2], y)};
   }
 
-  static void arrive(const Kept& e, Vec& l, Vec& a) {
-    l = e.rotation.back(l);
-    a = e.rotation.back(a);
+  /// The unknowns feel the wrench as a turn of the link (reduce()).
+  static void lift(const Kept& e, Wrench& wrench, Vec& /*b*/) {
+    const Vec lever = e.position.x * wrench.force;
+    wrench.moment = wrench.moment + Vec{T(0), -lever.z, lever.y};
   }
-  /// `turn`: of the link by its joint, in its axes.
-  static void leave(const Kept& e, const Vec& turn, Vec& l, Vec& a) {
-    a = a + turn;
-    l = l + cross(a, e.position);
+  static void set_back(const Kept& e, Wrench& wrench) {
+    wrench = {e.rotation * wrench.force, e.rotation * wrench.moment};
   }
 
   /// Kinematics alone, seen from the joint in the axes of the link before.
@@ -255,9 +302,13 @@ struct ChainKind {
     }
     Vec tangent(const T& /*arc*/) const { return {T(1), T(0), T(0)}; }
     /// The unknowns move a point as a turn of the link does.
-    void add(const T& /*arc*/, const Vec& position, const PointLoad<T>& load,
-             LoadSums<T>& sums) const {
-      sums.add(position, load);
+    void add_force(const T& /*arc*/, const Vec& position, const Vec& force,
+                   LoadSums<T>& sums) const {
+      sums.add_force(position, force);
+    }
+    void add_block(const T& /*arc*/, const Vec& position, const Symmetric3<T>& block,
+                   LoadSums<T>& sums) const {
+      sums.add_block(position, block);
     }
 
    private:
@@ -265,22 +316,6 @@ struct ChainKind {
   };
 
  private:
-  /// The unknowns of a turn y, x_k = of[k].y: y = sum x_k w_k, w_k the rows of W; without
-  /// twist of the last two, and normal to `normal`.
-  struct Unknowns {
-    Unknowns(const Matrix& w, bool twist) {
-      const Vec across = cross(w.row[1], w.row[2]), first = twist ? w.row[0] : across;
-      const T by = T(1) / dot(first, across);
-      of[0] = by * across;
-      of[1] = by * cross(w.row[2], first);
-      of[2] = by * cross(first, w.row[1]);
-      turned = Matrix::columns(of[0], of[1], of[2]);
-      if (!twist) normal = square_root(by) * across;
-    }
-    Vec of[3];      // rows of D
-    Matrix turned;  // D^T
-    Vec normal;
-  };
   static Symmetric3<T> squared(const Vec& n) {
     return {n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z};
   }

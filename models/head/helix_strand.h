@@ -1,6 +1,11 @@
 #pragma once
 
-#include "models/head/helix_element.h"
+#include <algorithm>
+#include <concepts>
+#include <utility>
+
+#include "models/head/helix_sums.h"
+#include "models/head/lane_numbers.h"
 #include "models/head/reduced_kernel.h"
 #include "models/strand/strand.h"
 
@@ -17,7 +22,8 @@ struct HelixKind {
   using Matrix = Matrix3<T>;
   using Material = ReducedMaterial<T>;
   using Motion = ReducedMotion<T>;
-  using Sum = ArticulatedSum<T>;
+  using Wrench = WrenchOf<T>;
+  using Hanging = ArticulatedInertia<T>;
 
   struct Kept {
     Vec v, omega, a, alpha;        // of its start
@@ -27,7 +33,7 @@ struct HelixKind {
 
   static constexpr double first_stiffness = 1;
   static constexpr double rotors_of_root = 0.5, rotors_of_last = 0.5;
-  static constexpr bool straight = false, eliminates = false;
+  static constexpr bool straight = false, cancels = true;
   static double unit(double length) { return length; }
   static double moment(double length) { return length; }
   /// `shape`: natural or initial.
@@ -64,43 +70,79 @@ struct HelixKind {
     at.omega = e.rotation.back(at.omega + turn.velocity);
   }
 
-  /// Half a rotor.
-  static Sum last(const Material& m, const Motion& tip, const T& acc) {
-    const T rotor = T(0.5) * m.rotor;
-    Sum end{};
-    end.moment = rotor_moment(rotor, tip.omega, tip.alpha);
-    end.aa.xx += acc * rotor;
+  /// Half a rotor turns with the last tip.
+  static Wrench last_wrench(const Material& m, const Motion& tip) {
+    return {{}, rotor_moment(T(0.5) * m.rotor, tip.omega, tip.alpha)};
+  }
+  static Hanging last(const Material& m, const T& acc) {
+    Hanging end{};
+    end.aa.xx += acc * (T(0.5) * m.rotor);
     return end;
   }
 
+  using Sums = HelixSums<T>;
   template <bool accelerated, class Kernel>
-  static void carry(const Kernel& kernel, const Material& m,
-                    const typename Kernel::Inertia& weights, const Vec& q,
-                    const Vec& rate, const Vec& acceleration, const Sum& hanging,
-                    const LoadSums<T>* of_effects, const Kept& e,
-                    typename Kernel::Uneliminated& to) {
-    const T& inertia = weights.of_length;
+  static void add_up(const Kernel& kernel, const Material& m, const Vec& q,
+                     const Vec& rate, const Vec& acceleration, const Kept& e,
+                     Sums& sums) {
     const HelixElement<T> element(q, rate);
     const LaneFunctions<T> functions(q, m.length);
     AlongHelix<T> load = element.inertial(m.density, m.drag, e.v, e.omega, e.a, e.alpha);
     if constexpr (accelerated) element.add_second(m.density, acceleration, load);
-    HelixSums<T> sums;
-    for (int k = 0; k < kernel.points(); ++k) {
-      const T arc = T(kernel.at(k)) * m.length, weight = T(kernel.weight(k)) * m.length;
-      const HelixFunctions<T> f = functions.at(arc);
-      sums.add(weight, arc, f);
-      sums.add_force(weight * load.at(arc, f), arc, f);
+    if constexpr (std::same_as<T, double>) {  // its points are in lanes
+      HelixSums<Pack> packs;
+      add_up_points<Pack>(kernel, functions, load, m.length, packs);
+      const std::span<const Pack> each = models::numbers_of<Pack>(std::as_const(packs));
+      std::ranges::transform(each, models::numbers_of<double>(sums).begin(),
+                             [](const Pack& x) { return sum(x); });
+    } else {
+      sums = {};
+      add_up_points<T>(kernel, functions, load, m.length, sums);
     }
-    const HelixMoments<T> points(element, q, sums);
+  }
+
+  // One code with and without loads: the same bits for strands that have none. The wrench
+  // is that of inertia less loads.
+  static void bear(const Vec& q, const Vec& rate, const Sums& sums,
+                   const LoadSums<T>* of_effects, const Kept& e, Wrench& wrench,
+                   Vec& unknown) {
+    const HelixWork<T> work(
+        HelixElement<T>(q, rate),
+        {sums.force_s, sums.force_A, sums.force_B, sums.force_A1, sums.force_B1});
+    unknown = {};
+    lift(e, wrench, unknown);
+    wrench.force = sums.force + wrench.force;
+    wrench.moment = work.moment + wrench.moment;
+    unknown = unknown - work.unknown;
+    if (of_effects == nullptr) [[likely]] {
+      return;
+    }
+    of_effects->add_to(wrench.force, Vec{} - of_effects->force);
+    of_effects->add_to(wrench.moment, Vec{} - of_effects->moment);
+    of_effects->add_to(unknown, of_effects->unknown);
+  }
+  static const Vec& felt(const Kept& /*e*/, const Wrench& /*wrench*/,
+                         const Vec& unknown) {
+    return unknown;
+  }
+  /// The rotor at its start.
+  static void pass_wrench(const Material& m, const Kept& e, Wrench& wrench) {
+    wrench.moment = wrench.moment + rotor_moment(m.rotor, e.omega, e.alpha);
+  }
+
+  static void carry(const Material& /*m*/, const ReducedInertia<T>& weights, const Vec& q,
+                    const Vec& rate, const Sums& sums, const Hanging& hanging,
+                    const LoadSums<T>* of_effects, const Kept& e,
+                    UneliminatedInertia<T>& to) {
+    const T& inertia = weights.of_length;
+    const HelixMoments<T> points(HelixElement<T>(q, rate), q, sums);
     // What hangs on the tip, in the components of the start.
     const Symmetric3<T> ll = congruent(e.rotation, hanging.ll),
                         aa = congruent(e.rotation, hanging.aa);
     const Matrix la = e.rotation * hanging.la * e.rotation.transposed(),
                  al = la.transposed();
-    const Vec tip_force = e.rotation * hanging.force,
-              tip_moment = e.rotation * hanging.moment;
-    // Wrench that the tip answers with when the start turns, or the unknowns change: the
-    // tip then moves by -[P]x and by dP/dkappa, W.
+    // Wrench of the tip's response to a turn of the start, or to a change of the
+    // unknowns: the tip then moves by -[P]x and by dP/dkappa, W.
     const Vec& tip = e.position;
     const Matrix f_turn = la - times_cross(full(ll), tip),
                  f_own = ll * e.slope + la * e.turn;
@@ -108,12 +150,8 @@ struct HelixKind {
                  m_own = al * e.slope + aa * e.turn;
     const Vec p = inertia * points.first;
     const T mass = inertia * sums.one;
-    Sum& all = to.sum;
-    all = {sums.force + tip_force,
-           points.moment + tip_moment + cross(tip, tip_force),
-           ll,
-           {},
-           {}};
+    Hanging& all = to.sum;
+    all.ll = ll;
     all.ll.xx += mass;
     all.ll.yy += mass;
     all.ll.zz += mass;
@@ -129,16 +167,9 @@ struct HelixKind {
     to.of_moment = (m_own + cross_times(tip, f_own)).transposed() + inertia * points.spin;
     to.own = upper(e.slope.transposed(), f_own.transposed()) +
              upper(e.turn.transposed(), m_own.transposed()) + inertia * points.inner;
-    to.unknown =
-        Vec{} - points.unknown - e.slope.back(tip_force) - e.turn.back(tip_moment);
-    // One code with and without loads: the same bits for strands that have none. The
-    // wrench is that of inertia less loads.
     if (of_effects == nullptr) [[likely]] {
       return;
     }
-    of_effects->add_to(all.force, Vec{} - of_effects->force);
-    of_effects->add_to(all.moment, Vec{} - of_effects->moment);
-    of_effects->add_to(to.unknown, of_effects->unknown);
     of_effects->add_to(all.ll, of_effects->ll);
     of_effects->add_to(all.la, of_effects->la);
     of_effects->add_to(all.aa, of_effects->aa);
@@ -147,16 +178,49 @@ struct HelixKind {
     of_effects->add_to(to.own, of_effects->inner);
   }
 
-  /// The rotor at its start.
-  static void pass(const Material& m, const T& acc, const Kept& e, Sum& sum) {
-    sum.moment = sum.moment + rotor_moment(m.rotor, e.omega, e.alpha);
-    sum.aa.xx += acc * m.rotor;
+  static void lift(const Kept& e, Wrench& wrench, Vec& b) {
+    const Vec force = e.rotation * wrench.force, moment = e.rotation * wrench.moment;
+    b = b - e.slope.back(force) - e.turn.back(moment);
+    wrench = {force, moment + cross(e.position, force)};
+  }
+  static void set_back(const Kept& /*e*/, Wrench& /*wrench*/) {}
+
+  struct Joint {};
+  template <class Element>
+  static Hanging eliminate(const Vec& tangent, bool twist, UneliminatedInertia<T>& from,
+                           Element& e, Joint& /*joint*/) {
+    from.own.xx += tangent.x;
+    from.own.yy += tangent.y;
+    from.own.zz += tangent.z;
+    e.of_force = from.of_force;
+    e.of_moment = from.of_moment;
+    e.pivot = inverse(from.own, twist);
+    const Matrix z_l = e.pivot * e.of_force, z_a = e.pivot * e.of_moment;
+    const Matrix by_force = e.of_force.transposed(), by_moment = e.of_moment.transposed();
+    return {from.sum.ll - upper(by_force, z_l.transposed()),
+            from.sum.aa - upper(by_moment, z_a.transposed()),
+            from.sum.la - by_force * z_a};
+  }
+  /// `b`: right side of the unknowns.
+  template <class Element>
+  static void reduce(const Vec& b, bool /*twist*/, const Joint& /*joint*/, Element& e,
+                     Wrench& wrench) {
+    e.unknown = e.pivot * b;
+    wrench.force = wrench.force + e.of_force.back(e.unknown);
+    wrench.moment = wrench.moment + e.of_moment.back(e.unknown);
+  }
+  template <class Element>
+  static Vec follow(const Element& e, bool /*twist*/, const Joint& /*joint*/, Vec& l,
+                    Vec& a) {
+    const Vec own = e.unknown - e.pivot * (e.of_force * l + e.of_moment * a);
+    l = e.kept.rotation.back(l + cross(a, e.kept.position) + e.kept.slope * own);
+    a = e.kept.rotation.back(a + e.kept.turn * own);
+    return own;
   }
 
-  static void arrive(const Kept& /*e*/, Vec& /*l*/, Vec& /*a*/) {}
-  static void leave(const Kept& e, const Vec& own, Vec& l, Vec& a) {
-    l = e.rotation.back(l + cross(a, e.position) + e.slope * own);
-    a = e.rotation.back(a + e.turn * own);
+  /// The rotor at its start.
+  static void pass(const Material& m, const T& acc, const Kept& /*e*/, Hanging& sum) {
+    sum.aa.xx += acc * m.rotor;
   }
 
   /// Kinematics alone.
@@ -207,10 +271,15 @@ struct HelixKind {
       const HelixFunctions<T> f = functions_.at(arc);
       return Vec{T(1), T(0), T(0)} + f.S * element_.u() + f.A * element_.z();
     }
-    void add(const T& arc, const Vec& position, const PointLoad<T>& load,
-             LoadSums<T>& sums) const {
-      sums.add(position, load);
-      sums.add_unknowns(position, element_.slope(functions_.at(arc)), load);
+    void add_force(const T& arc, const Vec& position, const Vec& force,
+                   LoadSums<T>& sums) const {
+      sums.add_force(position, force);
+      sums.add_force_of_unknowns(element_.slope(functions_.at(arc)), force);
+    }
+    void add_block(const T& arc, const Vec& position, const Symmetric3<T>& block,
+                   LoadSums<T>& sums) const {
+      sums.add_block(position, block);
+      sums.add_block_of_unknowns(position, element_.slope(functions_.at(arc)), block);
     }
 
    private:
@@ -219,6 +288,30 @@ struct HelixKind {
     LaneFunctions<T> functions_;
     Vec rate_;
   };
+
+ private:
+  template <class P, class Kernel>
+  static void add_up_points(const Kernel& kernel, const LaneFunctions<T>& functions,
+                            const AlongHelix<T>& of_load, const T& length,
+                            HelixSums<P>& sums) {
+    const AlongHelix<P> load{of_load.one, of_load.s,  of_load.A,  of_load.B,
+                             of_load.A1,  of_load.B1, of_load.A2, of_load.B2};
+    constexpr int step = std::same_as<T, P> ? 1 : P::lanes;
+    for (int k = 0; k < kernel.points(); k += step) {
+      const P arc = kernel.template at<P, step>(k) * P(length),
+              weight = kernel.template weight<P, step>(k) * P(length);
+      const HelixFunctions<P> f = functions.at(arc);
+      sums.add(weight, arc, f);
+      sums.add_force(weight * load.at(arc, f), arc, f);
+    }
+  }
+
+  /// Without twist, of the lower right block.
+  static Symmetric3<T> inverse(const Symmetric3<T>& h, bool twist) {
+    if (twist) return tress::inverse(h);
+    const T o(0), by = T(1) / (h.yy * h.zz - h.yz * h.yz);
+    return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
+  }
 };
 
 /// Newton's step of clamped super-helices, side by side.

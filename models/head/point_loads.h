@@ -64,19 +64,24 @@ struct LoadSums {
   Matrix3<T> la;                   // block of translations and rotations
   Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
 
-  /// Adds the load on a point that the unknowns do not move.
-  void add(const Vec3<T>& p, const PointLoad<T>& load) {
-    force = force + load.force;
-    moment = moment + cross(p, load.force);
-    const Matrix3<T> turned = times_cross(full(load.block), p);
-    ll = ll + load.block;
+  /// Add the load on a point that the unknowns do not move.
+  void add_force(const Vec3<T>& p, const Vec3<T>& f) {
+    force = force + f;
+    moment = moment + cross(p, f);
+  }
+  void add_block(const Vec3<T>& p, const Symmetric3<T>& block) {
+    const Matrix3<T> turned = times_cross(full(block), p);
+    ll = ll + block;
     la = la - turned;
     aa = aa - upper(cross_times(p, turned));
   }
-  /// Adds the remaining terms of a point that the unknowns move by d.
-  void add_unknowns(const Vec3<T>& p, const Matrix3<T>& d, const PointLoad<T>& load) {
-    const Matrix3<T> own = load.block * d;
-    unknown = unknown + d.back(load.force);
+  /// Add the remaining terms of a point that the unknowns move by d.
+  void add_force_of_unknowns(const Matrix3<T>& d, const Vec3<T>& f) {
+    unknown = unknown + d.back(f);
+  }
+  void add_block_of_unknowns(const Vec3<T>& p, const Matrix3<T>& d,
+                             const Symmetric3<T>& block) {
+    const Matrix3<T> own = block * d;
     of_force = of_force + own.transposed();
     of_moment = of_moment + cross_times(p, own).transposed();
     inner = inner + upper(d.transposed(), own.transposed());

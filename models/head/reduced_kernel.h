@@ -2,62 +2,13 @@
 
 #include <array>
 
-#include "contract/basics.h"
+#include "contract/weights.h"
 #include "math/gauss_legendre.h"
 #include "math/instructions.h"
-#include "math/lane_choice.h"
 #include "models/head/point_loads.h"
+#include "models/head/reduced_parts.h"
 
 namespace tress::models {
-
-/// Properties common to all elements of a strand, in consistent units.
-template <class T>
-struct ReducedMaterial {
-  T length;           // of an element
-  T density;          // mass per length
-  T drag;             // force per length and velocity: nu + c density (LinearDrag)
-  Vec3<T> stiffness;  // moment per unknown of an element
-  T friction;         // moment per rate of an unknown
-  T rotor;            // inertia of an element about its tangent: length rho (I1 + I2)
-};
-
-/// Motion of a frame in its own components, such as that of a clamped root; gravity g is
-/// a part of a.
-template <class T>
-struct ReducedMotion {
-  Vec3<T> v, omega;  // velocity, angular velocity
-  Vec3<T> a, alpha;  // acceleration minus g, angular acceleration
-};
-
-/// The wrench and the articulated inertia at a frame: force = ll a + la alpha, moment =
-/// la^T a + aa alpha.
-template <class T>
-struct ArticulatedSum {
-  Vec3<T> force, moment;
-  Symmetric3<T> ll, aa;
-  Matrix3<T> la;
-};
-
-/// The motion of a point of an element seen from the element's start.
-template <class T>
-struct SeenPoint {
-  Vec3<T> position, velocity;
-};
-/// Position, velocity and turn of an element's tip, seen from the element's start.
-template <class T>
-struct SeenTip {
-  Vec3<T> position, velocity;
-  Matrix3<T> rotation;  // from the components of the tip to those of the start
-  Vec3<T> turning;      // angular velocity
-};
-
-inline constexpr int most_points_of_element = 16;
-
-/// I d/dt((omega . t) t), t the tangent: what turns the rotor of an element.
-template <class T>
-Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
-  return inertia * Vec3<T>{alpha.x, w.x * w.z, -(w.x * w.y)};
-}
 
 /// Newton's step of a clamped strand of equal elements of three unknowns each, with the
 /// elastic Jacobian:
@@ -75,41 +26,59 @@ Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
 /// or not other lanes have loads.
 ///
 /// A Kind of element defines how its unknowns move it (models/head/helix_strand.h,
-/// chain_strand.h). It has
+/// chain_strand.h). "Hanging" is all that follows an element. A Kind has
 ///
 ///     Real                          // T
 ///     Kept                          // of an element, between sweeps: v, omega of its
 ///                                   // axes, position and rotation of its tip
+///     Sums, Joint                   // sums over its points; factors of its elimination
 ///     move<accelerated>(material, q, rate, acceleration, motion, Kept)
-///                                   // motion: of its start, replaced by its tip's;
-///                                   // `acceleration` is read if so
-///     last(material, motion, acc)   // the sum that hangs on the last tip
-///     carry<accelerated>(kernel, material, Inertia, q, rate, acceleration, sum, loads,
-///                        Kept, Uneliminated)
-///                                   // sum: of its tip, to its axes and with its own
-///     pass(material, acc, Kept, sum)          // once eliminated, to the tip before
-///     eliminates                    // whether it has, in place of what all others do,
-///     eliminate(Bending, twist, sum, Scratch) // the sum without its unknowns
-///     follow(Scratch, twist, l, a)  // these; changes of acceleration from its axes to
-///                                   // its tip
-///     arrive(Kept, l, a)            // changes of acceleration: from the tip before to
-///     leave(Kept, own, l, a)        // its axes, and to its tip
-///     enter(Kept, frame)            // frames: from the tip before to its axes, and to
-///     go_on(Kept, frame)            // its tip
+///                                   // replaces the motion of its start by its tip's;
+///                                   // `acceleration` is read if accelerated
+///     add_up<accelerated>(kernel, material, q, rate, acceleration, Kept, Sums)
+///
+///     last_wrench(material, motion) // wrench on the last tip
+///     bear(q, rate, Sums, loads, Kept, wrench, unknown)
+///                                   // moves the hanging wrench from the tip to the
+///                                   // element's axes and adds its own; right side of
+///                                   // the unknowns in addition to that of the wrench
+///     felt(Kept, wrench, unknown)   // whole right side of the unknowns
+///     pass_wrench(material, Kept, wrench)     // to the tip before
+///
+///     last(material, acc)           // inertia on the last tip
+///     carry(material, Inertia, q, rate, Sums, inertia, loads, Kept, Uneliminated)
+///                                   // moves the hanging inertia likewise
+///     eliminate(tangent, twist, Uneliminated, Scratch, Joint)
+///                                   // inertia without the unknowns; adds `tangent` to
+///                                   // their diagonal in S
+///     pass(material, acc, Kept, inertia)      // to the tip before
+///
+///     lift(Kept, wrench, b)         // moves a wrench from the tip to the axes and
+///                                   // subtracts from b what the unknowns feel
+///     reduce(b, twist, Joint, Scratch, wrench)
+///                                   // eliminates the unknowns from a wrench
+///     set_back(Kept, wrench)        // to the tip before
+///     follow(Scratch, twist, Joint, l, a)     // the unknowns; moves changes of
+///                                   // acceleration from the tip before to its tip
+///     enter(Kept, frame), go_on(Kept, frame)
+///                                   // frame of the tip before to that of its axes, and
+///                                   // on to its tip
 ///     Shape(q, rate, length)        // at(arc), tip(): seen from its start
 ///     Points(Kept, q, rate, length) // for models/head/reduced_loads.h
-///     at_rest(strand, i, shape)     // the unknowns of element i in this shape
-///     unit(length)                  // what multiplies unknowns where this is 1 m
-///     moment(length)                // stiffness against an unknown over bending's
+///     at_rest(strand, i, shape)     // unknowns of element i in this shape
+///     unit(length)                  // unknowns in units of `length`, over those in m
+///     moment(length)                // stiffness of an unknown, over bending stiffness
 ///     first_stiffness               // of the first element, over that of others
 ///     rotors_of_root, rotors_of_last          // shares of a rotor that turn with these
 ///     straight                      // whether elements are
+///     cancels                       // whether eliminate() loses digits where an entry
+///                                   // of a pivot exceeds the pivot's remainder
 ///
-/// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed, without refinement.
+/// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed without refinement.
 /// Results differ from ReducedSystem's as by a relative change of the state of 1e-12, of
 /// 3e-11 for chains (tests/models/head/test_reduced_head.cpp). Chains with soft joints
-/// would lose all digits in that difference (ChainKind::eliminate()). Cost:
-/// O(elements), of helices O(elements points).
+/// would lose all digits in that difference (ChainKind::Joint). Cost: O(elements), of
+/// helices O(elements points).
 template <class Kind>
 class ReducedKernel {
  public:
@@ -118,15 +87,19 @@ class ReducedKernel {
   using Matrix = Matrix3<T>;
   using Material = ReducedMaterial<T>;
   using Motion = ReducedMotion<T>;
-  using Sum = ArticulatedSum<T>;
+  using Wrench = WrenchOf<T>;
+  using Hanging = ArticulatedInertia<T>;
+  using Inertia = ReducedInertia<T>;
+  using Uneliminated = UneliminatedInertia<T>;
 
   /// State of an element between sweeps.
   struct Scratch {
     typename Kind::Kept kept;
     Symmetric3<T> pivot;         // H_kk^-1
     Matrix of_force, of_moment;  // H_k(translation), H_k(rotation)
-    Vec unknown;                 // right side of its unknowns
-    Vec q;                       // where the step is linearised
+    Vec unknown;                 // its unknowns, were the start to stay
+    typename Kind::Joint joint;
+    Vec q;  // where the step is linearised
   };
 
   /// `points`: Gauss-Legendre points of an element. `twist` false: the strand bends only,
@@ -145,6 +118,16 @@ class ReducedKernel {
   bool twist() const { return twist_; }
   double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
   double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
+  /// Returns the places of the next points, one per lane of P; points beyond the last
+  /// have no weight.
+  template <class P, int lanes>
+  P at(int k) const {
+    return of_points<P, lanes>(at_, k);
+  }
+  template <class P, int lanes>
+  P weight(int k) const {
+    return of_points<P, lanes>(weight_, k);
+  }
 
   /// Starts a step h of one linear solve (LinearlyImplicitStep). Writes the motion at
   /// q + h v and v to `scratch` and returns that of the tip. The caller then finds the
@@ -180,15 +163,14 @@ class ReducedKernel {
   TRESS_FLATTEN void residual(const Material& m, const Motion& end,
                               const LoadSums<T>* const* loads, Rest rest, const Vec* v,
                               const Vec* a, Vec* r, const Scratch* scratch) const {
-    const Inertia none{T(0), T(0)};
-    Sum hanging = Kind::last(m, end, none.acc);
+    Wrench wrench = Kind::last_wrench(m, end);
     for (int i = elements_ - 1; i >= 0; --i) {
-      Uneliminated all;
-      carry<true>(m, none, {}, i, rest(i), v, a, hanging, loads, scratch[i], all);
-      r[i] = Vec{} - all.unknown;
-      // What hangs on the tip acts on the unknowns by its wrench alone.
-      hanging = {all.sum.force, all.sum.moment, {}, {}, {}};
-      Kind::pass(m, none.acc, scratch[i].kept, hanging);
+      const Scratch& e = scratch[i];
+      const typename Kind::Sums sums = sums_of<true>(m, i, v, a, e);
+      const Vec unknown = bear(i, v, sums, loads, e, wrench);
+      r[i] = bending(m, {}, i, e.q, rest(i), v[i]).moment -
+             Kind::felt(e.kept, wrench, unknown);
+      Kind::pass_wrench(m, e.kept, wrench);
     }
   }
 
@@ -214,78 +196,54 @@ class ReducedKernel {
          pos * stiffness.z + damping}};
   }
 
-  /// Factors of the acceleration in S: of a unit of length, and of a rotor.
-  struct Inertia {
-    T of_length, acc;
-  };
-  /// Sums of an element with all that hangs on it, in its axes.
-  struct Uneliminated {
-    Sum sum;
-    Symmetric3<T> own;           // H_kk
-    Matrix of_force, of_moment;  // H_k(translation), H_k(rotation), rows k
-    Vec unknown;                 // right side of its unknowns
-  };
-
  private:
+  using OfPoints = std::array<double, most_points_of_element>;
+  template <class P, int lanes>
+  static P of_points(const OfPoints& all, int k) {
+    const double* const from = &all[static_cast<std::size_t>(k)];
+    if constexpr (lanes == 1) {
+      return P(*from);
+    } else {
+      return P::load(from);
+    }
+  }
+
   template <class Rest>
   void backward(const Material& m, Rest rest, const Vec* v, Weights w, const Motion& end,
                 const LoadSums<T>* const* loads, Scratch* scratch) const {
     const Inertia inertia{T(w.acc) * m.density + T(w.vel) * m.drag, T(w.acc)};
-    Sum hanging = Kind::last(m, end, inertia.acc);
+    Wrench wrench = Kind::last_wrench(m, end);
+    Hanging hanging = Kind::last(m, inertia.acc);
     for (int i = elements_ - 1; i >= 0; --i) {
       Scratch& e = scratch[i];
+      const typename Kind::Sums sums = sums_of<false>(m, i, v, nullptr, e);
+      const Vec unknown = bear(i, v, sums, loads, e, wrench);
       Uneliminated all;
-      carry<false>(m, inertia, w, i, rest(i), v, nullptr, hanging, loads, e, all);
-      if constexpr (Kind::eliminates) {
-        hanging =
-            Kind::eliminate(bending(m, w, i, e.q, rest(i), v[i]), twist_, all.sum, e);
-      } else {
-        hanging = eliminate(all, e);
-      }
+      Kind::carry(m, inertia, e.q, v[i], sums, hanging, loads_of(loads, i), e.kept, all);
+      const Bending by = bending(m, w, i, e.q, rest(i), v[i]);
+      hanging = Kind::eliminate(by.tangent, twist_, all, e, e.joint);
+      Kind::reduce(unknown - by.moment, twist_, e.joint, e, wrench);
+      Kind::pass_wrench(m, e.kept, wrench);
       Kind::pass(m, inertia.acc, e.kept, hanging);
     }
   }
   /// `accelerated`: at accelerations a, else at none.
   template <bool accelerated>
-  void carry(const Material& m, const Inertia& inertia, Weights w, int i, const Vec& rest,
-             const Vec* v, const Vec* a, const Sum& hanging,
-             const LoadSums<T>* const* loads, const Scratch& e, Uneliminated& all) const {
-    Kind::template carry<accelerated>(*this, m, inertia, e.q, v[i],
-                                      accelerated ? a[i] : Vec{}, hanging,
-                                      loads != nullptr ? loads[i] : nullptr, e.kept, all);
-    bend(m, w, i, rest, v[i], e, all);
+  typename Kind::Sums sums_of(const Material& m, int i, const Vec* v, const Vec* a,
+                              const Scratch& e) const {
+    typename Kind::Sums sums;
+    Kind::template add_up<accelerated>(*this, m, e.q, v[i], accelerated ? a[i] : Vec{},
+                                       e.kept, sums);
+    return sums;
   }
-
-  static void bend(const Material& m, Weights w, int i, const Vec& rest, const Vec& v,
-                   const Scratch& e, Uneliminated& all) {
-    const Bending by = bending(m, w, i, e.q, rest, v);
-    all.own.xx += by.tangent.x;
-    all.own.yy += by.tangent.y;
-    all.own.zz += by.tangent.z;
-    all.unknown = all.unknown - by.moment;
+  static const LoadSums<T>* loads_of(const LoadSums<T>* const* loads, int i) {
+    return loads != nullptr ? loads[i] : nullptr;
   }
-
-  Sum eliminate(const Uneliminated& from, Scratch& e) const {
-    e.of_force = from.of_force;
-    e.of_moment = from.of_moment;
-    e.unknown = from.unknown;
-    e.pivot = inverse(from.own);
-    const Matrix z_l = e.pivot * e.of_force, z_a = e.pivot * e.of_moment;
-    Sum all = from.sum;
-    all.force = all.force + z_l.back(e.unknown);
-    all.moment = all.moment + z_a.back(e.unknown);
-    const Matrix by_force = e.of_force.transposed(), by_moment = e.of_moment.transposed();
-    all.ll = all.ll - upper(by_force, z_l.transposed());
-    all.la = all.la - by_force * z_a;
-    all.aa = all.aa - upper(by_moment, z_a.transposed());
-    return all;
-  }
-
-  /// Without twist, of the lower right block.
-  Symmetric3<T> inverse(const Symmetric3<T>& h) const {
-    if (twist_) return tress::inverse(h);
-    const T o(0), by = T(1) / (h.yy * h.zz - h.yz * h.yz);
-    return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
+  static Vec bear(int i, const Vec* v, const typename Kind::Sums& sums,
+                  const LoadSums<T>* const* loads, const Scratch& e, Wrench& wrench) {
+    Vec unknown;
+    Kind::bear(e.q, v[i], sums, loads_of(loads, i), e.kept, wrench, unknown);
+    return unknown;
   }
 
   /// Finds the unknowns from the root, which does not move, to the tip.
@@ -294,20 +252,13 @@ class ReducedKernel {
     Vec l, a;
     for (int i = 0; i < elements_; ++i) {
       const Scratch& e = scratch[i];
-      Kind::arrive(e.kept, l, a);
-      if constexpr (Kind::eliminates) {
-        use(i, Kind::follow(e, twist_, l, a));
-      } else {
-        const Vec own = e.pivot * (e.unknown - e.of_force * l - e.of_moment * a);
-        use(i, own);
-        Kind::leave(e.kept, own, l, a);
-      }
+      use(i, Kind::follow(e, twist_, e.joint, l, a));
     }
   }
 
   int elements_, points_;
   bool twist_;
-  std::array<double, most_points_of_element> at_{}, weight_{};
+  OfPoints at_{}, weight_{};
 };
 
 }  // namespace tress::models

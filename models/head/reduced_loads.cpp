@@ -134,7 +134,8 @@ bool ReducedLoads<Kind>::add_up(std::size_t i, const OnElement& points) {
     shift(drag);
     load.block = semidefinite(load.block, at.some);
     shift(-drag);
-    points.add(arc_of(k), at.p, load, sums);
+    points.add_force(arc_of(k), at.p, load.force, sums);
+    points.add_block(arc_of(k), at.p, load.block, sums);
   }
   return loaded;
 }

@@ -16,7 +16,7 @@ std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           Effects effects) {
   return make_reduced_system<BallLink, BallLink>(
       reduced_strand(strand, Unknown::joint_angle, options, std::move(effects)),
-      options.dofs);
+      Unknown::joint_angle, options.dofs);
 }
 
 std::span<const Parameter> articulated_chain_parameters() { return reduced_parameters(); }

@@ -20,11 +20,6 @@ namespace tress::models {
 std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options, Effects effects);
 
-/// One to four strands as one system: see super_helix_batch.
-std::unique_ptr<System> articulated_chain_batch(std::span<const Strand> strands,
-                                                const ReducedOptions& options,
-                                                std::vector<Effects> effects);
-
 std::span<const Parameter> articulated_chain_parameters();
 std::unique_ptr<System> make_articulated_chain(const Strand& strand,
                                                const Parameters& parameters,

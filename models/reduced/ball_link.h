@@ -9,7 +9,7 @@ namespace tress::models {
 /// and E = exp([theta]x). The link points along E e0 and turns with W(1) theta'. Rotation
 /// and angular velocity of a joint are those of a Helix of length 1; positions are s E
 /// e0. The rotation vector is regular for |theta| < 2 pi, which suffices for a joint
-/// between links. R = double, or Pack for four links.
+/// between links.
 template <class R>
 class BallLinkOf {
  public:

@@ -158,12 +158,10 @@ class TipForces {
       moment = of.mount * moment;
     }
     take(0);
-    if constexpr (lanes<Real> == 1) {
-      if (!kinematics_.free()) return;
-      std::array<double, 6> at_root;
-      kinematics_.free_root().residual(force, moment, at_root);
-      for (std::size_t k = 0; k < 6; ++k) b[b.size() - 6 + k] += at_root[k];
-    }
+    if (!kinematics_.free()) return;
+    std::array<double, 6> at_root;
+    kinematics_.free_root().residual(force, moment, at_root);
+    for (std::size_t k = 0; k < 6; ++k) b[b.size() - 6 + k] += at_root[k];
   }
 
  private:

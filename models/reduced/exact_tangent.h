@@ -168,8 +168,8 @@ class ExactTangent {
       PointMatrix by_x, by_v, by_t, by_start;
       Vec3<Pack> u, along;  // velocity and tangent of the point
       if (blocks) {
-        by_x = PointMatrix(&effects.position[9 * K::first_point(b)], 1, from.frame);
-        by_v = PointMatrix(&effects.velocity[9 * K::first_point(b)], 1, from.frame);
+        by_x = PointMatrix(&effects.position[9 * K::first_point(b)], from.frame);
+        by_v = PointMatrix(&effects.velocity[9 * K::first_point(b)], from.frame);
         u = Vec3<Pack>(from.v) + turning + velocity;
         by_start = by_x;
         if constexpr (modes == 1) {
@@ -180,7 +180,7 @@ class ExactTangent {
         }
       }
       if (directions) {
-        by_t = PointMatrix(&effects.direction[9 * K::first_point(b)], 1, from.frame);
+        by_t = PointMatrix(&effects.direction[9 * K::first_point(b)], from.frame);
         along = kinematics_.geometry(i).kernel.rotated(block.at, Helix::tangent);
       }
       const auto add = [&](int column, const Vec3<Pack>& dF) {

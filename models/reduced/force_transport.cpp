@@ -3,8 +3,8 @@
 #include "contract/input_error.h"
 #include "linear/dense_factor.h"
 #include "models/reduced/ball_chain.h"
-#include "models/reduced/composite_matrix.h"
 #include "models/reduced/transport_sweeps.h"
+#include "models/reduced/tree/composite_matrix.h"
 #include "models/strand/geometry.h"
 
 namespace tress::models {

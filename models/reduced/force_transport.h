@@ -56,11 +56,6 @@ namespace tress::models {
 std::unique_ptr<System> force_transport(const Strand& strand,
                                         const ReducedOptions& options, Effects effects);
 
-/// One to four strands as one system: see super_helix_batch.
-std::unique_ptr<System> force_transport_batch(std::span<const Strand> strands,
-                                              const ReducedOptions& options,
-                                              std::vector<Effects> effects);
-
 std::span<const Parameter> force_transport_parameters();
 std::unique_ptr<System> make_force_transport(const Strand& strand,
                                              const Parameters& parameters,

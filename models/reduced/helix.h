@@ -18,7 +18,7 @@ namespace tress::models {
 /// derivative of W y along x, d2W[x1, x2] y the second one. Derivatives of P follow with
 /// y = e0. Each is a sum of a few constant vectors weighted by the functions, prepared
 /// once per element and evaluated at any s (a number or a pack). Straight elements need
-/// no special case. T = double, or Pack for four elements; s is then a pack.
+/// no special case.
 template <class T>
 class HelixOf {
  public:

@@ -2,22 +2,16 @@
 
 #include <cmath>
 
+#include "math/wrench.h"
 #include "models/effects/effect.h"
 #include "models/reduced/kinematics.h"
 
 namespace tress::models {
 
-/// Force and moment about a frame's origin, in its components.
-template <class T>
-struct WrenchOf {
-  Vec3<T> force, moment;
-};
-using Wrench = WrenchOf<double>;
-
 /// The residual of a reduced-coordinate tree by the recursive Newton-Euler scheme. Motion
 /// goes from the root to the tips (Kinematics), d'Alembert forces m p'' - f act at the
 /// quadrature points, and wrenches go from the tips to the root. Gravity is an
-/// acceleration of the root [Luh, Walker, Paul 1980]. O(N). One strand, or one per lane.
+/// acceleration of the root [Luh, Walker, Paul 1980]. O(N).
 template <class Kernel, int modes>
 class InverseDynamics {
  public:
@@ -28,37 +22,24 @@ class InverseDynamics {
   using Wrench = WrenchOf<Real>;
   static constexpr int dofs = K::dofs;
 
-  /// Effects of each strand; further lanes have none.
-  InverseDynamics(K& kinematics, std::vector<Effects> effects_of_strands)
-      : kinematics_(kinematics),
-        count_(kinematics.points()),
-        effects_(std::move(effects_of_strands)),
-        loading_(effects_.size()) {
-    const std::vector<Effects>& effects = effects_;
-    Vec3<Real> uniform;
-    for (std::size_t strand = 0; strand < effects.size(); ++strand) {
-      Vec3<double> sum;
-      for (const auto& effect : effects[strand]) {
-        if (const auto acceleration = effect->uniform_acceleration()) {
-          sum = sum + *acceleration;
-        } else {
-          loading_[strand].push_back(effect.get());
-          loaded_ = true;
-        }
+  InverseDynamics(K& kinematics, Effects effects)
+      : kinematics_(kinematics), effects_(std::move(effects)), needs_(needs(effects_)) {
+    Vec uniform;
+    for (const auto& effect : effects_) {
+      if (const auto acceleration = effect->uniform_acceleration()) {
+        uniform = uniform + *acceleration;
+      } else {
+        loading_.push_back(effect.get());
       }
-      set_lane(uniform, static_cast<int>(strand), sum);
-      needs_of_.push_back(needs(effects[strand]));
-      needs_ = needs_ | needs_of_.back();
     }
     kinematics.fall(uniform);
-    const std::size_t blocks = kinematics.blocks().size(), all = Pack::lanes * blocks;
+    const std::size_t blocks = kinematics.blocks().size(), all = kinematics.points();
     load_.resize(3 * all);
     mass_.resize(all);
     length_.resize(all);
     for (std::size_t b = 0; b < blocks; ++b) {
       for (int lane = 0; lane < Pack::lanes; ++lane) {
-        const std::size_t at =
-            K::first_point(b) + static_cast<std::size_t>(lane) * kinematics.point_step();
+        const std::size_t at = K::first_point(b) + static_cast<std::size_t>(lane);
         mass_[at] = kinematics.blocks()[b].mass[lane];
         length_[at] = kinematics.blocks()[b].length[lane];
       }
@@ -72,25 +53,33 @@ class InverseDynamics {
 
   void residual(double t, In q, In v, In a, Out r) {
     kinematics_.move(t, q, v, a);
-    if (loaded_) {
+    if (loaded()) {
       place(needs_);
-      std::fill(load_.begin(), load_.end(), 0.0);
-      for (std::size_t strand = 0; strand < loading_.size(); ++strand) {
-        const Points p = points(strand, needs_of_[strand]);
-        const InOut load = InOut(load_).subspan(3 * strand * count_, 3 * count_);
-        for (const Effect* effect : loading_[strand]) effect->add_load(t, p, load);
-      }
+      find_loads(t);
     }
     for (Wrench& wrench : at_tip_) wrench = {};
     at_root_ = {};
     for (std::size_t i = at_tip_.size(); i-- > 0;) segment(i, q, v, r);
-    if constexpr (lanes<Real> == 1) {
-      if (!kinematics_.free()) return;
-      at_root_.moment =
-          at_root_.moment + rotor_moment(kinematics_.root_rotor(), kinematics_.root());
-      kinematics_.free_root().residual(at_root_.force, at_root_.moment, r.last(6));
-    }
+    if (!kinematics_.free()) return;
+    at_root_.moment =
+        at_root_.moment + rotor_moment(kinematics_.root_rotor(), kinematics_.root());
+    kinematics_.free_root().residual(at_root_.force, at_root_.moment, r.last(6));
   }
+
+  /// Whether some effect is not uniform.
+  bool loaded() const { return !loading_.empty(); }
+  /// Returns the loads of such effects on the points as placed (3 numbers each, N).
+  tress::In find_loads(double t) {
+    std::fill(load_.begin(), load_.end(), 0.0);
+    const Points p = points(needs_);
+    for (const Effect* effect : loading_) effect->add_load(t, p, load_);
+    return load_;
+  }
+  /// The vectors that place() fills, for callers that place the points themselves.
+  struct Places {
+    tress::Out x, v, tangent;
+  };
+  Places places() { return {x_, v_, tangent_}; }
 
   /// Computes the wanted quantities of the points on which effects act, at the motion
   /// held by Kinematics.
@@ -106,19 +95,17 @@ class InverseDynamics {
       }
     }
   }
-  /// Points of one strand, as placed.
-  Points points(std::size_t strand, Needs wanted) const {
-    const auto part = [&](const std::vector<double>& of_all, std::size_t size,
-                          bool filled) {
-      return filled ? tress::In(of_all).subspan(size * strand * count_, size * count_)
-                    : tress::In{};
+  /// Returns the points as placed.
+  Points points(Needs wanted) const {
+    const auto filled = [](const std::vector<double>& all, bool is) {
+      return is ? tress::In(all) : tress::In{};
     };
-    return {.count = static_cast<int>(count_),
-            .x = part(x_, 3, wanted.position),
-            .v = part(v_, 3, wanted.velocity),
-            .tangent = part(tangent_, 3, wanted.tangent),
-            .mass = part(mass_, 1, true),
-            .length = part(length_, 1, true)};
+    return {.count = static_cast<int>(mass_.size()),
+            .x = filled(x_, wanted.position),
+            .v = filled(v_, wanted.velocity),
+            .tangent = filled(tangent_, wanted.tangent),
+            .mass = mass_,
+            .length = length_};
   }
 
   /// blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.
@@ -133,16 +120,16 @@ class InverseDynamics {
   /// blocks = df/dt, t the tangents, summed over all effects that depend on them.
   void direction_derivatives(double t, InOut blocks) const {
     std::ranges::fill(blocks, 0.0);
-    const Points p = points(0, needs_of_[0]);
-    for (const auto& effect : effects_[0]) {
+    const Points p = points(needs_);
+    for (const auto& effect : effects_) {
       effect->add_direction_derivatives(t, p, 1, blocks);
     }
   }
-  /// Couplings of the effects of the first strand.
+  /// Lists the couplings of the effects.
   void couplings(double t, std::vector<Coupling>& all) const {
     all.clear();
-    const Points p = points(0, needs_of_[0]);
-    for (const auto& effect : effects_[0]) effect->add_couplings(t, p, all);
+    const Points p = points(needs_);
+    for (const auto& effect : effects_) effect->add_couplings(t, p, all);
   }
 
   // From the last residual(): the inertial force at each point and the loads alone, in
@@ -152,7 +139,7 @@ class InverseDynamics {
   const Wrench& at_tip(std::size_t i) const { return at_tip_[i]; }
   const Wrench& at_root() const { return at_root_; }
   const Needs& effect_needs() const { return needs_; }
-  const Effects& effects(std::size_t strand) const { return effects_[strand]; }
+  const Effects& effects() const { return effects_; }
 
  private:
   using Vec = Vec3<Real>;
@@ -172,19 +159,16 @@ class InverseDynamics {
   template <class Accept>
   void derivatives(double t, double pos, double vel, InOut blocks, Accept accept) const {
     std::ranges::fill(blocks, 0.0);
-    for (std::size_t strand = 0; strand < effects_.size(); ++strand) {
-      const Points p = points(strand, needs_of_[strand]);
-      const InOut own = blocks.subspan(9 * strand * count_, 9 * count_);
-      for (const auto& effect : effects_[strand]) {
-        if (accept(*effect)) effect->add_derivatives(t, p, pos, vel, own);
-      }
+    const Points p = points(needs_);
+    for (const auto& effect : effects_) {
+      if (accept(*effect)) effect->add_derivatives(t, p, pos, vel, blocks);
     }
   }
 
   void place(std::size_t i, std::size_t b, Needs wanted) {
     const auto& block = kinematics_.block_geometry(b);
     const auto scatter = [&](const Vec3<Pack>& x, std::vector<double>& to) {
-      scatter3(x, &to[3 * K::first_point(b)], 3 * kinematics_.point_step());
+      scatter3(x, &to[3 * K::first_point(b)], 3);
     };
     if (wanted.position) {
       scatter(Vec3<Pack>(kinematics_.start(i).x) + kinematics_.world(i, block.position),
@@ -222,9 +206,8 @@ class InverseDynamics {
       at.total = kinematics_.blocks()[b].mass *
                  (a + cross(alpha, p) + m.accelerating.at(block.at) +
                   cross(omega, cross(omega, p) + Pack(2) * m.moving.at(block.at)));
-      if (loaded_) {
-        const Vec3<Pack> world =
-            gather3(&load_[3 * K::first_point(b)], 3 * kinematics_.point_step());
+      if (loaded()) {
+        const Vec3<Pack> world = gather3(&load_[3 * K::first_point(b)], 3);
         at.load = {dot(e0, world), dot(e1, world), dot(e2, world)};
         at.total = at.total - at.load;
       }
@@ -256,12 +239,9 @@ class InverseDynamics {
   }
 
   K& kinematics_;
-  std::size_t count_;                                // points per strand
-  std::vector<Effects> effects_;                     // per strand
-  std::vector<std::vector<const Effect*>> loading_;  // per strand, not uniform
-  bool loaded_ = false;
+  Effects effects_;
   Needs needs_;
-  std::vector<Needs> needs_of_;  // per strand
+  std::vector<const Effect*> loading_;  // effects that are not uniform
   std::vector<double> x_, v_, tangent_, mass_, length_, load_;
   std::vector<Force> force_;
   std::vector<Wrench> at_tip_;

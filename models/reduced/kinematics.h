@@ -12,7 +12,7 @@
 #include "math/lanes.h"
 #include "models/reduced/free_root.h"
 #include "models/reduced/reduced_strand.h"
-#include "models/reduced/shapes.h"
+#include "models/reduced/tree/shapes.h"
 #include "models/strand/strand.h"
 
 namespace tress::models {
@@ -29,9 +29,7 @@ struct RuleOf<Kernel> {
 };
 
 /// Positions and motion of all frames for unknowns q, v, a: one sweep from the root to
-/// the free ends. Quantities that depend on q only are kept and reused at the same q. For
-/// one strand, or four if the kernel's scalar is a pack; unknowns, geometry and motion
-/// are then packs.
+/// the free ends. Quantities that depend on q only are kept and reused at the same q.
 template <class Kernel, int modes>
 class Kinematics {
  public:
@@ -40,7 +38,7 @@ class Kinematics {
   using Frame = FrameOf<Real>;
   using FrameMotion = FrameMotionOf<Real>;
   using Strain = typename Kernel::Strain;
-  using Segment = ReducedSegmentOf<Real, Strain>;
+  using Segment = ReducedSegmentOf<Strain>;
   using In = std::span<const Real>;
   template <class T>
   using Point = typename Kernel::template At<T>;
@@ -68,14 +66,13 @@ class Kinematics {
     Vec tip_v, tip_a, tip_alpha;  // tip, in the components of the start
   };
 
-  /// One root motion per strand: lanes<Real> of them.
-  Kinematics(const std::vector<ReducedSegmentOf<Real>>& segments,
-             std::vector<PointBlock> blocks, std::vector<RootMotion> roots,
-             const std::optional<FreeRootFrame>& free_root, const Real& root_rotor)
+  Kinematics(const std::vector<ReducedSegment>& segments, std::vector<PointBlock> blocks,
+             RootMotion root, const std::optional<FreeRootFrame>& free_root,
+             const Real& root_rotor)
       : segments_(segments.begin(), segments.end()),
         blocks_(std::move(blocks)),
         rule_(rule_of(segments_.front(), blocks_)),
-        root_motions_(std::move(roots)),
+        root_motion_(std::move(root)),
         free_root_(free_root),
         root_rotor_(root_rotor),
         geometry_(segments_.size()),
@@ -111,25 +108,13 @@ class Kinematics {
   FreeRootFrame& free_root() { return *free_root_; }
   const FreeRootFrame& free_root() const { return *free_root_; }
   const Real& root_rotor() const { return root_rotor_; }  // kg m^2
-  bool moving_root() const {
-    return !free_root_ && !std::ranges::all_of(root_motions_, &RootMotion::fixed);
-  }
+  bool moving_root() const { return !free_root_ && !root_motion_.fixed(); }
 
-  double next_breakpoint(double t) const {
-    double next = std::numeric_limits<double>::infinity();
-    for (const RootMotion& motion : root_motions_) {
-      next = std::min(next, motion.next_breakpoint(t));
-    }
-    return next;
-  }
+  double next_breakpoint(double t) const { return root_motion_.next_breakpoint(t); }
 
-  // Arrays over points hold strand after strand: number of points per strand, and indices
-  // of a block's points.
-  std::size_t points() const { return Pack::lanes / lanes<Real> * blocks_.size(); }
-  static std::size_t first_point(std::size_t block) {
-    return Pack::lanes / lanes<Real> * block;
-  }
-  std::size_t point_step() const { return lanes<Real> == 1 ? 1 : blocks_.size(); }
+  // Sizes of arrays over points.
+  std::size_t points() const { return first_point(blocks_.size()); }
+  static std::size_t first_point(std::size_t block) { return Pack::lanes * block; }
 
   /// The unknowns of a segment as a strain, vectors of (twist, curvature 1, curvature 2);
   /// components that are not unknowns are 0.
@@ -154,9 +139,7 @@ class Kinematics {
 
   /// Shapes of all segments at q, and the position of a free root.
   void shape(In q) {
-    if constexpr (may_be_free) {
-      if (free_root_) free_root_->place(q.last(6));
-    }
+    if (free_root_) free_root_->place(q.last(6));
     const bool first = shaped_.size() != q.size();
     if (first) shaped_.assign(q.begin(), q.end());
     for (std::size_t i = 0; i < segments_.size(); ++i) {
@@ -170,7 +153,6 @@ class Kinematics {
 
   /// The frame at the tip of the last segment, without the rest of move().
   Frame last_frame(double t, In q) {
-    static_assert(may_be_free);
     shape(q);
     Frame frame;
     for (int i = count() - 1; i >= 0;) {
@@ -179,7 +161,7 @@ class Kinematics {
       if (segments_[at].mounted) frame = segments_[at].mount * frame;
       i = segments_[at].parent;
     }
-    return (free_root_ ? free_root_->frame() : root_motions_.front().at(t).frame) * frame;
+    return (free_root_ ? free_root_->frame() : root_motion_.at(t).frame) * frame;
   }
 
   /// Position and motion of a tip; v and omega in the components of its frame.
@@ -192,9 +174,7 @@ class Kinematics {
   /// before.
   template <bool at_rest = false>
   const std::vector<Tip>& tips(double t, In q, In v) {
-    if constexpr (may_be_free) {
-      if (free_root_) free_root_->place(q.last(6));
-    }
+    if (free_root_) free_root_->place(q.last(6));
     if constexpr (collocated) shape(q);
     const FrameMotion root = root_motion(t, q, v, v);
     tips_.resize(segments_.size() + 1);
@@ -242,6 +222,13 @@ class Kinematics {
   /// on: inertial forces then include the uniform load at no cost.
   void fall(const Vec& acceleration) { falling_ = acceleration; }
 
+  /// Returns the motion of a clamped root relative to free fall, as move() computes it.
+  FrameMotion clamp(double t) {
+    FrameMotion root = root_motion(t, {}, {}, {});
+    root.a = root.a - root.frame.back(falling_);
+    return root;
+  }
+
   /// Frames and their motion; calls shape().
   void move(double t, In q, In v, In a) {
     shape(q);
@@ -264,8 +251,6 @@ class Kinematics {
   }
 
  private:
-  static constexpr bool may_be_free = lanes<Real> == 1;
-
   // A rule is on the points of a segment, the same for all segments.
   using Rule = typename RuleOf<Kernel>::Type;
   static constexpr bool collocated = !std::same_as<Rule, std::monostate>;
@@ -302,30 +287,23 @@ class Kinematics {
   }
 
   Frame root_frame(double t, In q) {
-    if constexpr (may_be_free) {
-      if (free_root_) return free_root_->frame();
-    }
+    if (free_root_) return free_root_->frame();
     return root_motion(t, q, q, q).frame;
   }
   FrameMotion root_motion(double t, In q, In v, In a) {
-    if constexpr (may_be_free) {
-      if (free_root_) return free_root_->motion(q.last(6), v.last(6), a.last(6));
-    }
+    if (free_root_) return free_root_->motion(q.last(6), v.last(6), a.last(6));
     // Several calls of a step are at one time.
     if (t == posed_at_) return posed_;
     posed_at_ = t;
-    FrameMotion& root = posed_;
-    for (int lane = 0; lane < lanes<Real>; ++lane) {
-      const RootPose pose = root_motions_[static_cast<std::size_t>(lane)].at(t);
-      const FrameOf<double>& f = pose.frame;
-      set_lane(root.frame, lane, f);
-      set_lane(root.x, lane, pose.x);
-      set_lane(root.v, lane, f.back(pose.v));
-      set_lane(root.omega, lane, f.back(pose.omega));
-      set_lane(root.a, lane, f.back(pose.a));
-      set_lane(root.alpha, lane, f.back(pose.alpha));
-    }
-    return root;
+    const RootPose pose = root_motion_.at(t);
+    const Frame& f = pose.frame;
+    posed_ = {f,
+              pose.x,
+              f.back(pose.v),
+              f.back(pose.omega),
+              f.back(pose.a),
+              f.back(pose.alpha)};
+    return posed_;
   }
 
   void shape_segment(std::size_t i, In q) {
@@ -416,7 +394,7 @@ class Kinematics {
   std::vector<Segment> segments_;
   std::vector<PointBlock> blocks_;
   [[no_unique_address]] Rule rule_;
-  std::vector<RootMotion> root_motions_;
+  RootMotion root_motion_;
   std::optional<FreeRootFrame> free_root_;
   Real root_rotor_;
   std::vector<SegmentGeometry> geometry_;

@@ -2,7 +2,7 @@
 
 #include "models/reduced/kinematics.h"
 #include "models/reduced/point_matrix.h"
-#include "models/reduced/tree_tangent.h"
+#include "models/reduced/tree/tree_tangent.h"
 
 namespace tress::models {
 
@@ -69,8 +69,8 @@ class SegmentFrames {
 };
 
 /// Elastic stiffness and friction of the unknowns, by component.
-template <class Real, class Strain>
-Strain restoring(const ReducedSegmentOf<Real, Strain>& segment, Weights w) {
+template <class Strain>
+Strain restoring(const ReducedSegmentOf<Strain>& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
@@ -91,9 +91,7 @@ void add_effect_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
     const auto& block = kinematics.block_geometry(b);
     const Vec3<Pack>& p = block.position;
-    const PointMatrix matrix =
-        PointMatrix(&matrices[9 * K::first_point(b)], kinematics.point_step(),
-                    kinematics.start(i).frame);
+    const PointMatrix matrix(&matrices[9 * K::first_point(b)], kinematics.start(i).frame);
     auto entry = total.begin();
     for (int c = 0; c < columns; ++c) {
       const Vec3<Pack> force =
@@ -126,8 +124,7 @@ bool like_masses(const Kinematics<Kernel, modes>& kinematics, std::size_t i,
   const auto& segment = kinematics.segments()[i];
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
     for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
-      const std::size_t point = K::first_point(b) + lane * kinematics.point_step();
-      if (!is_multiple_of_unit(&matrices[9 * point])) return false;
+      if (!is_multiple_of_unit(&matrices[9 * (K::first_point(b) + lane)])) return false;
     }
   }
   return true;
@@ -165,7 +162,7 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
     Pack m = Pack(w.acc) * kinematics.blocks()[b].mass;
     if (effects_as_masses) {
-      m += first_entries(&of_effects[9 * K::first_point(b)], kinematics.point_step());
+      m += first_entries(&of_effects[9 * K::first_point(b)]);
     }
     const auto& block = kinematics.block_geometry(b);
     const Vec3<Pack>& p = block.position;

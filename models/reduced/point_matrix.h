@@ -9,14 +9,13 @@ namespace tress::models {
 /// A 3x3 matrix for each of four points, in the components of a segment's start.
 struct PointMatrix {
   PointMatrix() = default;
-  /// Takes row-major matrices (9 per point) in world components, `step` points apart; f
-  /// is the frame of the start.
-  template <class Real>
-  PointMatrix(const double* matrices, std::size_t step, const FrameOf<Real>& f) {
+  /// Takes row-major matrices (9 per point) in world components; f is the frame of the
+  /// start.
+  PointMatrix(const double* matrices, const Frame& f) {
     const Vec3<Pack> axes[3] = {Vec3<Pack>(f.e0), Vec3<Pack>(f.e1), Vec3<Pack>(f.e2)};
     Vec3<Pack> rows[3];  // in world components
     for (std::size_t r = 0; r < 3; ++r) {
-      rows[r] = gather3(matrices + 3 * r, 9 * step);
+      rows[r] = gather3(matrices + 3 * r, 9);
     }
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3<Pack> world{dot(rows[0], axes[c]), dot(rows[1], axes[c]),
@@ -32,10 +31,8 @@ struct PointMatrix {
   Vec3<Pack> column[3];
 };
 
-/// The first entry of each of four matrices, `step` points apart.
-inline Pack first_entries(const double* matrices, std::size_t step) {
-  return gather3(matrices, 9 * step).x;
-}
+/// Returns the first entries of four matrices.
+inline Pack first_entries(const double* matrices) { return gather3(matrices, 9).x; }
 
 /// Whether a matrix is a number times the unit matrix, as of drag. False for a matrix
 /// that is not finite.

@@ -8,28 +8,26 @@
 #include "contract/parameters.h"
 #include "math/pack.h"
 #include "models/effects/effect.h"
-#include "models/reduced/tree_solver.h"
+#include "models/reduced/tree/tree_solver.h"
 #include "models/strand/strain.h"
 #include "models/strand/strand.h"
 
 namespace tress::models {
 
-/// Quadrature points that carry the mass of a segment: four points of one strand or, in a
-/// batch, the same point of four strands.
+/// Four quadrature points that carry mass of a segment.
 struct PointBlock {
   Pack s, mass, length;
 };
 
 /// One segment of a reduced-coordinate strand. Strains are over (twist, curvature 1,
 /// curvature 2); entries of components that are not unknowns are 0 except in `held`.
-/// T = Pack: the same segment of four strands. Models of constant strain take the means
-/// (Strain = Vec3).
-template <class T, class Strain = LinearStrainOf<T>>
+/// Models of constant strain take the means (Strain = Vec).
+template <class Strain = LinearStrain>
 struct ReducedSegmentOf {
   ReducedSegmentOf() = default;
   template <class Other>
   requires(!std::same_as<Other, Strain>) explicit ReducedSegmentOf(
-      const ReducedSegmentOf<T, Other>& s)
+      const ReducedSegmentOf<Other>& s)
       : parent(s.parent),
         length(s.length),
         mounted(s.mounted),
@@ -45,10 +43,10 @@ struct ReducedSegmentOf {
         last_block(s.last_block) {}
 
   int parent = -1;
-  T length{};
+  double length = 0;
   bool mounted = false;  // mount is not the identity
-  FrameOf<T> mount;
-  T rotor{};         // rotational inertia about the tangent at the tip, kg m^2
+  Frame mount;
+  double rotor = 0;  // rotational inertia about the tangent at the tip, kg m^2
   Strain held;       // fixed values of components that are not unknowns
   Strain rest;       // unknowns at rest
   Strain initial;    // unknowns at t = 0
@@ -57,7 +55,7 @@ struct ReducedSegmentOf {
   Strain inertia;    // of the section's rotation, beyond the rotors; of linear strains
   std::size_t first_block = 0, last_block = 0;
 };
-using ReducedSegment = ReducedSegmentOf<double>;
+using ReducedSegment = ReducedSegmentOf<>;
 
 /// Terms of the Jacobian. elastic_local: the elastic Jacobian, solved by our
 /// reconstruction of a recursion that is "less implicit" than the composite matrix.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "contract/forms/contact_form.h"
 #include "contract/forms/energetics.h"
@@ -17,8 +18,9 @@
 #include "models/reduced/reduced_strand.h"
 #include "models/reduced/stiff_tangent.h"
 #include "models/reduced/strand_energies.h"
-#include "models/reduced/transposed_tangent.h"
-#include "models/reduced/tree_solver.h"
+#include "models/reduced/strand_sweeps.h"
+#include "models/reduced/tree/transposed_tangent.h"
+#include "models/reduced/tree/tree_solver.h"
 #include "models/strand/not_finite.h"
 
 namespace tress::models {
@@ -27,7 +29,8 @@ namespace tress::models {
 /// (Helix, Clothoid, BallLink), behind the contract of contract/system.h. residual:
 /// Newton-Euler, O(N). linearize and solve: the mass tangent, or the exact one, by the
 /// chosen method, or by `composite` if the strand touches itself. The acceleration of the
-/// explicit form always comes from the recursion.
+/// explicit form always comes from the recursion. With the elastic Jacobian, StrandSweeps
+/// replace both where they exist.
 template <class Kernel, int modes>
 class ReducedSystem : public System,
                       public NaturalStrains,
@@ -35,16 +38,21 @@ class ReducedSystem : public System,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
-                      protected History {
+                      protected History,
+                      public SweptStrand {
  public:
-  explicit ReducedSystem(ReducedStrand strand)
-      : exact_(strand.jacobian == ReducedJacobian::exact),
+  /// `swept`: kind of the unknowns, if sweeps over elements may serve them.
+  explicit ReducedSystem(ReducedStrand strand, std::optional<Unknown> swept = {})
+      : sweeps_(swept ? strand_sweeps({{&strand}, {this}}, *swept, modes) : nullptr),
+        acceleration_sweeps_(sweeps_ ? strand_sweeps({{&strand}, {this}}, *swept, modes)
+                                     : nullptr),
+        exact_(strand.jacobian == ReducedJacobian::exact),
         regular_mass_(strand.regular_mass),
         unknown_scale_(strand.unknown_scale),
         length_(strand.length),
         rate_(strand.rate),
         to_tip_(strand.to_tip),
-        kinematics_(strand.segments, std::move(strand.blocks), {std::move(strand.root)},
+        kinematics_(strand.segments, std::move(strand.blocks), std::move(strand.root),
                     strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
                                      : std::nullopt,
                     strand.root_rotor),
@@ -53,7 +61,7 @@ class ReducedSystem : public System,
                          kinematics_.move(t, q, v, zero_);
                          return placed();
                        }),
-        dynamics_(kinematics_, {std::move(strand.effects)}),
+        dynamics_(kinematics_, std::move(strand.effects)),
         exact_tangent_(kinematics_, dynamics_),
         mass_(kinematics_, dynamics_),
         acceleration_(kinematics_, dynamics_),
@@ -63,15 +71,19 @@ class ReducedSystem : public System,
     const auto n = static_cast<std::size_t>(kinematics_.unknowns());
     zero_.assign(n, 0.0);
     scratch_.assign(n, 0.0);
+    if (sweeps_) v_factored_.assign(n, 0.0);
     chain_ = kinematics_.is_chain();
+    if (!exact_ && sweeps_ && dynamics_.effect_needs().derivatives) {
+      by_state_.resize(9 * kinematics_.points());
+    }
     if (!exact_) return;
     if (dynamics_.effect_needs().derivatives) {
       for (auto* x : {&by_position_, &by_velocity_}) {
-        x->resize(9 * Pack::lanes * kinematics_.blocks().size());
+        x->resize(9 * kinematics_.points());
       }
     }
     if (dynamics_.effect_needs().directions) {
-      by_direction_.resize(9 * Pack::lanes * kinematics_.blocks().size());
+      by_direction_.resize(9 * kinematics_.points());
     }
     full_ = empty_tangent<Exact>(kinematics_);
     full_solver_ = make_tree_solver<Exact>(strand.method, full_);
@@ -106,20 +118,29 @@ class ReducedSystem : public System,
   }
 
   Status residual(double t, In q, In v, In a, Out r) noexcept override {
-    dynamics_.residual(t, q, v, a, r);
+    if (sweeps_ && !exact_) {
+      sweeps_->residual(t, q, v, a, r);
+    } else {
+      dynamics_.residual(t, q, v, a, r);
+    }
     return finite(r);
   }
 
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
     // Without velocity and position weights, only the mass remains.
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
-    if (!full_in_use_) return factored_ = mass_solver_->factor(mass_.at(t, q, v, w));
+    swept_ = false;
+    if (!full_in_use_) return factored_ = factor_mass(t, q, v, a, w);
     take_exact_tangent(t, q, v, a, w);
     return factored_ = exact_solver().factor(full_);
   }
 
   Status solve(In b, Out x) noexcept override {
     if (factored_ != Status::ok) return factored_;
+    if (swept_) {
+      sweeps_->solve(b, x);
+      return finite(x);
+    }
     const Status s =
         full_in_use_ ? exact_solver().solve(b, x) : mass_solver_->solve(b, x);
     return s == Status::ok ? finite(x) : s;
@@ -127,7 +148,7 @@ class ReducedSystem : public System,
 
   double next_breakpoint(double t) const override {
     return std::min(kinematics_.next_breakpoint(t),
-                    models::next_breakpoint(dynamics_.effects(0), t));
+                    models::next_breakpoint(dynamics_.effects(), t));
   }
   std::string not_finite(double t, In q, In v) override {
     const auto of_unknowns = [this](In x, const std::string& what) {
@@ -145,7 +166,7 @@ class ReducedSystem : public System,
                          const FrameMotion& root = kinematics_.root();
                          return not_finite_clamp(root.x, root.v, root.a);
                        },
-                       [&] { return not_finite_load(dynamics_.effects(0), t, placed()); },
+                       [&] { return not_finite_load(dynamics_.effects(), t, placed()); },
                        [&] {
                          dynamics_.residual(t, q, v, zero_, scratch_);
                          return of_unknowns(scratch_, "inertia or elasticity");
@@ -163,6 +184,9 @@ class ReducedSystem : public System,
   void set_natural(In values) override {
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       kinematics_.set_rest(i, K::components(values, i));
+    }
+    for (auto* sweeps : {sweeps_.get(), acceleration_sweeps_.get()}) {
+      if (sweeps != nullptr) sweeps->set_rest(values);
     }
   }
   std::vector<double> natural_stiffness() const override {
@@ -223,6 +247,32 @@ class ReducedSystem : public System,
                : Status::retry;
   }
 
+  FrameMotion clamp(double t) override { return kinematics_.clamp(t); }
+  Places places() override {
+    const auto of_effects = dynamics_.places();
+    return {of_effects.x, of_effects.v, of_effects.tangent};
+  }
+  bool loaded() const override { return dynamics_.loaded(); }
+  bool stiffened() const override { return dynamics_.effect_needs().derivatives; }
+  In loads(double t) override { return dynamics_.find_loads(t); }
+  In stiffness(double t, Weights w) override {
+    if (!stiffened()) return {};
+    dynamics_.derivatives(t, -w.pos, -w.vel, by_state_);
+    make_semidefinite(by_state_);
+    return by_state_;
+  }
+
+  /// Factors by sweeps over the elements of the kernels, if these are accurate.
+  Status factor_mass(double t, In q, In v, In a, Weights w) {
+    if (sweeps_) {
+      swept_ = sweeps_->factor(t, q, v, a, w);
+      std::ranges::copy(v, v_factored_.begin());
+      weights_ = w;
+      if (swept_) return Status::ok;
+    }
+    return mass_solver_->factor(mass_.at(t, q, v, w));
+  }
+
   void take_exact_tangent(double t, In q, In v, In a, Weights w) {
     dynamics_.residual(t, q, v, a, scratch_);
     const auto effects = effect_blocks(t);
@@ -261,6 +311,14 @@ class ReducedSystem : public System,
   }
 
   Status acceleration(double t, In q, In v, Out a) noexcept override {
+    if (acceleration_sweeps_) {
+      acceleration_sweeps_->residual(t, q, v, zero_, scratch_);
+      if (acceleration_sweeps_->factor(t, q, v, zero_, {1, 0, 0})) {
+        for (double& entry : scratch_) entry = -entry;
+        acceleration_sweeps_->solve(scratch_, a);
+        return finite(a);
+      }
+    }
     dynamics_.residual(t, q, v, zero_, scratch_);
     const Status s = acceleration_solver_->factor(acceleration_.here({1, 0, 0}));
     if (s != Status::ok) return s;
@@ -278,7 +336,7 @@ class ReducedSystem : public System,
     const Needs wanted =
         dynamics_.effect_needs() | Needs{.position = true, .velocity = true};
     dynamics_.place(wanted);
-    return dynamics_.points(0, wanted);
+    return dynamics_.points(wanted);
   }
 
   Energy energy(double t, In q, In v) override {
@@ -286,7 +344,7 @@ class ReducedSystem : public System,
     const auto own = strand_energies(kinematics_, q, v);
     Energy e{own.kinetic, own.elastic};
     const Points points = placed();
-    for (const auto& effect : dynamics_.effects(0)) {
+    for (const auto& effect : dynamics_.effects()) {
       e.potential += effect->potential(t, points);
     }
     return e;
@@ -296,7 +354,7 @@ class ReducedSystem : public System,
     kinematics_.move(t, q, v, zero_);
     const Points points = placed();
     double sum = 0;
-    for (const auto& effect : dynamics_.effects(0)) sum += effect->power(t, points);
+    for (const auto& effect : dynamics_.effects()) sum += effect->power(t, points);
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       sum -= weighed_square(kinematics_.segments()[i].friction, K::components(v, i));
     }
@@ -386,6 +444,10 @@ class ReducedSystem : public System,
   bool responses(double t, In q, std::span<const int> points, Out blocks) override {
     if (!chain_ || full_in_use_ || factored_ != Status::ok) return false;
     const TipForces<Kernel, modes> forces(kinematics_, t, q);
+    if (swept_) {
+      const Status s = mass_solver_->factor(mass_.at(t, q, v_factored_, weights_));
+      if (s != Status::ok) return false;
+    }
     loads_.clear();
     for (const int point : points) loads_.push_back({point - 1, forces.units(point)});
     return mass_solver_->respond(loads_, blocks);
@@ -415,6 +477,7 @@ class ReducedSystem : public System,
     return axes;
   }
 
+  std::unique_ptr<StrandSweeps> sweeps_, acceleration_sweeps_;
   bool exact_, regular_mass_;
   double unknown_scale_, length_, rate_;
   Frame to_tip_;
@@ -428,9 +491,11 @@ class ReducedSystem : public System,
   TransposedProduct<Exact> transposed_;
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
   std::unique_ptr<TreeSolver<Exact>> full_solver_, coupled_solver_;
-  bool full_in_use_ = false;
+  bool full_in_use_ = false, swept_ = false;
+  Weights weights_;
   Status factored_ = Status::retry;
-  std::vector<double> zero_, scratch_, by_position_, by_velocity_, by_direction_;
+  std::vector<double> zero_, scratch_, by_position_, by_velocity_, by_direction_,
+      by_state_, v_factored_;
   std::vector<Coupling> contacts_;
   bool chain_ = true;
   std::vector<typename TreeSolver<Mass>::Load> loads_;  // scratch of responses()
@@ -438,14 +503,18 @@ class ReducedSystem : public System,
 
 /// `PlanarKernel` is the kernel for one mode, `BentKernel` that for two.
 template <class Kernel, class PlanarKernel, class BentKernel = Kernel>
-std::unique_ptr<System> make_reduced_system(ReducedStrand strand, int modes) {
+std::unique_ptr<System> make_reduced_system(ReducedStrand strand, Unknown unknown,
+                                            int modes) {
+  const auto make = [&]<class System>() {
+    return std::make_unique<System>(std::move(strand), unknown);
+  };
   switch (modes) {
     case 1:
-      return std::make_unique<ReducedSystem<PlanarKernel, 1>>(std::move(strand));
+      return make.template operator()<ReducedSystem<PlanarKernel, 1>>();
     case 2:
-      return std::make_unique<ReducedSystem<BentKernel, 2>>(std::move(strand));
+      return make.template operator()<ReducedSystem<BentKernel, 2>>();
     default:
-      return std::make_unique<ReducedSystem<Kernel, 3>>(std::move(strand));
+      return make.template operator()<ReducedSystem<Kernel, 3>>();
   }
 }
 

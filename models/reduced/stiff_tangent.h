@@ -42,7 +42,7 @@ class StiffTangent {
         tangent_(empty_tangent<Shape>(kinematics)) {
     if (!dynamics.effect_needs().derivatives) return;
     zero_.resize(static_cast<std::size_t>(kinematics.unknowns()));
-    of_effects_.resize(9 * Pack::lanes * kinematics.blocks().size());
+    of_effects_.resize(9 * kinematics.points());
   }
 
   const TreeTangent<Shape>& at(double t, In q, In v, Weights w) {
@@ -56,7 +56,7 @@ class StiffTangent {
     make_semidefinite(of_effects_);
     return here(w, of_effects_);
   }
-  /// Without effects, at the state of Kinematics.
+  /// Computes the tangent without effects, at the state of Kinematics.
   const TreeTangent<Shape>& here(Weights w) { return here(w, {}); }
 
   const TreeTangent<Shape>& last() const { return tangent_; }
@@ -66,9 +66,7 @@ class StiffTangent {
     for (std::size_t i = 0; i < tangent_.segments.size(); ++i) {
       mass_tangent(kinematics_, i, w, tangent_.segments[i], of_effects);
     }
-    if constexpr (lanes<typename K::Real> == 1) {
-      if (tangent_.free_root) mass_root_tangent(kinematics_, w, tangent_.root);
-    }
+    if (tangent_.free_root) mass_root_tangent(kinematics_, w, tangent_.root);
     return tangent_;
   }
 

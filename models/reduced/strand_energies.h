@@ -4,7 +4,7 @@
 
 namespace tress::models {
 
-/// Energies of strands without those of their effects, J.
+/// Energies of a strand without those of its effects, J.
 template <class Real>
 struct StrandEnergies {
   Real kinetic{0}, elastic{0};
@@ -16,7 +16,7 @@ Real rotor_energy(const Real& inertia, const FrameMotionOf<Real>& m) {
   return Real(0.5) * inertia * m.omega.x * m.omega.x;
 }
 
-/// Computes the energies of each lane at (q, v), to which Kinematics have moved.
+/// Computes the energies at (q, v), to which Kinematics have moved.
 template <class Kernel, int modes>
 StrandEnergies<typename Kernel::Real> strand_energies(
     const Kinematics<Kernel, modes>& kinematics, std::span<const typename Kernel::Real> q,

@@ -11,7 +11,7 @@ std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& 
                                     Effects effects) {
   return make_reduced_system<Helix, Arc>(
       reduced_strand(strand, Unknown::curvature, options, std::move(effects)),
-      options.dofs);
+      Unknown::curvature, options.dofs);
 }
 
 std::span<const Parameter> super_helix_parameters() { return reduced_parameters(); }

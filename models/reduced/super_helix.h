@@ -21,16 +21,6 @@ namespace tress::models {
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects);
 
-/// One to four strands as one system, one per SIMD lane: the results of super_helix for
-/// each to rounding, at little more than the cost of one strand. Coordinates and points
-/// are ordered strand after strand; effects of a strand see only its own points. All use
-/// the largest number of quadrature points that any strand needs. Throws InputError
-/// unless all strands are clamped and of equal discretisation, and options select the
-/// elastic Jacobian and `recursive`.
-std::unique_ptr<System> super_helix_batch(std::span<const Strand> strands,
-                                          const ReducedOptions& options,
-                                          std::vector<Effects> effects);
-
 std::span<const Parameter> super_helix_parameters();
 std::unique_ptr<System> make_super_helix(const Strand& strand,
                                          const Parameters& parameters, Effects effects);

@@ -34,12 +34,6 @@ struct LinearStrainOf {
 };
 using LinearStrain = LinearStrainOf<double>;
 
-template <class T>
-void set_lane(LinearStrainOf<T>& to, int lane, const LinearStrain& x) {
-  set_lane(to.mean, lane, x.mean);
-  set_lane(to.half, lane, x.half);
-}
-
 /// sum k_i x_i^2
 template <class T>
 T weighed_square(const Vec3<T>& k, const Vec3<T>& x) {

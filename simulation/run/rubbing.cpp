@@ -61,52 +61,31 @@ Rubbing::Rubbing(const std::vector<Strand>& strands, const Parameters& rubs,
                  const Effects& effects)
     : friction_(rubs, searched(strands), obstacles(effects)) {}
 
-void Rubbing::add_responder(System& system, std::size_t strands, std::size_t coordinate,
-                            const Options& options) {
-  const auto points = static_cast<std::size_t>(system.material_points()->count());
-  const std::size_t group = groups_.size() - 1, number = responders_.size();
-  Responder& all = responders_.emplace_back();
-  all.system = &system;
-  all.response = std::make_unique<ImpulseResponse>(system, *groups_.back().method,
-                                                   options, coordinate);
-  all.group = group;
-  all.first = responder_of_.size();
-  all.strands = strands;
-  all.coordinate = coordinate;
-  all.points = points / strands;
-  all.v_before.resize(static_cast<std::size_t>(system.layout().coordinates));
-  all.placed.resize(3 * points);
-  responder_of_.insert(responder_of_.end(), strands, number);
-}
-
 void Rubbing::add(System& strands, Integrator& method, const Options& options) {
-  Group& group = groups_.emplace_back();
-  group.method = &method;
-  group.impulsive = &impulsive(method);
-  group.first = responder_of_.size();
-  group.first_responder = responders_.size();
   const auto* const block = dynamic_cast<StrandBlock*>(&strands);
-  group.strands = block == nullptr ? 1 : block->strands();
-  group.responders = 1;
-  if (block == nullptr || block->responds_at_once()) {
-    add_responder(strands, group.strands, 0, options);
-    return;
-  }
-  group.responders = group.strands;
+  const std::size_t count = block == nullptr ? 1 : block->strands();
+  groups_.push_back({&method, &impulsive(method), responders_.size(), count, {}, {}});
   std::size_t coordinate = 0;
-  for (std::size_t k = 0; k < group.strands; ++k) {
-    System& strand = block->strand(k);
-    add_responder(strand, 1, coordinate, options);
-    coordinate += static_cast<std::size_t>(strand.layout().coordinates);
+  for (std::size_t k = 0; k < count; ++k) {
+    System& strand = block == nullptr ? strands : block->strand(k);
+    const auto coordinates = static_cast<std::size_t>(strand.layout().coordinates);
+    const auto points = static_cast<std::size_t>(strand.material_points()->count());
+    Responder& added = responders_.emplace_back();
+    added.system = &strand;
+    added.response =
+        std::make_unique<ImpulseResponse>(strand, method, options, coordinate);
+    added.group = groups_.size() - 1;
+    added.coordinate = coordinate;
+    added.v_before.resize(coordinates);
+    added.placed.resize(3 * points);
+    coordinate += coordinates;
   }
 }
 
 void Rubbing::restore(In memory) {
   friction_.recall(memory);
   for (Responder& responder : responders_) responder.touches = false;
-  for (const std::size_t k : friction_.touching()) {
-    responders_[responder_of_[k]].touches = true;
-  }
+  for (const std::size_t k : friction_.touching()) responders_[k].touches = true;
   stats_ = {};
   failure_.clear();
 }
@@ -123,13 +102,12 @@ void Rubbing::before_step(In x, const Loop& loop) {
 }
 
 void Rubbing::prepare(std::size_t k, double h) {
-  for (Responder& responder : of(groups_[k])) {
+  const Group& group = groups_[k];
+  for (Responder& responder :
+       std::span(responders_).subspan(group.first, group.strands)) {
     if (!std::exchange(responder.touches, false)) continue;
-    groups_[k].impulsive->lose_matrix();
-    // Of strands that respond together, the first question finds all answers.
-    if (prepare(responder, h) == Status::ok && responder.strands > 1) {
-      (void)responder.response->compliance({}, responder.blocks);
-    }
+    group.impulsive->lose_matrix();
+    static_cast<void>(prepare(responder, h));
   }
 }
 
@@ -140,67 +118,37 @@ Status Rubbing::prepare(Responder& responder, double h) {
   return *responder.prepared;
 }
 
-/// What responds of these strands, ascending, and which they are.
+/// For each of these strands, ascending.
 Status Rubbing::each(Some strands, double t, const Loop& loop,
-                     const std::function<Status(Responder&, Some)>& act) {
-  std::vector<Some> of_responders;
-  for (std::size_t from = 0, to = 0; from < strands.size(); from = to) {
-    while (to < strands.size() &&
-           responder_of_[strands[to]] == responder_of_[strands[from]]) {
-      ++to;
-    }
-    of_responders.push_back(strands.subspan(from, to - from));
-  }
-  const auto of = [this](Some some) -> Responder& {
-    return responders_[responder_of_[some.front()]];
-  };
-  loop(of_responders.size(), [&](std::size_t i) {
-    Responder& responder = of(of_responders[i]);
-    responder.status = act(responder, of_responders[i]);
-  });
-  for (const Some some : of_responders) {
-    const Responder& responder = of(some);
-    if (responder.status == Status::ok) continue;
-    failure_ = no_response(responder.first, responder.strands, t);
-    return responder.status;
-  }
-  return Status::ok;
-}
-
-Status Rubbing::give_compliance(Responder& responder, Some strands, double h) {
-  if (const Status done = prepare(responder, h); done != Status::ok) return done;
+                     const std::function<Status(std::size_t)>& act) {
+  loop(strands.size(),
+       [&](std::size_t i) { responders_[strands[i]].status = act(strands[i]); });
   for (const std::size_t k : strands) {
-    const auto first = static_cast<int>((k - responder.first) * responder.points);
-    responder.touched = friction_.points_of(k);
-    for (int& point : responder.touched) point += first;
-    const Status done =
-        responder.response->compliance(responder.touched, responder.blocks);
-    if (done != Status::ok) return done;
-    friction_.respond(k, responder.blocks);
+    const Status status = responders_[k].status;
+    if (status == Status::ok) continue;
+    failure_ = no_response(k, 1, t);
+    return status;
   }
   return Status::ok;
 }
 
-/// To the forces on all its strands; only those that have moved are placed.
-Status Rubbing::respond(Responder& responder, Some moved, double t) {
-  responder.touched.clear();
-  responder.forces.clear();
-  for (std::size_t k = 0; k < responder.strands; ++k) {
-    const In forces = friction_.forces(responder.first + k);
-    if (forces.empty()) continue;
-    for (const int point : friction_.points_of(responder.first + k)) {
-      responder.touched.push_back(static_cast<int>(k * responder.points) + point);
-    }
-    responder.forces.insert(responder.forces.end(), forces.begin(), forces.end());
-  }
-  const Status done = responder.response->respond(responder.touched, responder.forces);
+Status Rubbing::give_compliance(std::size_t k, double h) {
+  Responder& responder = responders_[k];
+  if (const Status done = prepare(responder, h); done != Status::ok) return done;
+  const Status done =
+      responder.response->compliance(friction_.points_of(k), responder.blocks);
+  if (done == Status::ok) friction_.respond(k, responder.blocks);
+  return done;
+}
+
+Status Rubbing::respond(std::size_t k, double t) {
+  Responder& responder = responders_[k];
+  const In forces = friction_.forces(k);
+  const Status done = responder.response->respond(
+      forces.empty() ? std::span<const int>() : friction_.points_of(k), forces);
   responder.system->material_points()->positions(t, responder.response->q(),
                                                  responder.placed);
-  const std::size_t numbers = 3 * responder.points;
-  for (const std::size_t k : moved) {
-    friction_.place(
-        k, In(responder.placed).subspan((k - responder.first) * numbers, numbers));
-  }
+  friction_.place(k, responder.placed);
   return done;
 }
 
@@ -216,13 +164,11 @@ Status Rubbing::go_on(double t, const Loop& loop) {
     group.q.assign(group.method->q().begin(), group.method->q().end());
     group.v.assign(group.method->v().begin(), group.method->v().end());
     for (const std::size_t k : std::span(from, to)) {
-      Responder& responder = responders_[responder_of_[k]];
+      Responder& responder = responders_[k];
       responder.touches = true;
-      const std::size_t n = responder.v_before.size() / responder.strands,
-                        first = (k - responder.first) * n;
-      const auto at = static_cast<std::ptrdiff_t>(responder.coordinate + first);
-      std::ranges::copy(responder.response->q().subspan(first, n), group.q.begin() + at);
-      std::ranges::copy(responder.response->v().subspan(first, n), group.v.begin() + at);
+      const auto at = static_cast<std::ptrdiff_t>(responder.coordinate);
+      std::ranges::copy(responder.response->q(), group.q.begin() + at);
+      std::ranges::copy(responder.response->v(), group.v.begin() + at);
     }
     group.status = group.impulsive->go_on(group.q, group.v);
   });
@@ -237,16 +183,12 @@ Status Rubbing::go_on(double t, const Loop& loop) {
 Status Rubbing::after_step(double t, double h, In x, In u, const Loop& loop) {
   friction_.begin(t, h, x_before_, x, u);
   while (friction_.find(loop)) {
-    const Status known =
-        each(friction_.stale(), t, loop, [&](Responder& responder, Some strands) {
-          return give_compliance(responder, strands, h);
-        });
+    const Status known = each(friction_.stale(), t, loop,
+                              [&](std::size_t k) { return give_compliance(k, h); });
     if (known != Status::ok) return known;
     friction_.solve(loop);
     const Status moved =
-        each(friction_.moved(), t, loop, [&](Responder& responder, Some strands) {
-          return respond(responder, strands, t);
-        });
+        each(friction_.moved(), t, loop, [&](std::size_t k) { return respond(k, t); });
     if (moved != Status::ok) return moved;
   }
   stats_.contact_iterations += friction_.outcome().sweeps;

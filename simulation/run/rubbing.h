@@ -46,15 +46,13 @@ class Rubbing final : public StrandCoupling {
   void restore(In memory) override;
 
  private:
-  /// Strands that respond to forces at once: one, or those of a block that can.
+  /// A strand and its response to forces.
   struct Responder {
     System* system;
     std::unique_ptr<ImpulseResponse> response;
-    std::size_t group, first, strands;  // first: strand
-    std::size_t coordinate;             // the first one, of those of its group
-    std::size_t points;                 // of each strand
-    std::vector<double> v_before, blocks, forces, placed;
-    std::vector<int> touched;
+    std::size_t group;
+    std::size_t coordinate;  // the first one, of those of its group
+    std::vector<double> v_before, blocks, placed;
     bool touches = false;            // others, in the last step
     std::optional<Status> prepared;  // whether its matrix is that of this step
     Status status = Status::ok;
@@ -64,26 +62,19 @@ class Rubbing final : public StrandCoupling {
     Integrator* method;
     Impulsive* impulsive;
     std::size_t first, strands;  // first: strand
-    std::size_t first_responder, responders;
     std::vector<double> q, v;
     Status status = Status::ok;
   };
   using Some = std::span<const std::size_t>;  // strands
-  std::span<Responder> of(const Group& group) {
-    return std::span(responders_).subspan(group.first_responder, group.responders);
-  }
-  void add_responder(System& system, std::size_t strands, std::size_t coordinate,
-                     const Options& options);
   Status each(Some strands, double t, const Loop& loop,
-              const std::function<Status(Responder&, Some)>& act);
+              const std::function<Status(std::size_t)>& act);
   static Status prepare(Responder& responder, double h);
-  Status give_compliance(Responder& responder, Some strands, double h);
-  Status respond(Responder& responder, Some moved, double t);
+  Status give_compliance(std::size_t k, double h);
+  Status respond(std::size_t k, double t);
   Status go_on(double t, const Loop& loop);
 
   StrandFriction friction_;
-  std::vector<Responder> responders_;
-  std::vector<std::size_t> responder_of_;  // strand
+  std::vector<Responder> responders_;  // by strand
   std::vector<Group> groups_;
   std::vector<double> x_before_;
   Stats stats_;

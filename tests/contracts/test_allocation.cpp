@@ -7,8 +7,7 @@
 #include "integrators/formulation/dynamics.h"
 #include "models/effects/linear_drag.h"
 #include "models/motion/root_motion.h"
-#include "models/reduced/force_transport.h"
-#include "models/reduced/super_helix.h"
+#include "models/reduced/four_strands.h"
 #include "tests/support/catalogue_cases.h"
 
 // Counts heap allocations by standing in for malloc and realloc; the sanitizers have
@@ -79,8 +78,8 @@ TEST(BatchAllocation, StepsAllocateNothingAfterTheFirst) {
   const std::vector<Effects> drag(3, {std::make_shared<LinearDrag>(1e-5)});
   ReducedOptions reduced;
   reduced.jacobian = ReducedJacobian::elastic;
-  for (const auto make : {super_helix_batch, force_transport_batch}) {
-    const auto batch = make(strands, reduced, drag);
+  for (const Unknown unknown : {Unknown::curvature, Unknown::joint_angle}) {
+    const auto batch = four_strands(strands, unknown, reduced, drag);
     States s(*batch);
     Options options;
     options.step = 1e-4;

@@ -54,6 +54,7 @@ struct Case {
   std::function<Effects(std::size_t strand)> own = {};  // of each strand
   const HairMethod* method = &one_solve;
   double step = hair_step;  // s
+  int steps = 100;          // of a run that is compared
   const HairModel* model = &helices;
   Effects own_of(std::size_t k) const { return own ? own(k) : Effects{}; }
 };

@@ -169,7 +169,7 @@ class Loaded {
         const T arc = T(kernel_.at(k)) * material_.length, w(kernel_.weight(k));
         const V p = on.position(arc), x = at + frame * p, u = frame * on.velocity(arc, p);
         const V f = w * turn.back(force_ - by_x_ * x - by_u_ * u);
-        on.add(arc, p, {f, {}}, sums_[i]);
+        on.add_force(arc, p, f, sums_[i]);
         points_[i][static_cast<std::size_t>(k)] = {
             p,
             {f, w * (turn.transposed() * by_x_ * turn),

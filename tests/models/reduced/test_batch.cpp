@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
 
+#include "contract/forms/energetics.h"
 #include "contract/forms/explicit_form.h"
+#include "contract/forms/material_points.h"
+#include "contract/forms/natural_strains.h"
 #include "integrators/catalogue.h"
-#include "models/clothoid/super_clothoid.h"
-#include "models/groom/strand_block.h"
 #include "models/reduced/articulated_chain.h"
-#include "models/reduced/force_transport.h"
+#include "models/reduced/four_strands.h"
 #include "models/reduced/super_helix.h"
 #include "tests/models/reduced/batch_strands.h"
 
@@ -17,7 +18,7 @@ using namespace testing_support;
 
 struct BatchCase {
   std::string name;
-  decltype(super_helix_batch)* batch;
+  Unknown unknown;
   decltype(super_helix)* alone;
   int dofs;
   int strands;
@@ -36,9 +37,12 @@ class Batch : public testing::TestWithParam<BatchCase> {
     for (int lane = 0; lane < GetParam().strands; ++lane) {
       strands.push_back(strand(lane, options.dofs));
       acting.push_back(effects(lane));
-      alone.push_back(GetParam().alone(strands.back(), options, acting.back()));
+      swept.push_back(GetParam().alone(strands.back(), options, acting.back()));
+      ReducedOptions general = options;
+      general.method = TreeMethod::composite;
+      alone.push_back(GetParam().alone(strands.back(), general, acting.back()));
     }
-    batch = GetParam().batch(strands, options, std::move(acting));
+    batch = four_strands(strands, GetParam().unknown, options, acting);
     n = static_cast<std::size_t>(alone.front()->layout().coordinates);
   }
 
@@ -52,47 +56,89 @@ class Batch : public testing::TestWithParam<BatchCase> {
   }
 
   ReducedOptions options;
-  std::vector<std::unique_ptr<System>> alone;
+  /// Strands by themselves: by equations for trees and a dense matrix, and by sweeps.
+  std::vector<std::unique_ptr<System>> alone, swept;
   std::unique_ptr<System> batch;
   std::size_t n = 0;  // unknowns of a strand
 };
 
+/// Where `got` may differ from the residual of a strand: rounding of terms that cancel,
+/// inertia against everything else.
+void expect_residual(System& strand, In q, In v, In a, In got) {
+  std::vector<double> want(got.size()), at_rest(got.size());
+  const std::vector<double> zero(got.size());
+  ASSERT_EQ(strand.residual(t0, q, v, a, want), Status::ok);
+  ASSERT_EQ(strand.residual(t0, q, v, zero, at_rest), Status::ok);
+  EXPECT_LE(apart(got, want), rounding * (largest(want) + 2 * largest(at_rest)));
+}
+
+/// Recursions are backward stable: |x - S^-1 b| <= rounding cond(S) |x|.
+void expect_solution(System& strand, Weights w, In q, In v, In a, In b, In got) {
+  std::vector<double> want(b.begin(), b.end());
+  ASSERT_EQ(strand.linearize(t0, q, v, a, w), Status::ok);
+  ASSERT_EQ(strand.solve(want, want), Status::ok);
+  EXPECT_LE(apart(got, want),
+            rounding * condition(inverse(strand, b.size())) * largest(want));
+}
+
+/// The same of accelerations without w.
+void expect_acceleration(System& strand, In q, In v, In got) {
+  std::vector<double> want(got.size());
+  const std::vector<double> zero(got.size());
+  ASSERT_EQ(strand.explicit_form()->acceleration(t0, q, v, want), Status::ok);
+  ASSERT_EQ(strand.linearize(t0, q, v, zero, {1, 0, 0}), Status::ok);
+  EXPECT_LE(apart(got, want),
+            rounding * condition(inverse(strand, got.size())) * largest(want));
+}
+
+constexpr Weights some_weights[] = {{1, 0, 0}, backward_euler, {0.5, 2 * h, h}};
+
 TEST_P(Batch, ResidualIsThatOfTheStrands) {
   States s(*batch);
   s.shake(1);
-  std::vector<double> r(s.n), without(s.n);
+  std::vector<double> r(s.n);
   ASSERT_EQ(batch->residual(t0, s.q, s.v, s.a, r), Status::ok);
-  each(
-      [](System& strand, In q, In v, In a, In got) {
-        std::vector<double> want(got.size()), at_rest(got.size());
-        const std::vector<double> zero(got.size());
-        ASSERT_EQ(strand.residual(t0, q, v, a, want), Status::ok);
-        // Terms that cancel: inertia against everything else.
-        ASSERT_EQ(strand.residual(t0, q, v, zero, at_rest), Status::ok);
-        const double terms = largest(want) + 2 * largest(at_rest);
-        EXPECT_LE(apart(got, want), rounding * terms);
-      },
-      s.q, s.v, s.a, r);
+  each(expect_residual, s.q, s.v, s.a, r);
 }
 
-// Recursions are backward stable: |x - S^-1 b| <= rounding cond(S) |x|.
 TEST_P(Batch, SolvesAsTheStrandsDo) {
   States s(*batch);
   s.shake(1);
-  for (const Weights w : {Weights{1, 0, 0}, backward_euler, Weights{0.5, 2 * h, h}}) {
+  for (const Weights w : some_weights) {
     const std::vector<double> b = s.random(s.a_typ);
     std::vector<double> x = b;
     ASSERT_EQ(batch->linearize(t0, s.q, s.v, s.a, w), Status::ok);
     ASSERT_EQ(batch->solve(x, x), Status::ok);
-    each(
-        [&](System& strand, In q, In v, In a, In from, In got) {
-          std::vector<double> want(from.begin(), from.end());
-          ASSERT_EQ(strand.linearize(t0, q, v, a, w), Status::ok);
-          ASSERT_EQ(strand.solve(want, want), Status::ok);
-          EXPECT_LE(apart(got, want),
-                    rounding * condition(inverse(strand, n)) * largest(want));
-        },
-        s.q, s.v, s.a, b, x);
+    each([w](System& strand, In q, In v, In a, In from,
+             In got) { expect_solution(strand, w, q, v, a, from, got); },
+         s.q, s.v, s.a, b, x);
+  }
+}
+
+// With other natural strains, too.
+TEST_P(Batch, StrandsBySweepsAreThoseOfTheEquationsForTrees) {
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    SCOPED_TRACE(k);
+    System& strand = *swept[k];
+    States s(strand);
+    s.shake(1);
+    std::vector<double> natural = natural_strains(strand)->natural();
+    for (double& strain : natural) strain = 0.5 * strain - s.q_typ[0];
+    for (System* one : {swept[k].get(), alone[k].get()}) {
+      natural_strains(*one)->set_natural(natural);
+    }
+    std::vector<double> r(s.n), a(s.n);
+    ASSERT_EQ(strand.residual(t0, s.q, s.v, s.a, r), Status::ok);
+    expect_residual(*alone[k], s.q, s.v, s.a, r);
+    for (const Weights w : some_weights) {
+      const std::vector<double> b = s.random(s.a_typ);
+      std::vector<double> x = b;
+      ASSERT_EQ(strand.linearize(t0, s.q, s.v, s.a, w), Status::ok);
+      ASSERT_EQ(strand.solve(x, x), Status::ok);
+      expect_solution(*alone[k], w, s.q, s.v, s.a, b, x);
+    }
+    ASSERT_EQ(strand.explicit_form()->acceleration(t0, s.q, s.v, a), Status::ok);
+    expect_acceleration(*alone[k], s.q, s.v, a);
   }
 }
 
@@ -131,56 +177,6 @@ TEST_P(Batch, TrajectoryIsThatOfTheStrands) {
       s.q, s.q_typ, end);
 }
 
-// Points of all strands but the first at once: a strand's own blocks are those of the
-// strand alone, and no strand feels another one's forces.
-TEST_P(Batch, RespondsToForcesOnPointsAsTheStrandsDo) {
-  States s(*batch);
-  s.shake(1);
-  std::vector<double> zero(s.n);
-  ASSERT_EQ(batch->linearize(t0, s.q, s.v, zero, backward_euler), Status::ok);
-  MaterialPoints& points = *batch->material_points();
-  const std::vector<int> own{1, 2, 4, segments};
-  std::vector<int> all;
-  for (int strand = alone.size() > 1 ? 1 : 0; strand < GetParam().strands; ++strand) {
-    for (const int point : own) all.push_back(strand * (segments + 1) + point);
-  }
-  std::vector<double> blocks(9 * all.size() * all.size()), f(3 * all.size());
-  const bool known = dynamic_cast<StrandBlock&>(*batch).responds_at_once();
-  EXPECT_EQ(known, GetParam().batch != force_transport_batch);
-  ASSERT_EQ(points.responses(t0, s.q, all, blocks), known);
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] = std::sin(1 + static_cast<double>(i));
-  std::vector<double> pulled(s.n);
-  ASSERT_EQ(points.pull_back(t0, s.q, all, f, pulled), known);
-  if (!known) return;
-  std::size_t first = 0;  // of the strand's points among all
-  for (std::size_t k = alone.size() > 1 ? 1 : 0; k < alone.size(); ++k) {
-    SCOPED_TRACE(k);
-    const In q = In(s.q).subspan(k * n, n), v = In(s.v).subspan(k * n, n);
-    ASSERT_EQ(alone[k]->linearize(t0, q, v, std::vector<double>(n), backward_euler),
-              Status::ok);
-    std::vector<double> want(9 * own.size() * own.size());
-    MaterialPoints& of_strand = *alone[k]->material_points();
-    ASSERT_TRUE(of_strand.responses(t0, q, own, want));
-    const double off = rounding * condition(inverse(*alone[k], n)) * largest(want);
-    EXPECT_GT(largest(want), 0);
-    for (std::size_t of = 0; of < all.size(); ++of) {
-      for (std::size_t on = 0; on < own.size(); ++on) {
-        const double* const got = &blocks[9 * (of * all.size() + first + on)];
-        const bool same = of >= first && of < first + own.size();
-        for (std::size_t e = 0; e < 9; ++e) {
-          const double wanted = same ? want[9 * ((of - first) * own.size() + on) + e] : 0;
-          EXPECT_NEAR(got[e], wanted, same ? off : 0);
-        }
-      }
-    }
-    std::vector<double> want_b(n);
-    ASSERT_TRUE(of_strand.pull_back(t0, q, own, In(f).subspan(3 * first, 3 * own.size()),
-                                    want_b));
-    EXPECT_LE(apart(want_b, In(pulled).subspan(k * n, n)), rounding * largest(want_b));
-    first += own.size();
-  }
-}
-
 TEST_P(Batch, PointsAndEnergiesAreThoseOfTheStrands) {
   States s(*batch);
   s.shake(1);
@@ -209,7 +205,7 @@ TEST_P(Batch, PointsAndEnergiesAreThoseOfTheStrands) {
     energy.kinetic += e.kinetic;
     energy.potential += e.potential;
     weighed += std::abs(e.potential) + weight(static_cast<int>(strand)) * largest(own);
-    power += alone[strand]->energetics()->power(t0, q, v);
+    power += swept[strand]->energetics()->power(t0, q, v);
     const Momentum m = alone[strand]->energetics()->momentum(t0, q, v).value();
     for (std::size_t k = 0; k < 3; ++k) momentum.angular[k] += m.angular[k];
     const int first = static_cast<int>(strand) * (segments + 1);
@@ -234,29 +230,35 @@ TEST_P(Batch, ExplicitFormIsThatOfTheStrands) {
   std::vector<double> a(s.n);
   ASSERT_NE(batch->explicit_form(), nullptr);
   ASSERT_EQ(batch->explicit_form()->acceleration(t0, s.q, s.v, a), Status::ok);
-  each(
-      [](System& strand, In q, In v, In got) {
-        std::vector<double> want(got.size());
-        ASSERT_EQ(strand.explicit_form()->acceleration(t0, q, v, want), Status::ok);
-        EXPECT_EQ(apart(got, want), 0);
-      },
-      s.q, s.v, a);
+  each(expect_acceleration, s.q, s.v, a);
+}
+
+// All other strands keep their natural strains.
+TEST_P(Batch, HasTheNaturalStrainsOfTheStrands) {
+  States s(*batch);
+  s.shake(1);
+  std::vector<double> natural = natural_strains(*batch)->natural();
+  ASSERT_EQ(natural.size(), s.n);
+  natural[0] += s.q_typ[0];
+  natural_strains(*batch)->set_natural(natural);
+  std::vector<double> r(s.n);
+  ASSERT_EQ(batch->residual(t0, s.q, s.v, s.a, r), Status::ok);
+  std::vector<double> first = natural_strains(*alone[0])->natural();
+  first[0] += s.q_typ[0];
+  natural_strains(*alone[0])->set_natural(first);
+  each(expect_residual, s.q, s.v, s.a, r);
 }
 
 std::vector<BatchCase> batch_cases() {
   std::vector<BatchCase> cases;
   for (int strands = 1; strands <= 4; ++strands) {
-    for (int dofs = 1; dofs <= 3; ++dofs) {
+    for (int dofs = 2; dofs <= 3; ++dofs) {
       const std::string size =
           "_" + std::to_string(dofs) + "_modes_" + std::to_string(strands) + "_strands";
       cases.push_back(
-          {"super_helix" + size, super_helix_batch, super_helix, dofs, strands});
-      cases.push_back(
-          {"super_clothoid" + size, super_clothoid_batch, super_clothoid, dofs, strands});
-      cases.push_back({"articulated_chain" + size, articulated_chain_batch,
+          {"super_helix" + size, Unknown::curvature, super_helix, dofs, strands});
+      cases.push_back({"articulated_chain" + size, Unknown::joint_angle,
                        articulated_chain, dofs, strands});
-      cases.push_back({"force_transport" + size, force_transport_batch, force_transport,
-                       dofs, strands});
     }
   }
   return cases;

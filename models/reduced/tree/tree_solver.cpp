@@ -1,9 +1,9 @@
-#include "models/reduced/tree_solver.h"
+#include "models/reduced/tree/tree_solver.h"
 
-#include "models/reduced/composite_solver.h"
-#include "models/reduced/recursive_solver.h"
-#include "models/reduced/shapes.h"
-#include "models/reduced/sparse_solver.h"
+#include "models/reduced/tree/composite_solver.h"
+#include "models/reduced/tree/recursive_solver.h"
+#include "models/reduced/tree/shapes.h"
+#include "models/reduced/tree/sparse_solver.h"
 
 namespace tress::models {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "contract/basics.h"
-#include "models/reduced/tree_tangent.h"
+#include "models/reduced/tree/tree_tangent.h"
 
 namespace tress::models {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "linear/dense_factor.h"
-#include "models/reduced/tree_tangent.h"
+#include "models/reduced/tree/tree_tangent.h"
 
 namespace tress::models {
 

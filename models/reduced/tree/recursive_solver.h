@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "models/reduced/tree_solver.h"
+#include "models/reduced/tree/tree_solver.h"
 
 namespace tress::models {
 
@@ -26,11 +26,10 @@ namespace tress::models {
 /// A pivot may be nearly singular although the whole matrix is not. Exact Jacobians,
 /// which are not definite, have such pivots by contact, wind and drag. Symmetric ones
 /// have them by a joint that is soft compared with the inertia of its link, where its
-/// unknowns turn the link about its own axis. Without row exchange the corresponding
-/// digits are lost: up to five in 300 random exact states, eleven in soft chains. solve()
-/// then applies iterative refinement [Higham 2002, Accuracy and Stability of Numerical
-/// Algorithms, chapter 12], which leaves a difference of a few eps cond(S).
-/// Each lane is refined according to its own pivots.
+/// unknowns turn the link about its own axis. Without row exchange the
+/// corresponding digits are lost: up to five in 300 random exact states, eleven in soft
+/// chains. solve() then applies iterative refinement [Higham 2002, Accuracy and Stability
+/// of Numerical Algorithms, chapter 12], which leaves a difference of a few eps cond(S).
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
@@ -47,7 +46,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
   Status factor(const TreeTangent<Shape>& tangent) noexcept override {
     tangent_ = &tangent;
-    growth_.fill(1);
+    growth_ = 1;
     for (std::size_t i = 0; i < hanging_.size(); ++i) {
       hanging_[i].matrix = tangent.segments[i].tip;
     }
@@ -60,20 +59,17 @@ class RecursiveSolver final : public TreeSolver<Shape> {
         return Status::retry;
       }
     }
-    if constexpr (may_be_free) {
-      if (!tangent.free_root) return Status::ok;
-      Eigen::Matrix<double, 6, 6> root = tangent.root.local;
-      add_product(tangent.root.lift, product(at_root, tangent.root.transfer), root);
-      root_.compute(root);
-      const double least = root_.matrixLU().diagonal().cwiseAbs().minCoeff();
-      return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
-    }
-    return Status::ok;
+    if (!tangent.free_root) return Status::ok;
+    Eigen::Matrix<double, 6, 6> root = tangent.root.local;
+    add_product(tangent.root.lift, product(at_root, tangent.root.transfer), root);
+    root_.compute(root);
+    const double least = root_.matrixLU().diagonal().cwiseAbs().minCoeff();
+    return least > 0 && std::isfinite(least) ? Status::ok : Status::retry;
   }
 
   Status solve(In b, Out x) noexcept override {
     if constexpr (refines) {
-      if (some_above(most_growth)) {
+      if (growth_ > most_growth) {
         refine(b, x);
         return Status::ok;
       }
@@ -95,7 +91,6 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   // two thirds of the states of hard cases, and does not affect Newton's iteration.
   static constexpr bool refines = !Shape::symmetric || method == TreeMethod::recursive;
   static constexpr double most_growth = 100, most_of_one_sweep = 1e6;
-  static constexpr bool may_be_free = lanes<Real> == 1;
   static constexpr int states = Shape::states, wrench = Shape::wrench, n = Shape::dofs;
   using Articulated = Eigen::Matrix<Real, wrench, states>;
   using Wrench = Eigen::Matrix<Real, wrench, 1>;
@@ -137,14 +132,12 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       add_product(e.response, rest, onto);
     }
     State at_start = State::Zero();
-    if constexpr (may_be_free) {
-      if (tangent.free_root) {
-        const std::size_t first = Shape::dofs * hanging_.size();
-        Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
-        y = root_.solve(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) -
-                        tangent.root.lift * at_root);
-        at_start = product(tangent.root.transfer, y);
-      }
+    if (tangent.free_root) {
+      const std::size_t first = Shape::dofs * hanging_.size();
+      Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
+      y = root_.solve(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) -
+                      tangent.root.lift * at_root);
+      at_start = product(tangent.root.transfer, y);
     }
     for (std::size_t i = 0; i < hanging_.size(); ++i) {
       const int parent = tangent.parent[i];
@@ -169,11 +162,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     using Response = Eigen::Matrix<Real, states, wrench>;
     const TreeTangent<Shape>& tangent = *tangent_;
     Response omega = Response::Zero();
-    if constexpr (may_be_free) {
-      if (tangent.free_root) {
-        const Eigen::Matrix<Real, 6, wrench> y = root_.solve(tangent.root.lift);
-        omega = product(tangent.root.transfer, y);
-      }
+    if (tangent.free_root) {
+      const Eigen::Matrix<Real, 6, wrench> y = root_.solve(tangent.root.lift);
+      omega = product(tangent.root.transfer, y);
     }
     reached_.resize(loads.size());
     std::size_t met = 0;
@@ -216,26 +207,13 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     return true;
   }
 
-  bool some_above(double most) const {
-    return std::ranges::any_of(growth_, [most](double growth) { return growth > most; });
-  }
-  static double entry(const Real& x, int lane) {
-    if constexpr (lanes<Real> == 1) {
-      return x;
-    } else {
-      return x[lane];
-    }
-  }
-  /// Sees how much larger than a pivot the terms are that it sums.
+  /// Notes how much larger than a pivot the terms are that it sums.
   template <class Own, class Pivot>
   void see_growth(const Own& own, const Pivot& pivot, const Square& inverse) {
-    for (int lane = 0; lane < lanes<Real>; ++lane) {
-      for (int k = 0; k < n; ++k) {
-        const double part = entry(own(k, k), lane),
-                     terms = std::abs(part) + std::abs(entry(pivot(k, k), lane) - part);
-        double& growth = growth_[static_cast<std::size_t>(lane)];
-        growth = std::max(growth, terms * std::abs(entry(inverse(k, k), lane)));
-      }
+    for (int k = 0; k < n; ++k) {
+      const double part = own(k, k),
+                   terms = std::abs(part) + std::abs(pivot(k, k) - part);
+      growth_ = std::max(growth_, terms * std::abs(inverse(k, k)));
     }
   }
 
@@ -244,21 +222,10 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     std::ranges::copy(b, b_.begin());
     sweep(b_, x);
     for (const double most : {most_growth, most_of_one_sweep}) {
-      if (!some_above(most)) return;
+      if (growth_ <= most) return;
       subtract_image(x);
       sweep(left_, correction_);
-      for (std::size_t k = 0; k < correction_.size(); ++k) add_where(most, k, x);
-    }
-  }
-  void add_where(double most, std::size_t k, Out x) const {
-    if constexpr (lanes<Real> == 1) {
-      x[k] += correction_[k];
-    } else {
-      for (int lane = 0; lane < lanes<Real>; ++lane) {
-        if (growth_[static_cast<std::size_t>(lane)] > most) {
-          x[k].set(lane, x[k][lane] + correction_[k][lane]);
-        }
-      }
+      for (std::size_t k = 0; k < correction_.size(); ++k) x[k] += correction_[k];
     }
   }
 
@@ -267,11 +234,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     const TreeTangent<Shape>& tangent = *tangent_;
     const std::size_t root = Shape::dofs * hanging_.size();
     State at_start = State::Zero();
-    if constexpr (may_be_free) {
-      if (tangent.free_root) {
-        const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
-        at_start = product(tangent.root.transfer, y);
-      }
+    if (tangent.free_root) {
+      const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
+      at_start = product(tangent.root.transfer, y);
     }
     const auto moved = [&](std::size_t i) {
       const int parent = tangent.parent[i];
@@ -295,14 +260,12 @@ class RecursiveSolver final : public TreeSolver<Shape> {
           parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load);
       for (int k = 0; k < n; ++k) left_[at(i, k)] = b_[at(i, k)] - image[wrench + k];
     }
-    if constexpr (may_be_free) {
-      if (!tangent.free_root) return;
-      const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
-      const Eigen::Matrix<double, 6, 1> image =
-          tangent.root.local * y + tangent.root.lift * at_root;
-      for (std::size_t k = 0; k < 6; ++k) {
-        left_[root + k] = b_[root + k] - image[static_cast<int>(k)];
-      }
+    if (!tangent.free_root) return;
+    const Eigen::Map<const Eigen::Matrix<double, 6, 1>> y(&x[root]);
+    const Eigen::Matrix<double, 6, 1> image =
+        tangent.root.local * y + tangent.root.lift * at_root;
+    for (std::size_t k = 0; k < 6; ++k) {
+      left_[root + k] = b_[root + k] - image[static_cast<int>(k)];
     }
   }
 
@@ -423,8 +386,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Hanging> hanging_;
   Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> root_;
   std::vector<Eigen::Matrix<Real, states, 3>> reached_;  // scratch of respond()
-  // Largest product of a pivot's inverse and the terms that it sums, of each problem.
-  std::array<double, static_cast<std::size_t>(lanes<Real>)> growth_{};
+  double growth_ = 0;  // largest product of a pivot's inverse and the terms that it sums
   std::vector<Real> b_, left_, correction_;  // scratch of refine()
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "models/reduced/block_product.h"
+#include "models/reduced/tree/block_product.h"
 
 namespace tress::models {
 

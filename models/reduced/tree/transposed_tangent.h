@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "contract/basics.h"
-#include "models/reduced/tree_tangent.h"
+#include "models/reduced/tree/tree_tangent.h"
 
 namespace tress::models {
 

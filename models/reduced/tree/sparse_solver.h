@@ -6,7 +6,7 @@
 
 #include "contract/pattern.h"
 #include "linear/klu.h"
-#include "models/reduced/tree_solver.h"
+#include "models/reduced/tree/tree_solver.h"
 
 namespace tress::models {
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/reduced/coupled_matrix.h"
-#include "models/reduced/tree_tangent.h"
+#include "models/reduced/tree/coupled_matrix.h"
+#include "models/reduced/tree/tree_tangent.h"
 
 namespace tress::models {
 

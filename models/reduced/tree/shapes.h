@@ -1,7 +1,7 @@
 #pragma once
 
 #include "math/vec3.h"
-#include "models/reduced/tree_tangent.h"
+#include "models/reduced/tree/tree_tangent.h"
 
 namespace tress::models {
 

@@ -27,8 +27,7 @@ template <int rows>
 /// stride and may be transposed. Loops replace Eigen's products, which unroll completely:
 /// a 9 x 6 x 21 product then takes the compiler minutes. A column of c stays in vector
 /// registers. Without `unroll 1` the compiler unrolls its loop before vectorising it, and
-/// the product takes more than twice as long. Packs are vectors already. Inlined, so that
-/// strides are constants.
+/// the product takes more than twice as long. Inlined, so that strides are constants.
 template <int sign, bool onto, int rows, int inner, int columns, class T>
 [[gnu::always_inline]] inline void multiply(const T* a, int a_stride, const T* b,
                                             int b_step, int b_stride, T* c,

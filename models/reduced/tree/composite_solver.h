@@ -1,8 +1,8 @@
 #pragma once
 
 #include "linear/dense_factor.h"
-#include "models/reduced/composite_matrix.h"
-#include "models/reduced/tree_solver.h"
+#include "models/reduced/tree/composite_matrix.h"
+#include "models/reduced/tree/tree_solver.h"
 
 namespace tress::models {
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "math/matrix3.h"
+
+namespace tress {
+
+/// Force and moment about a frame's origin, in the frame's components.
+template <class T>
+struct WrenchOf {
+  Vec3<T> force, moment;
+};
+using Wrench = WrenchOf<double>;
+
+}  // namespace tress

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "math/matrix3.h"
+#include "math/wrench.h"
+
+/// Data that the sweeps of models/head/reduced_kernel.h pass from element to element.
+namespace tress::models {
+
+/// Properties common to all elements of a strand, in consistent units.
+template <class T>
+struct ReducedMaterial {
+  T length;           // of an element
+  T density;          // mass per length
+  T drag;             // force per length and velocity: nu + c density (LinearDrag)
+  Vec3<T> stiffness;  // moment per unknown of an element
+  T friction;         // moment per rate of an unknown
+  T rotor;            // inertia of an element about its tangent: length rho (I1 + I2)
+};
+
+/// Motion of a frame in its own components, such as that of a clamped root, relative to
+/// free fall.
+template <class T>
+struct ReducedMotion {
+  Vec3<T> v, omega;  // velocity, angular velocity
+  Vec3<T> a, alpha;  // acceleration minus g, angular acceleration
+};
+
+/// Articulated inertia at a frame: force = ll a + la alpha, moment = la^T a + aa alpha.
+template <class T>
+struct ArticulatedInertia {
+  Symmetric3<T> ll, aa;
+  Matrix3<T> la;
+};
+
+/// Factors of the acceleration in S: of a unit of length, and of a rotor.
+template <class T>
+struct ReducedInertia {
+  T of_length, acc;
+};
+
+/// Inertia of an element with all that hangs on it, in its axes, before its unknowns are
+/// eliminated.
+template <class T>
+struct UneliminatedInertia {
+  ArticulatedInertia<T> sum;
+  Symmetric3<T> own;               // H_kk
+  Matrix3<T> of_force, of_moment;  // H_k(translation), H_k(rotation), rows k
+};
+
+/// Position and velocity of a point of an element, seen from the element's start.
+template <class T>
+struct SeenPoint {
+  Vec3<T> position, velocity;
+};
+/// Position, velocity and turn of an element's tip, seen from the element's start.
+template <class T>
+struct SeenTip {
+  Vec3<T> position, velocity;
+  Matrix3<T> rotation;  // from the components of the tip to those of the start
+  Vec3<T> turning;      // angular velocity
+};
+
+inline constexpr int most_points_of_element = 16;
+
+/// Returns the moment I d/dt((omega . t) t) that turns the rotor of an element, t its
+/// tangent.
+template <class T>
+Vec3<T> rotor_moment(const T& inertia, const Vec3<T>& w, const Vec3<T>& alpha) {
+  return inertia * Vec3<T>{alpha.x, w.x * w.z, -(w.x * w.y)};
+}
+
+}  // namespace tress::models

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "contract/weights.h"
+#include "models/reduced/free_root.h"
+#include "models/reduced/reduced_strand.h"
+
+namespace tress::models {
+
+/// A strand under sweeps. It provides the motion of its clamp and the loads on its
+/// points, which are those of ReducedStrand::blocks.
+class SweptStrand {
+ public:
+  virtual ~SweptStrand() = default;
+  /// Destination of the points' motion; a span is empty where no effect reads it.
+  struct Places {
+    Out x, v, tangent;
+  };
+
+  /// Returns the motion in the clamp's own components, relative to free fall.
+  virtual FrameMotion clamp(double t) = 0;
+  virtual Places places() = 0;
+  /// Whether loads() returns any.
+  virtual bool loaded() const = 0;
+  /// Whether stiffness() returns any.
+  virtual bool stiffened() const = 0;
+  /// Returns the loads on the points in places() (3 numbers each, N).
+  virtual In loads(double t) = 0;
+  /// Returns -w.pos df/dx - w.vel df/dv of the points in places() (9 numbers each), made
+  /// symmetric and semidefinite.
+  virtual In stiffness(double t, Weights w) = 0;
+};
+
+/// Residual and elastic Jacobian of clamped strands without branches, with the elements
+/// of the kernels for SIMD lanes (models/head/reduced_kernel.h). T = double: one strand;
+/// Pack: one strand per lane. O(elements points).
+template <class T>
+class StrandSweepsOf {
+ public:
+  using In = std::span<const T>;
+  using Out = std::span<T>;
+
+  virtual ~StrandSweepsOf() = default;
+  /// Sets the unknowns at rest.
+  virtual void set_rest(In values) = 0;
+  virtual void residual(double t, In q, In v, In a, Out r) noexcept = 0;
+  /// Factors S(w). Returns false if elimination without exchange of rows is inaccurate in
+  /// some lane, or a pivot is unusable.
+  virtual bool factor(double t, In q, In v, In a, Weights w) noexcept = 0;
+  virtual void solve(In b, Out x) noexcept = 0;  // b and x may be the same
+};
+using StrandSweeps = StrandSweepsOf<double>;
+
+/// Strands to sweep over, which must outlive the sweeps, and the data they are made of.
+/// Lanes beyond the last strand repeat the first.
+struct ToSweep {
+  std::vector<const ReducedStrand*> made;
+  std::vector<SweptStrand*> strands;
+};
+
+/// Makes sweeps of strands whose unknowns are curvatures or joint angles, two or three
+/// per element. Returns null unless the strands are clamped, have no branches, solve
+/// recursively, and agree in the numbers of elements and of points.
+std::unique_ptr<StrandSweeps> strand_sweeps(const ToSweep& strand, Unknown unknown,
+                                            int modes);
+std::unique_ptr<StrandSweepsOf<Pack>> sweeps_of_four(const ToSweep& strands,
+                                                     Unknown unknown, int modes);
+
+}  // namespace tress::models
