@@ -26,7 +26,7 @@ namespace tress::models {
 template <class T, int modes>
 class ClothoidOf {
  public:
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using Real = T;
   /// Vector of these scalars.
   using Vec = Vec3<T>;

@@ -10,31 +10,37 @@ namespace tress::models {
 /// Values of a vector at the points of an element, four a block, and at its tip.
 template <class Real>
 struct AlongOf {
+  /// Capacity, in blocks of Pack::lanes points.
   static constexpr int most_blocks = most_clothoid_points / Pack::lanes;
 
-  // Only those in use are set and copied.
-  AlongOf() {}                                      // NOLINT
-  explicit AlongOf(int count) : blocks(count) {}    // NOLINT
+  /// Makes values without blocks; their entries are not set.
+  AlongOf() {}  // NOLINT
+  /// Makes values of `count` blocks; their entries are not set.
+  explicit AlongOf(int count) : blocks(count) {}  // NOLINT
+  /// Copies the blocks in use and the tip.
   AlongOf(const AlongOf& other) { *this = other; }  // NOLINT
-  AlongOf& operator=(const AlongOf& other) {        // NOLINT
+  /// Copies the blocks in use and the tip.
+  AlongOf& operator=(const AlongOf& other) {  // NOLINT
     blocks = other.blocks;
     tip = other.tip;
     for (int i = 0; i < 3 * blocks; ++i) entries[i] = other.entries[i];
     return *this;
   }
 
+  /// Returns the vectors at the points of block b.
   Vec3<Pack> operator[](int b) const {
     return {entries[3 * b], entries[3 * b + 1], entries[3 * b + 2]};
   }
+  /// Sets the vectors at the points of block b.
   void set(int b, const Vec3<Pack>& value) {
     entries[3 * b] = value.x;
     entries[3 * b + 1] = value.y;
     entries[3 * b + 2] = value.z;
   }
 
-  int blocks = 0;
-  Vec3<Real> tip;
-  Pack entries[3 * most_blocks];  // x, y, z a block
+  int blocks = 0;                 // number of blocks in use
+  Vec3<Real> tip;                 // vector at the tip
+  Pack entries[3 * most_blocks];  // x, y and z of each block
 };
 
 /// Gauss collocation on the points of an element that carry its mass. Integrates the
@@ -78,10 +84,13 @@ class Collocation {
     }
   }
 
+  /// Returns the number of blocks of points.
   int blocks() const { return blocks_; }
-  const Pack& place(int b) const { return place_[b]; }  // 2 x - 1
+  /// Returns y = 2 x - 1 of the points of block b.
+  const Pack& place(int b) const { return place_[b]; }
 
-  /// Returns length times the integral to each point and the tip.
+  /// Returns length times the integral of f over x, from the start to each point and the
+  /// tip.
   AlongOf<Real> integral(const AlongOf<Real>& f, const Real& length) const {
     AlongOf<Real> sum(blocks_);
     const Pack scale(length);
@@ -101,13 +110,13 @@ class Collocation {
     sum.tip = to_tip(f, length);
     return sum;
   }
-  /// Returns length times the integral over the whole.
+  /// Returns length times the integral of f over the whole element.
   Vec3<Real> to_tip(const AlongOf<Real>& f, const Real& length) const {
     Vec3<Pack> sum;
     for (int b = 0; b < blocks_; ++b) sum = sum + weight_[b] * f[b];
     return length * sum_over<Real>(sum);
   }
-  /// Returns length times the integral of (2 x - 1) f over the whole.
+  /// Returns length times the integral of (2 x - 1) f over the whole element.
   Vec3<Real> moment(const AlongOf<Real>& f, const Real& length) const {
     Vec3<Pack> sum;
     for (int b = 0; b < blocks_; ++b) sum = sum + (weight_[b] * place_[b]) * f[b];

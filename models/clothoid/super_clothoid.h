@@ -22,13 +22,16 @@ namespace tress::models {
 std::unique_ptr<System> super_clothoid(const Strand& strand,
                                        const ReducedOptions& options, Effects effects);
 
+/// Returns the parameters that make_super_clothoid() reads.
 std::span<const Parameter> super_clothoid_parameters();
+/// Makes super_clothoid() with the options that `parameters` contain.
 std::unique_ptr<System> make_super_clothoid(const Strand& strand,
                                             const Parameters& parameters,
                                             Effects effects);
 
-/// The trees of models/reduced/trees.h.
+/// Returns the parameters that make_super_clothoid_tree() reads.
 std::span<const Parameter> super_clothoid_tree_parameters();
+/// Makes a tree of models/reduced/trees.h of super-clothoids, chosen by `parameters`.
 std::unique_ptr<System> make_super_clothoid_tree(const Parameters& parameters);
 
 }  // namespace tress::models

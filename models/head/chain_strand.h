@@ -21,7 +21,7 @@ namespace tress::models {
 /// alone. Cost: O(elements), whatever the number of points, at which effects act.
 template <class T>
 struct ChainKind {
-  using Real = T;
+ private:
   using Vec = Vec3<T>;
   using Matrix = Matrix3<T>;
   using Material = ReducedMaterial<T>;
@@ -29,20 +29,29 @@ struct ChainKind {
   using Wrench = WrenchOf<T>;
   using Hanging = ArticulatedInertia<T>;
 
+ public:
+  using Real = T;  // scalar: a number, or a pack of SIMD lanes
+
+  /// Geometry and loads of a link that the sweeps share.
   struct Kept {
-    Vec v, omega;           // of its joint, in the link's axes
-    Vec force, moment;      // of inertia and drag, about the joint
+    Vec v, omega;           // motion of its joint, in the link's axes
+    Vec force, moment;      // of inertia and drag, about its joint
     Vec position;           // of its tip
     Matrix rotation, turn;  // E, W
   };
 
-  /// The clamp's joint is half as long as others (reduced_strand()).
+  /// Stiffness of the clamp's joint over that of others, which are twice as long.
   static constexpr double first_stiffness = 2;
+  /// Shares of an element's rotor that turn with the root and with the last tip.
   static constexpr double rotors_of_root = 0, rotors_of_last = 1;
+  /// Whether elements are straight, and whether eliminate() may lose digits.
   static constexpr bool straight = true, cancels = false;
+  /// Returns unknowns in units of `length`, over those in m: 1, since they are angles.
   static double unit(double /*length*/) { return 1; }
+  /// Returns the stiffness of an unknown over the bending stiffness.
   static double moment(double length) { return 1 / length; }
-  /// Halves of two links' angles; `shape`: natural or initial.
+  /// Returns the unknowns of joint i, half of the angles of each adjacent link. `shape`:
+  /// natural or initial.
   static tress::Vec at_rest(const Strand& strand, std::size_t i,
                             tress::Vec Segment::*shape) {
     const Segment& own = strand.segments[i];
@@ -52,6 +61,8 @@ struct ChainKind {
     return angle + before.length / 2 * (before.*shape);
   }
 
+  /// Replaces the motion of the tip before by that of the tip, and fills e. Reads
+  /// `acceleration` only if accelerated.
   template <bool accelerated>
   static void move(const Material& m, const Vec& q, const Vec& rate,
                    const Vec& acceleration, Motion& at, Kept& e) {
@@ -81,16 +92,19 @@ struct ChainKind {
     at.a = at.a + m.length * bent;
   }
 
-  /// Sums over the points of a link are closed.
+  /// Nothing: sums over the points of a link are closed.
   struct Sums {};
+  /// Does nothing: sums over the points of a link are closed.
   template <bool accelerated, class Kernel>
   static void add_up(const Kernel& /*kernel*/, const Material& /*m*/, const Vec& /*q*/,
                      const Vec& /*rate*/, const Vec& /*acceleration*/, const Kept& /*e*/,
                      Sums& /*sums*/) {}
 
+  /// Returns the wrench on the last tip: none.
   static Wrench last_wrench(const Material& /*m*/, const Motion& /*tip*/) { return {}; }
-  // One code with and without loads: the same bits for strands that have none. The wrench
-  // is that of inertia less loads.
+  /// Moves the hanging wrench from the tip to the joint and adds that of the link,
+  /// inertia less loads. `of_effects`: loads, or null. One code with and without loads:
+  /// the same bits for strands that have none.
   static void bear(const Vec& /*q*/, const Vec& /*rate*/, const Sums& /*sums*/,
                    const LoadSums<T>* of_effects, const Kept& e, Wrench& wrench,
                    Vec& unknown) {
@@ -104,14 +118,19 @@ struct ChainKind {
     of_effects->add_to(wrench.force, Vec{} - of_effects->force);
     of_effects->add_to(wrench.moment, Vec{} - of_effects->moment);
   }
+  /// Returns what the unknowns feel of the wrench on the joint.
   static Vec felt(const Kept& e, const Wrench& wrench, const Vec& /*unknown*/) {
     return Vec{} - e.turn * wrench.moment;
   }
+  /// Turns the wrench into the axes of the link before.
   static void pass_wrench(const Material& /*m*/, const Kept& e, Wrench& wrench) {
     set_back(e, wrench);
   }
 
+  /// Returns the inertia on the last tip: none.
   static Hanging last(const Material& /*m*/, const T& /*acc*/) { return {}; }
+  /// Moves the hanging inertia from the tip to the joint and adds that of the link. `to`
+  /// receives the sum only.
   static void carry(const Material& m, const ReducedInertia<T>& inertia, const Vec& /*q*/,
                     const Vec& /*rate*/, const Sums& /*sums*/, const Hanging& hanging,
                     const LoadSums<T>* of_effects, const Kept& /*e*/,
@@ -147,7 +166,7 @@ struct ChainKind {
     of_effects->add_to(all.aa, of_effects->aa);
   }
 
-  /// `sum` in the axes of the link before.
+  /// Turns the articulated inertia into the axes of the link before.
   static void pass(const Material& /*m*/, const T& /*acc*/, const Kept& e, Hanging& sum) {
     const Matrix& r = e.rotation;
     sum = {congruent(r, sum.ll), congruent(r, sum.aa), r * sum.la * r.transposed()};
@@ -157,6 +176,7 @@ struct ChainKind {
   /// Without twist the sum has the last two terms and y is normal to `normal`.
   struct Unknowns {
     Unknowns() = default;
+    /// Computes D from W.
     Unknowns(const Matrix& w, bool twist) {
       const Vec across = cross(w.row[1], w.row[2]), first = twist ? w.row[0] : across;
       const T by = T(1) / dot(first, across);
@@ -165,10 +185,16 @@ struct ChainKind {
       of[2] = by * cross(first, w.row[1]);
       if (!twist) normal = square_root(by) * across;
     }
-    Vec of[3];  // rows of D
-    Vec normal;
+    Vec of[3];   // rows of D
+    Vec normal;  // unit vector, without twist only
   };
 
+  /// Factors of eliminate().
+  struct Joint {
+    Unknowns of;              // turn y by the unknowns
+    Symmetric3<T> stiffness;  // D^T K D
+    Vec about;                // m_n
+  };
   /// Eliminates the joint's unknown from the articulated inertia. The unknown is the turn
   /// y = W^T x of the link by the joint, in the link's axes, with x = D y. K and b are
   /// the joint's stiffness in S and its moment. The link responds to accelerations (l, a
@@ -191,11 +217,6 @@ struct ChainKind {
   /// n/(n.Q n),
   ///
   ///     P = Q - Q n m_n^T,    I - aa P = D^T K D P + n m_n^T
-  struct Joint {
-    Unknowns of;
-    Symmetric3<T> stiffness;  // D^T K D
-    Vec about;                // m_n
-  };
   template <class Element>
   static Hanging eliminate(const Vec& tangent, bool twist,
                            const UneliminatedInertia<T>& from, Element& e, Joint& joint) {
@@ -230,7 +251,8 @@ struct ChainKind {
     }
     return passed;
   }
-  /// `b`: moment of the joint on its unknowns, less that of its stiffness.
+  /// Eliminates the unknowns from the wrench on the joint and prepares follow(). `b`:
+  /// moment of the joint on its unknowns, less that of its stiffness.
   template <class Element>
   static void reduce(const Vec& b, bool twist, const Joint& joint, Element& e,
                      Wrench& wrench) {
@@ -244,6 +266,8 @@ struct ChainKind {
     if (!twist) passed = passed + dot(joint.about, wrench.moment) * joint.of.normal;
     wrench.moment = passed;
   }
+  /// Returns the unknowns. Replaces the changes of linear and angular acceleration, l and
+  /// a, of the tip before by those of the tip.
   template <class Element>
   static Vec follow(const Element& e, bool twist, const Joint& joint, Vec& l, Vec& a) {
     const Vec(&x)[3] = joint.of.of;
@@ -255,11 +279,13 @@ struct ChainKind {
     return {twist ? dot(x[0], y) : T(0), dot(x[1], y), dot(x[2], y)};
   }
 
-  /// The unknowns feel the wrench as a turn of the link (reduce()).
+  /// Moves a wrench from the tip to the joint. The unknowns feel it as a turn of the link
+  /// (reduce()).
   static void lift(const Kept& e, Wrench& wrench, Vec& /*b*/) {
     const Vec lever = e.position.x * wrench.force;
     wrench.moment = wrench.moment + Vec{T(0), -lever.z, lever.y};
   }
+  /// Turns a wrench into the axes of the link before.
   static void set_back(const Kept& e, Wrench& wrench) {
     wrench = {e.rotation * wrench.force, e.rotation * wrench.moment};
   }
@@ -267,13 +293,16 @@ struct ChainKind {
   /// Kinematics alone, seen from the joint in the axes of the link before.
   class Shape {
    public:
+    /// Computes the turn of the joint.
     Shape(const Vec& q, const Vec& rate, const T& length)
         : joint_(turn_of(q, rate)),
           along_(joint_.rotation.column(0)),
           moving_(cross(joint_.velocity, along_)),
           length_(length) {}
 
+    /// Returns position and velocity of the point at arc length `arc`.
     SeenPoint<T> at(const T& arc) const { return {arc * along_, arc * moving_}; }
+    /// Returns position, velocity and turn of the tip.
     [[gnu::always_inline]] SeenTip<T> tip() const {
       return {length_ * along_, length_ * moving_, joint_.rotation, joint_.velocity};
     }
@@ -284,28 +313,35 @@ struct ChainKind {
     T length_;
   };
 
+  /// Replaces the frame of the tip before by that of the link.
   static void enter(const Kept& e, FrameOf<T>& frame) {
     frame = frame *
             FrameOf<T>{e.rotation.column(0), e.rotation.column(1), e.rotation.column(2)};
   }
+  /// Does nothing: the frame of the tip is that of the link.
   static void go_on(const Kept& /*e*/, FrameOf<T>& /*frame*/) {}
 
   /// Points on which effects act, in the link's axes.
   class Points {
    public:
+    /// Takes a link whose state e must outlive the points.
     Points(const Kept& e, const Vec& /*q*/, const Vec& /*rate*/, const T& /*length*/)
         : e_(e) {}
 
+    /// Returns the position of the point at arc length `arc`.
     Vec position(const T& arc) const { return {arc, T(0), T(0)}; }
+    /// Returns the velocity of the point at `position`.
     Vec velocity(const T& /*arc*/, const Vec& position) const {
       return e_.v + cross(e_.omega, position);
     }
+    /// Returns the tangent at any point.
     Vec tangent(const T& /*arc*/) const { return {T(1), T(0), T(0)}; }
-    /// The unknowns move a point as a turn of the link does.
+    /// Adds a force on a point. The unknowns move the point as a turn of the link does.
     void add_force(const T& /*arc*/, const Vec& position, const Vec& force,
                    LoadSums<T>& sums) const {
       sums.add_force(position, force);
     }
+    /// Adds the derivatives B of the load on a point (PointLoad).
     void add_block(const T& /*arc*/, const Vec& position, const Symmetric3<T>& block,
                    LoadSums<T>& sums) const {
       sums.add_block(position, block);

@@ -16,11 +16,13 @@ namespace tress::models {
 template <class T>
 class LaneFunctions {
  public:
+  /// Takes the Darboux vector and the largest arc length of at().
   LaneFunctions(const Vec3<T>& kappa, const T& length)
       : x2_(dot(kappa, kappa)),
         winding_(x2_ * length * length),
         short_(all_up_to(winding_, most)) {}
 
+  /// Returns the functions at arc length s.
   [[gnu::always_inline]] HelixFunctions<T> at(const T& s) const {
     HelixFunctions<T> f = helix::series<few>(s, x2_);
     if (!short_) [[unlikely]] {
@@ -33,6 +35,7 @@ class LaneFunctions {
     }
     return f;
   }
+  /// Returns the square of |kappa|.
   const T& x2() const { return x2_; }
 
  private:
@@ -57,6 +60,7 @@ class LaneFunctions {
 template <>
 class LaneFunctions<double> {
  public:
+  /// Takes the Darboux vector and the largest arc length of at().
   LaneFunctions(const Vec3<double>& kappa, double length)
       : x2_(dot(kappa, kappa)), length_(length) {}
 
@@ -65,6 +69,7 @@ class LaneFunctions<double> {
   HelixFunctions<S> at(const S& s) const {
     return helix_functions(s, x2_, length_);
   }
+  /// Returns the square of |kappa|.
   double x2() const { return x2_; }
 
  private:
@@ -74,8 +79,9 @@ class LaneFunctions<double> {
 /// A vector along an element: constants weighted with the functions of arc length.
 template <class T>
 struct AlongHelix {
-  Vec3<T> one, s, A, B, A1, B1, A2, B2;
+  Vec3<T> one, s, A, B, A1, B1, A2, B2;  // constants of 1, s and each function
 
+  /// Returns the vector at arc length `arc`, where the functions are f.
   Vec3<T> at(const T& arc, const HelixFunctions<T>& f) const {
     return one + arc * s + f.A * A + f.B * B + f.A1 * A1 + f.B1 * B1 + f.A2 * A2 +
            f.B2 * B2;
@@ -102,11 +108,14 @@ struct AlongHelix {
 /// functions and their products have to be summed over its points.
 template <class T>
 class HelixElement {
- public:
   using Vec = Vec3<T>;
   using Matrix = Matrix3<T>;
+
+ public:
+  /// Type of constants, which have no derivatives of their own.
   using Number = typename ConstantOf<T>::Type;
 
+  /// Takes kappa and kappa'.
   HelixElement(const Vec& kappa, const Vec& rate)
       : k_(kappa),
         v_(rate),
@@ -119,13 +128,18 @@ class HelixElement {
         z_v_(cross(rate, u_) + cross(kappa, u_v_)),
         l_v_(along_l(rate)) {}
 
+  /// Returns the Darboux vector kappa.
   const Vec& k() const { return k_; }
+  /// Returns the vector u = kappa x e0.
   const Vec& u() const { return u_; }
+  /// Returns the vector z = kappa x u.
   const Vec& z() const { return z_; }
 
+  /// Returns the position P at s.
   Vec position(const T& s, const HelixFunctions<T>& f) const {
     return {s + f.B * z_.x, f.A * u_.y + f.B * z_.y, f.A * u_.z + f.B * z_.z};
   }
+  /// Returns the derivatives dP/dkappa_j as columns.
   Matrix slope(const HelixFunctions<T>& f) const {
     const Vec r{f.B1 * z_.x, f.A1 * u_.y + f.B1 * z_.y, f.A1 * u_.z + f.B1 * z_.z};
     const T bx = f.B * k_.x, by = f.B * k_.y, bz = f.B * k_.z;
@@ -178,12 +192,14 @@ class HelixElement {
     all.B1 = all.B1 + along * z_;
   }
 
+  /// Rotation of the tip and its rate.
   struct Turn {
     Matrix rotation;  // E, from the components of the tip to those of the start
     Matrix turn;      // W: angular velocity of the tip = W kappa'
     Vec velocity;     // W kappa'
-    Vec bias;         // its derivative at kappa'' = 0
+    Vec bias;         // derivative of velocity at kappa'' = 0
   };
+  /// Returns the rotation at s, with x2 = |kappa|^2.
   Turn turn(const T& s, const HelixFunctions<T>& f, const T& x2) const {
     Turn t;
     t.rotation = of_cross(T(1), f.S, f.A, x2);
@@ -194,11 +210,12 @@ class HelixElement {
     return t;
   }
 
-  /// sum_j x_j l_j, and the three numbers l_j . b + m_j . a.
+  /// Returns the vector sum_j x_j l_j.
   Vec along_l(const Vec& x) const {
     return {Number(-2) * (k_.y * x.y + k_.z * x.z), k_.y * x.x + k_.x * x.y,
             k_.z * x.x + k_.x * x.z};
   }
+  /// Returns the three numbers l_j . b + m_j . a.
   Vec back(const Vec& b, const Vec& a) const {
     return {k_.y * b.y + k_.z * b.z, k_.x * b.y - Number(2) * k_.y * b.x - a.z,
             k_.x * b.z - Number(2) * k_.z * b.x + a.y};

@@ -17,7 +17,7 @@ namespace tress::models {
 /// between them.
 template <class T>
 struct HelixKind {
-  using Real = T;
+ private:
   using Vec = Vec3<T>;
   using Matrix = Matrix3<T>;
   using Material = ReducedMaterial<T>;
@@ -25,23 +25,34 @@ struct HelixKind {
   using Wrench = WrenchOf<T>;
   using Hanging = ArticulatedInertia<T>;
 
+ public:
+  using Real = T;  // scalar: a number, or a pack of SIMD lanes
+
+  /// Geometry and motion of an element that the sweeps share.
   struct Kept {
-    Vec v, omega, a, alpha;        // of its start
-    Vec position;                  // of its tip
+    Vec v, omega, a, alpha;        // motion of its start
+    Vec position;                  // position of its tip
     Matrix slope, turn, rotation;  // dP/dkappa, W, E at the tip
   };
 
+  /// Stiffness of the first element over that of others.
   static constexpr double first_stiffness = 1;
+  /// Shares of an element's rotor that turn with the root and with the last tip.
   static constexpr double rotors_of_root = 0.5, rotors_of_last = 0.5;
+  /// Whether elements are straight, and whether eliminate() may lose digits.
   static constexpr bool straight = false, cancels = true;
+  /// Returns unknowns in units of `length`, over those in m: `length`.
   static double unit(double length) { return length; }
+  /// Returns the stiffness of an unknown over the bending stiffness.
   static double moment(double length) { return length; }
-  /// `shape`: natural or initial.
+  /// Returns the unknowns of element i. `shape`: natural or initial.
   static tress::Vec at_rest(const Strand& strand, std::size_t i,
                             tress::Vec Segment::*shape) {
     return strand.segments[i].*shape;
   }
 
+  /// Replaces the motion of the start by that of the tip, and fills e. Reads
+  /// `acceleration` only if accelerated.
   template <bool accelerated>
   static void move(const Material& m, const Vec& q, const Vec& rate,
                    const Vec& acceleration, Motion& at, Kept& e) {
@@ -70,17 +81,19 @@ struct HelixKind {
     at.omega = e.rotation.back(at.omega + turn.velocity);
   }
 
-  /// Half a rotor turns with the last tip.
+  /// Returns the wrench on the last tip, with which half a rotor turns.
   static Wrench last_wrench(const Material& m, const Motion& tip) {
     return {{}, rotor_moment(T(0.5) * m.rotor, tip.omega, tip.alpha)};
   }
+  /// Returns the inertia on the last tip, with which half a rotor turns.
   static Hanging last(const Material& m, const T& acc) {
     Hanging end{};
     end.aa.xx += acc * (T(0.5) * m.rotor);
     return end;
   }
 
-  using Sums = HelixSums<T>;
+  using Sums = HelixSums<T>;  // sums over the points of an element
+  /// Computes the sums over the points. Reads `acceleration` only if accelerated.
   template <bool accelerated, class Kernel>
   static void add_up(const Kernel& kernel, const Material& m, const Vec& q,
                      const Vec& rate, const Vec& acceleration, const Kept& e,
@@ -101,8 +114,10 @@ struct HelixKind {
     }
   }
 
-  // One code with and without loads: the same bits for strands that have none. The wrench
-  // is that of inertia less loads.
+  /// Moves the hanging wrench from the tip to the start and adds that of the element,
+  /// inertia less loads. `unknown` receives the right side of the unknowns, `of_effects`
+  /// is null without loads. One code with and without loads: the same bits for strands
+  /// that have none.
   static void bear(const Vec& q, const Vec& rate, const Sums& sums,
                    const LoadSums<T>* of_effects, const Kept& e, Wrench& wrench,
                    Vec& unknown) {
@@ -121,15 +136,17 @@ struct HelixKind {
     of_effects->add_to(wrench.moment, Vec{} - of_effects->moment);
     of_effects->add_to(unknown, of_effects->unknown);
   }
+  /// Returns `unknown`, which bear() has completed.
   static const Vec& felt(const Kept& /*e*/, const Wrench& /*wrench*/,
                          const Vec& unknown) {
     return unknown;
   }
-  /// The rotor at its start.
+  /// Adds the moment of the rotor at the start.
   static void pass_wrench(const Material& m, const Kept& e, Wrench& wrench) {
     wrench.moment = wrench.moment + rotor_moment(m.rotor, e.omega, e.alpha);
   }
 
+  /// Moves the hanging inertia from the tip to the start and adds that of the element.
   static void carry(const Material& /*m*/, const ReducedInertia<T>& weights, const Vec& q,
                     const Vec& rate, const Sums& sums, const Hanging& hanging,
                     const LoadSums<T>* of_effects, const Kept& e,
@@ -178,14 +195,20 @@ struct HelixKind {
     of_effects->add_to(to.own, of_effects->inner);
   }
 
+  /// Moves a wrench from the tip to the start and subtracts from b what the unknowns
+  /// feel.
   static void lift(const Kept& e, Wrench& wrench, Vec& b) {
     const Vec force = e.rotation * wrench.force, moment = e.rotation * wrench.moment;
     b = b - e.slope.back(force) - e.turn.back(moment);
     wrench = {force, moment + cross(e.position, force)};
   }
+  /// Does nothing: the frame of the start is that of the tip before.
   static void set_back(const Kept& /*e*/, Wrench& /*wrench*/) {}
 
+  /// Nothing: the Element of eliminate() stores all factors.
   struct Joint {};
+  /// Returns the articulated inertia without the unknowns, to whose diagonal in S it adds
+  /// `tangent`. Stores the factors in e.
   template <class Element>
   static Hanging eliminate(const Vec& tangent, bool twist, UneliminatedInertia<T>& from,
                            Element& e, Joint& /*joint*/) {
@@ -201,7 +224,8 @@ struct HelixKind {
             from.sum.aa - upper(by_moment, z_a.transposed()),
             from.sum.la - by_force * z_a};
   }
-  /// `b`: right side of the unknowns.
+  /// Eliminates the unknowns from the wrench on the start. `b`: right side of the
+  /// unknowns.
   template <class Element>
   static void reduce(const Vec& b, bool /*twist*/, const Joint& /*joint*/, Element& e,
                      Wrench& wrench) {
@@ -209,6 +233,8 @@ struct HelixKind {
     wrench.force = wrench.force + e.of_force.back(e.unknown);
     wrench.moment = wrench.moment + e.of_moment.back(e.unknown);
   }
+  /// Returns the unknowns. Replaces the changes of linear and angular acceleration, l and
+  /// a, of the start by those of the tip.
   template <class Element>
   static Vec follow(const Element& e, bool /*twist*/, const Joint& /*joint*/, Vec& l,
                     Vec& a) {
@@ -218,21 +244,24 @@ struct HelixKind {
     return own;
   }
 
-  /// The rotor at its start.
+  /// Adds the inertia of the rotor at the start.
   static void pass(const Material& m, const T& acc, const Kept& /*e*/, Hanging& sum) {
     sum.aa.xx += acc * m.rotor;
   }
 
-  /// Kinematics alone.
+  /// Kinematics alone, seen from the start.
   class Shape {
    public:
+    /// Prepares the functions of the element.
     Shape(const Vec& q, const Vec& rate, const T& length)
         : element_(q, rate), functions_(q, length), rate_(rate), length_(length) {}
 
+    /// Returns position and velocity of the point at arc length `arc`.
     SeenPoint<T> at(const T& arc) const {
       const HelixFunctions<T> f = functions_.at(arc);
       return {element_.position(arc, f), element_.slope(f) * rate_};
     }
+    /// Returns position, velocity and turn of the tip.
     [[gnu::always_inline]] SeenTip<T> tip() const {
       const HelixFunctions<T> f = functions_.at(length_);
       const auto turn = element_.turn(length_, f, functions_.x2());
@@ -247,35 +276,42 @@ struct HelixKind {
     T length_;
   };
 
-  /// The frame of its axes, from that of the tip before, and on to its tip's.
+  /// Does nothing: the frame of the start is that of the tip before.
   static void enter(const Kept& /*e*/, FrameOf<T>& /*frame*/) {}
+  /// Replaces the frame of the start by that of the tip.
   static void go_on(const Kept& e, FrameOf<T>& frame) {
     frame = frame *
             FrameOf<T>{e.rotation.column(0), e.rotation.column(1), e.rotation.column(2)};
   }
 
-  /// Points on which effects act, in its axes.
+  /// Points on which effects act, in the element's axes.
   class Points {
    public:
+    /// Takes an element whose state e must outlive the points.
     Points(const Kept& e, const Vec& q, const Vec& rate, const T& length)
         : e_(e), element_(q, rate), functions_(q, length), rate_(rate) {}
 
+    /// Returns the position of the point at arc length `arc`.
     Vec position(const T& arc) const {
       return element_.position(arc, functions_.at(arc));
     }
+    /// Returns the velocity of the point at arc length `arc`, which is at `position`.
     Vec velocity(const T& arc, const Vec& position) const {
       return e_.v + cross(e_.omega, position) +
              element_.slope(functions_.at(arc)) * rate_;
     }
+    /// Returns the tangent at arc length `arc`.
     Vec tangent(const T& arc) const {
       const HelixFunctions<T> f = functions_.at(arc);
       return Vec{T(1), T(0), T(0)} + f.S * element_.u() + f.A * element_.z();
     }
+    /// Adds a force on a point.
     void add_force(const T& arc, const Vec& position, const Vec& force,
                    LoadSums<T>& sums) const {
       sums.add_force(position, force);
       sums.add_force_of_unknowns(element_.slope(functions_.at(arc)), force);
     }
+    /// Adds the derivatives B of the load on a point (PointLoad).
     void add_block(const T& arc, const Vec& position, const Symmetric3<T>& block,
                    LoadSums<T>& sums) const {
       sums.add_block(position, block);

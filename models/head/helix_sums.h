@@ -8,11 +8,14 @@ namespace tress::models {
 /// forces times functions.
 template <class T>
 struct HelixSums {
-  T one{}, s{}, A{}, B{}, A1{}, B1{};
-  T ss{}, sA{}, sB{}, sA1{}, sB1{};
+  T one{}, s{}, A{}, B{}, A1{}, B1{};  // sums of w times one function
+  T ss{}, sA{}, sB{}, sA1{}, sB1{};    // sums of w s times one function
+  /// Sums of w times two functions.
   T AA{}, AB{}, BB{}, AA1{}, AB1{}, BA1{}, BB1{}, A1A1{}, A1B1{}, B1B1{};
+  /// Sums of forces times one function.
   Vec3<T> force, force_s, force_A, force_B, force_A1, force_B1;
 
+  /// Adds a point of weight w at arc length `arc`, where the functions are f.
   void add(const T& w, const T& arc, const HelixFunctions<T>& f) {
     const T with_s = w * arc, with_a = w * f.A, with_b = w * f.B, with_a1 = w * f.A1,
             with_b1 = w * f.B1;
@@ -38,6 +41,7 @@ struct HelixSums {
     A1B1 += with_a1 * f.B1;
     B1B1 += with_b1 * f.B1;
   }
+  /// Adds the force f_w at a point.
   void add_force(const Vec3<T>& f_w, const T& arc, const HelixFunctions<T>& f) {
     force = force + f_w;
     force_s = force_s + arc * f_w;
@@ -51,14 +55,15 @@ struct HelixSums {
 /// Sums of forces times functions.
 template <class T>
 struct HelixForces {
-  Vec3<T> s, A, B, A1, B1;
+  Vec3<T> s, A, B, A1, B1;  // sums of forces times one function
 };
 /// Moment of the forces about the start, sum P x f, and their work on the unknowns, sum
 /// d_j . f with d_j = dP/dkappa_j.
 template <class T>
 struct HelixWork {
-  Vec3<T> moment, unknown;
+  Vec3<T> moment, unknown;  // sum P x f, and sum d_j . f for j = 0 to 2
 
+  /// Computes both from the element's vectors and the sums f.
   HelixWork(const HelixElement<T>& element, const HelixForces<T>& f) {
     using Number = typename HelixElement<T>::Number;
     const Vec3<Number> e0{Number(1), Number(0), Number(0)};
@@ -79,6 +84,7 @@ struct HelixMoments {
   Matrix3<T> spin;       // rows j: sum w P x d_j
   Symmetric3<T> inner;   // sum w d_i . d_j
 
+  /// Computes the moments from the element's vectors, kappa = k and the sums m.
   HelixMoments(const HelixElement<T>& element, const Vec3<T>& k, const HelixSums<T>& m) {
     using Vec = Vec3<T>;
     const Vec &u = element.u(), &z = element.z();

@@ -17,7 +17,7 @@ namespace tress::models {
 template <LaneModel Model>
 class ModelLanes final : public LaneKernel<typename Model::Real::Scalar> {
  public:
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using T = typename Model::Real;
   /// Number of a lane.
   using N = typename T::Scalar;

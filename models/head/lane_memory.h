@@ -13,7 +13,7 @@ namespace tress::models {
 template <LaneModel Model>
 class LaneMemory final : public StrandMemory {
  public:
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using T = typename Model::Real;
   /// Data of a strand that steps do not change.
   using Strand = typename Model::Strand;

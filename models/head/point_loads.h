@@ -10,7 +10,7 @@ namespace tress::models {
 template <class T>
 struct PointLoad {
   Vec3<T> force;        // load f
-  Symmetric3<T> block;  // derivatives B
+  Symmetric3<T> block;  // matrix B
 };
 
 /// Load on a point with separate derivatives of any symmetry: -df/dx at constant
@@ -18,12 +18,12 @@ struct PointLoad {
 template <class T>
 struct ExactLoad {
   Vec3<T> force;          // load f
-  Matrix3<T> by_x, by_u;  // derivatives by place and by velocity
+  Matrix3<T> by_x, by_u;  // -df/dx and -df/du
 };
-/// Load at a point p of an element; `some`: 1 in lanes with a load, 0 in others.
+/// Load on a point of an element, in some lanes.
 template <class T, class Load>
 struct LoadedPoint {
-  Vec3<T> p;  // from the start, in the element's axes
+  Vec3<T> p;  // position from the start, in the element's axes
   Load load;  // load on the point
   T some;     // 1 in lanes with a load, 0 in others
 };
@@ -31,7 +31,8 @@ struct LoadedPoint {
 template <class T>
 using ExactPoint = LoadedPoint<T, ExactLoad<T>>;
 
-using tress::where_less;  // not hidden by this one
+using tress::where_less;  // of numbers, not hidden by those of matrices
+/// Returns `yes` where x < y, else `no`, lane by lane.
 template <class T>
 Symmetric3<T> where_less(const T& x, const T& y, const Symmetric3<T>& yes,
                          const Symmetric3<T>& no) {
@@ -64,21 +65,23 @@ struct LoadSums {
   Matrix3<T> la;                   // block of translations and rotations
   Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
 
-  /// Add the load on a point that the unknowns do not move.
+  /// Adds the force f on a point at p, without the terms of the unknowns.
   void add_force(const Vec3<T>& p, const Vec3<T>& f) {
     force = force + f;
     moment = moment + cross(p, f);
   }
+  /// Adds the matrix B of a point at p, without the terms of the unknowns.
   void add_block(const Vec3<T>& p, const Symmetric3<T>& block) {
     const Matrix3<T> turned = times_cross(full(block), p);
     ll = ll + block;
     la = la - turned;
     aa = aa - upper(cross_times(p, turned));
   }
-  /// Add the remaining terms of a point that the unknowns move by d.
+  /// Adds the terms of the unknowns, which move the point by d, to add_force().
   void add_force_of_unknowns(const Matrix3<T>& d, const Vec3<T>& f) {
     unknown = unknown + d.back(f);
   }
+  /// Adds the terms of the unknowns, which move the point by d, to add_block().
   void add_block_of_unknowns(const Vec3<T>& p, const Matrix3<T>& d,
                              const Symmetric3<T>& block) {
     const Matrix3<T> own = block * d;
@@ -86,7 +89,8 @@ struct LoadSums {
     of_moment = of_moment + cross_times(p, own).transposed();
     inner = inner + upper(d.transposed(), own.transposed());
   }
-  /// `to` + `more` where there is a load; elsewhere not even the sign of a zero changes.
+  /// Adds `more` to `to` in lanes with a load; elsewhere not even the sign of a zero
+  /// changes.
   template <class M>
   void add_to(M& to, const M& more) const {
     to = where_less(T(0), some, to + more, to);

@@ -10,13 +10,15 @@ namespace tress::models {
 /// rotors at their ends. Kind: see models/head/reduced_kernel.h.
 template <class Kind>
 class ReducedEnergies {
- public:
   using T = typename Kind::Real;
   using Vec = Vec3<T>;
 
+ public:
+  /// Uses the points of a kernel, which must outlive it.
   explicit ReducedEnergies(const ReducedKernel<Kind>& kernel) : kernel_(kernel) {}
 
-  /// `at` and `frame`: of the root; `rest(i)`: of an element. O(elements points).
+  /// Returns the energies at (q, v). `at` and `frame`: position and frame of the root;
+  /// `rest(i)`: unknowns of element i at rest. O(elements points).
   template <class Rest>
   LaneEnergies<T> operator()(const ReducedMaterial<T>& m, const ReducedMotion<T>& root,
                              Vec at, FrameOf<T> frame, Rest rest, const Vec* q,

@@ -77,11 +77,10 @@ namespace tress::models {
 /// Rounding: of I - H H_kk^-1 H^T the upper triangle is formed without refinement.
 /// Results differ from ReducedSystem's as by a relative change of the state of 1e-12, of
 /// 3e-11 for chains (tests/models/head/test_reduced_head.cpp). Chains with soft joints
-/// would lose all digits in that difference (ChainKind::Joint). Cost: O(elements), of
+/// would lose all digits in that difference (ChainKind::eliminate). Cost: O(elements), of
 /// helices O(elements points).
 template <class Kind>
 class ReducedKernel {
- public:
   using T = typename Kind::Real;
   using Vec = Vec3<T>;
   using Matrix = Matrix3<T>;
@@ -90,16 +89,18 @@ class ReducedKernel {
   using Wrench = WrenchOf<T>;
   using Hanging = ArticulatedInertia<T>;
   using Inertia = ReducedInertia<T>;
-  using Uneliminated = UneliminatedInertia<T>;
+
+ public:
+  using Uneliminated = UneliminatedInertia<T>;  // inertia that Kind::carry() fills
 
   /// State of an element between sweeps.
   struct Scratch {
-    typename Kind::Kept kept;
+    typename Kind::Kept kept;    // state that the Kind stores
     Symmetric3<T> pivot;         // H_kk^-1
     Matrix of_force, of_moment;  // H_k(translation), H_k(rotation)
     Vec unknown;                 // its unknowns, were the start to stay
-    typename Kind::Joint joint;
-    Vec q;  // where the step is linearised
+    typename Kind::Joint joint;  // factors that the Kind stores
+    Vec q;                       // its unknowns where the step is linearised
   };
 
   /// `points`: Gauss-Legendre points of an element. `twist` false: the strand bends only,
@@ -113,17 +114,23 @@ class ReducedKernel {
       ++i;
     }
   }
+  /// Returns the number of elements of a strand.
   int elements() const { return elements_; }
+  /// Returns the number of quadrature points of an element.
   int points() const { return points_; }
+  /// Returns whether elements twist; else the first component of q is held.
   bool twist() const { return twist_; }
-  double at(int k) const { return at_[static_cast<std::size_t>(k)]; }  // of the length 1
+  /// Returns the place of point k on an element of length 1.
+  double at(int k) const { return at_[static_cast<std::size_t>(k)]; }
+  /// Returns the weight of point k of an element of length 1.
   double weight(int k) const { return weight_[static_cast<std::size_t>(k)]; }
-  /// Returns the places of the next points, one per lane of P; points beyond the last
-  /// have no weight.
+  /// Returns the places of `lanes` points from k on, one per lane of P, or of one point
+  /// in all lanes. Points beyond the last have no weight.
   template <class P, int lanes>
   P at(int k) const {
     return of_points<P, lanes>(at_, k);
   }
+  /// Returns the weights of the points of at().
   template <class P, int lanes>
   P weight(int k) const {
     return of_points<P, lanes>(weight_, k);
@@ -176,8 +183,9 @@ class ReducedKernel {
 
   /// Elastic and viscous moments of an element, and the diagonal that they add to S.
   struct Bending {
-    Vec moment, tangent;
+    Vec moment, tangent;  // moment on the unknowns, and diagonal in S
   };
+  /// Returns the elastic and viscous moments of element i.
   static Bending bending(const Material& m, Weights w, int i, const Vec& q,
                          const Vec& rest, const Vec& v) {
     Vec stiffness = m.stiffness;

@@ -17,12 +17,13 @@ namespace tress::models {
 /// depends on the number of lanes: results are bit-identical.
 template <class Kind>
 class ReducedLoads {
- public:
   using T = typename Kind::Real;
   using Vec3T = Vec3<T>;
   using Kernel = ReducedKernel<Kind>;
   using Element = typename Kernel::Scratch;
 
+ public:
+  /// Allocates for the elements of a kernel, which must outlive it.
   ReducedLoads(const Kernel& kernel, const HeadUnits& units, Instructions instructions)
       : kernel_(kernel),
         instructions_(instructions),
@@ -40,12 +41,12 @@ class ReducedLoads {
   /// strand the other effects. `from`, `frame`: of the roots, seen from the head's
   /// position along the axes of the world, m.
   struct Block {
-    const ReducedMaterial<T>* material;
-    Vec3T from;
-    FrameOf<T> frame;
-    double t, h;  // end and length of the step, s
-    Vec head;     // its position, m
-    std::span<const NearBody> bodies;
+    const ReducedMaterial<T>* material;  // properties of the elements
+    Vec3T from;                          // positions of the roots
+    FrameOf<T> frame;                    // frames of the roots
+    double t, h;                         // end and length of the step, s
+    Vec head;                            // position of the head, m
+    std::span<const NearBody> bodies;    // bodies that may touch the block
     std::span<const std::vector<const Effect*>> others;  // (strands), or empty
   };
   /// Finds the loads of each element, or null, from the motion at the step's end.

@@ -30,10 +30,11 @@ void set_material(const Strand& strand, const LaneOptions& options,
                (units.density * units.length * units.length));
 }
 
-/// Unknowns of element i: at rest, and at the start, in a head's units.
+/// Unknowns of an element in units of the batch.
 struct ReducedStart {
-  Vec rest, initial;
+  Vec rest, initial;  // at rest, and at t = 0
 };
+/// Returns the unknowns of element i at rest and at t = 0.
 template <class Kind>
 ReducedStart start_of(const Strand& strand, const LaneOptions& options,
                       const HeadUnits& units, std::size_t i) {

@@ -28,21 +28,21 @@ struct ReducedMotion {
 /// Articulated inertia at a frame: force = ll a + la alpha, moment = la^T a + aa alpha.
 template <class T>
 struct ArticulatedInertia {
-  Symmetric3<T> ll, aa;
-  Matrix3<T> la;
+  Symmetric3<T> ll, aa;  // force by a, and moment by alpha
+  Matrix3<T> la;         // force by alpha
 };
 
 /// Factors of the acceleration in S: of a unit of length, and of a rotor.
 template <class T>
 struct ReducedInertia {
-  T of_length, acc;
+  T of_length, acc;  // w.acc density + w.vel drag, and w.acc
 };
 
 /// Inertia of an element with all that hangs on it, in its axes, before its unknowns are
 /// eliminated.
 template <class T>
 struct UneliminatedInertia {
-  ArticulatedInertia<T> sum;
+  ArticulatedInertia<T> sum;       // inertia at fixed unknowns
   Symmetric3<T> own;               // H_kk
   Matrix3<T> of_force, of_moment;  // H_k(translation), H_k(rotation), rows k
 };
@@ -50,16 +50,17 @@ struct UneliminatedInertia {
 /// Position and velocity of a point of an element, seen from the element's start.
 template <class T>
 struct SeenPoint {
-  Vec3<T> position, velocity;
+  Vec3<T> position, velocity;  // in the axes of the start
 };
 /// Position, velocity and turn of an element's tip, seen from the element's start.
 template <class T>
 struct SeenTip {
-  Vec3<T> position, velocity;
-  Matrix3<T> rotation;  // from the components of the tip to those of the start
-  Vec3<T> turning;      // angular velocity
+  Vec3<T> position, velocity;  // in the axes of the start
+  Matrix3<T> rotation;         // from the components of the tip to those of the start
+  Vec3<T> turning;             // angular velocity, in the axes of the start
 };
 
+/// Largest number of quadrature points of an element.
 inline constexpr int most_points_of_element = 16;
 
 /// Returns the moment I d/dt((omega . t) t) that turns the rotor of an element, t its

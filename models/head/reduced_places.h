@@ -11,16 +11,17 @@ namespace tress::models {
 /// models/head/reduced_kernel.h.
 template <class Kind>
 struct ReducedPlaces {
-  using T = typename Kind::Real;
+  using T = typename Kind::Real;  // scalar: a number, or a pack of SIMD lanes
 
-  RootPose pose;          // of the head
-  Vec3<T> from;           // of the roots in the head, from its position
-  FrameOf<T> frame;       // of the roots in the head
-  ReducedMotion<T> root;  // their motion
-  T length;               // of an element
-  std::size_t elements;
-  const Vec3<T>*q, *rate;  // (elements)
-  double unit, speed;      // of length and velocity, m, m/s
+  RootPose pose;          // pose and motion of the head
+  Vec3<T> from;           // positions of the roots in the head
+  FrameOf<T> frame;       // frames of the roots in the head
+  ReducedMotion<T> root;  // motion of the roots
+  T length;               // length of an element
+  std::size_t elements;   // number of elements
+  const Vec3<T>* q;       // unknowns (elements)
+  const Vec3<T>* rate;    // rates of the unknowns (elements)
+  double unit, speed;     // units of length and velocity, m and m/s
 
   /// Root and tips of elements of the first `strands` lanes (m), strand after strand, and
   /// their velocities (m/s) unless `v` is empty. Compiled as ReducedLoads: what effects

@@ -43,7 +43,7 @@ template <class Part>
 struct Strained {
   /// Number of strains, and of coordinates in x.
   static constexpr int strains = Part::strains, size = Part::coordinates;
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using T = std::remove_cvref_t<decltype(std::declval<Part>().stiffness[0])>;
 
   /// Evaluates strains, stresses and rates of the part.

@@ -20,7 +20,9 @@ namespace tress::models {
 std::unique_ptr<System> articulated_chain(const Strand& strand,
                                           const ReducedOptions& options, Effects effects);
 
+/// Returns the parameters that make_articulated_chain() reads.
 std::span<const Parameter> articulated_chain_parameters();
+/// Makes articulated_chain() with the options that `parameters` contain.
 std::unique_ptr<System> make_articulated_chain(const Strand& strand,
                                                const Parameters& parameters,
                                                Effects effects);

@@ -15,13 +15,14 @@ namespace tress::models {
 /// on these. O(1) per contact.
 template <class Kernel, int modes>
 class ContactTangent {
- public:
   using Shape = ExactShapeOf<Kernel, modes>;
-  static constexpr int dofs = Shape::dofs;
 
+ public:
+  /// Reads the motion of `kinematics`, which must outlive it.
   explicit ContactTangent(const Kinematics<Kernel, modes>& kinematics)
       : kinematics_(kinematics) {}
 
+  /// Returns the contribution of a contact to the Jacobian of weights w.
   TreeCoupling<Shape> of(const Coupling& contact, Weights w) const {
     TreeCoupling<Shape> all;
     for (std::size_t a = 0; a < all.ends.size(); ++a) {
@@ -34,7 +35,8 @@ class ContactTangent {
   using K = Kinematics<Kernel, modes>;
   using Frames = SegmentFrames<Shape>;
   using End = typename TreeCoupling<Shape>::End;
-  static constexpr int size = Space<modes>::size, rank = TreeCoupling<Shape>::rank;
+  static constexpr int dofs = Shape::dofs, size = Space<modes>::size,
+                       rank = TreeCoupling<Shape>::rank;
 
   std::size_t segment_of(std::size_t block) const {
     const auto& all = kinematics_.segments();
@@ -103,21 +105,23 @@ class ContactTangent {
 /// scalar is one.
 template <class Kernel, int modes>
 class TipForces {
- public:
   using S = Space<modes>;
   using K = Kinematics<Kernel, modes>;
   using Real = typename K::Real;
   using In = typename K::In;
   using Vec = typename K::Vec;
   using Frame = typename K::Frame;
-  static constexpr int dofs = K::dofs;
   using Wrenches = Eigen::Matrix<Real, S::size, 3>;
+  static constexpr int dofs = K::dofs;
 
-  /// At q, whose shape the kinematics has or takes.
+ public:
+  /// Takes the frames at t and q, and the shape at q from `kinematics`, which must
+  /// outlive it.
   TipForces(K& kinematics, double t, In q)
       : kinematics_(kinematics), frames_(kinematics.frames(t, q)) {}
 
-  /// The wrenches of unit forces on a point along the axes of the world, in its frame.
+  /// Returns the wrenches of unit forces on a point along the axes of the world as
+  /// columns, in the frame of the point.
   Wrenches units(int point) const {
     const Frame& f = frames_[static_cast<std::size_t>(point)];
     const Vec* const axes[3] = {&f.e0, &f.e1, &f.e2};
@@ -131,7 +135,7 @@ class TipForces {
     return all;
   }
 
-  /// b += J^T f of forces (3 numbers each, N) on ascending points of a chain.
+  /// Adds b += J^T f of forces (3 numbers each, N) on ascending points of a chain.
   void pull_back(std::span<const int> points, In forces, std::span<Real> b) const {
     // In the components of the tip, or start, that the sweep is at.
     Vec force, moment;

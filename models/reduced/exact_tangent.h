@@ -17,21 +17,22 @@ namespace tress::models {
 /// The Kernel provides the derivatives of shapes. O(1) per segment.
 template <class Kernel, int modes>
 class ExactTangent {
- public:
   using Shape = ExactShapeOf<Kernel, modes>;
-  static constexpr int dofs = Shape::dofs;
 
+ public:
   /// df/dx, df/dv and df/dtangent of the effects at the points, (9) row-major each; empty
   /// if no effect has derivatives.
   struct EffectBlocks {
-    In position, velocity, direction;
+    In position, velocity, direction;  // df/dx, df/dv and df/dtangent
   };
 
+  /// Reads kinematics and dynamics, which must outlive it.
   ExactTangent(const Kinematics<Kernel, modes>& kinematics,
                const InverseDynamics<Kernel, modes>& dynamics)
       : kinematics_(kinematics), dynamics_(dynamics) {}
 
-  /// Expects zeros in tip and in the zero blocks of transfer (see SegmentTangent).
+  /// Writes the derivatives of segment i for weights w. Expects zeros in tip and in the
+  /// zero blocks of transfer (see SegmentTangent).
   void segment(std::size_t i, Weights w, const EffectBlocks& effects,
                SegmentTangent<Shape>& tangent) const {
     const auto& segment = kinematics_.segments()[i];
@@ -58,6 +59,8 @@ class ExactTangent {
     }
   }
 
+  /// Writes the derivatives of a free root for weights w, at rates v and a of its
+  /// unknowns (6 each). Does nothing in the plane.
   void root(Weights w, In v, In a, RootTangent<Shape>& root) const {
     if constexpr (modes > 1) {
       const FreeRootFrame& free = kinematics_.free_root();
@@ -113,7 +116,7 @@ class ExactTangent {
   using Strain = typename Kernel::Strain;
   using Frames = SegmentFrames<Shape>;
   using S = Space<modes>;
-  static constexpr int t = S::translations, size = S::size;
+  static constexpr int dofs = Shape::dofs, t = S::translations, size = S::size;
 
   template <class Column>
   static void put(const Vec& translation, const Vec& rotation, Column&& column,

@@ -56,7 +56,9 @@ namespace tress::models {
 std::unique_ptr<System> force_transport(const Strand& strand,
                                         const ReducedOptions& options, Effects effects);
 
+/// Returns the parameters that make_force_transport() reads.
 std::span<const Parameter> force_transport_parameters();
+/// Makes force_transport() with the options that `parameters` contain.
 std::unique_ptr<System> make_force_transport(const Strand& strand,
                                              const Parameters& parameters,
                                              Effects effects);

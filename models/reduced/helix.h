@@ -21,45 +21,55 @@ namespace tress::models {
 /// no special case.
 template <class T>
 class HelixOf {
- public:
-  using Real = T;
   using Vec = Vec3<T>;
   using Frame = FrameOf<T>;
-  using Strain = Vec;
-  static constexpr int functions = 1;  // of arc length, for each component of a strain
+
+ public:
+  using Real = T;      // scalar: a number, or a pack of SIMD lanes
+  using Strain = Vec;  // twist and curvatures of an element
+  /// Number of functions of arc length for each component of a strain.
+  static constexpr int functions = 1;
 
   /// The functions at one arc length, or at a pack of them.
   template <class P>
   struct At {
-    P s;
-    HelixFunctions<P> f;
+    P s;                  // arc length
+    HelixFunctions<P> f;  // functions at the arc length
   };
 
+  /// W y along the element; P for y = e0.
   struct Zeroth {
-    Vec s, A, B;
+    Vec s, A, B;  // constant vector of each function
+    /// Returns the vector at place p.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       return weighted(p.s, s) + weighted(p.f.A, A) + weighted(p.f.B, B);
     }
   };
+  /// First derivative of W y by kappa, along one direction.
   struct First {
-    Vec A, A1, B, B1;
+    Vec A, A1, B, B1;  // constant vector of each function
+    /// Returns the vector at place p.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A, A) + weighted(p.f.A1, A1) + weighted(p.f.B, B) +
              weighted(p.f.B1, B1);
     }
   };
+  /// Second derivative of W y by kappa, along two directions.
   struct Second {
-    Vec A1, A2, B, B1, B2;
+    Vec A1, A2, B, B1, B2;  // constant vector of each function
+    /// Returns the vector at place p.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.B, B) +
              weighted(p.f.B1, B1) + weighted(p.f.B2, B2);
     }
   };
+  /// Third derivative of W y by kappa, along three directions.
   struct Third {
-    Vec A1, A2, A3, B1, B2, B3;
+    Vec A1, A2, A3, B1, B2, B3;  // constant vector of each function
+    /// Returns the vector at place p.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.A3, A3) +
@@ -67,8 +77,10 @@ class HelixOf {
     }
   };
 
+  /// P'', the second derivative of P by time, along the element.
   struct Acceleration {
-    Vec A, A1, A2, B, B1, B2;
+    Vec A, A1, A2, B, B1, B2;  // constant vector of each function
+    /// Returns the vector at place p.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A, A) + weighted(p.f.A1, A1) + weighted(p.f.A2, A2) +
@@ -78,7 +90,8 @@ class HelixOf {
 
   /// The derivative of Acceleration with respect to kappa.
   struct AccelerationSlope {
-    Vec A1, A2, A3, B, B1, B2, B3;
+    Vec A1, A2, A3, B, B1, B2, B3;  // constant vector of each function
+    /// Returns the vector at place p.
     template <class P>
     Vec3<P> at(const At<P>& p) const {
       return weighted(p.f.A1, A1) + weighted(p.f.A2, A2) + weighted(p.f.A3, A3) +
@@ -88,32 +101,42 @@ class HelixOf {
   };
 
   HelixOf() = default;
+  /// Takes the Darboux vector and the length, which no place may exceed.
   HelixOf(const Vec& kappa, const T& length)
       : kappa_(kappa), length_(length), x2_(dot(kappa, kappa)), along_(kappa, tangent) {}
 
+  /// Returns the place at arc length s, a number or a pack.
   template <class P>
   At<P> point(const P& s) const {
     return {s, helix_functions(s, x2_, length_)};
   }
+  /// Returns the place of the tip.
   At<T> tip() const { return point(length_); }
 
+  /// Returns W y along the element.
   Zeroth W(const Vec& y) const {
     const Vec u = cross(kappa_, y);
     return {y, u, cross(kappa_, u)};
   }
+  /// Returns the derivative of W y along x.
   First dW(const Vec& x, const Vec& y) const { return first_of(Terms(kappa_, y), x); }
+  /// Returns the second derivative of W y along x1 and x2.
   Second d2W(const Vec& x1, const Vec& x2, const Vec& y) const {
     return second_of(Terms(kappa_, y), x1, x2);
   }
 
   // Positions of the element's points.
+  /// Returns P along the element.
   Zeroth position() const { return W(tangent); }
+  /// Returns the derivative of P along x.
   First first(const Vec& x) const { return first_of(along_, x); }
+  /// Returns the second derivative of P along x1 and x2.
   Second second(const Vec& x1, const Vec& x2) const { return second_of(along_, x1, x2); }
+  /// Returns the third derivative of P along x1, x2 and x3.
   Third third(const Vec& x1, const Vec& x2, const Vec& x3) const {
     return third_of(along_, x1, x2, x3);
   }
-  /// P'' for kappa' = rate and kappa'' = second.
+  /// Returns P'' for kappa' = rate and kappa'' = second.
   Acceleration acceleration(const Vec& rate, const Vec& second) const {
     const First f = first(second);
     const Second b = this->second(rate, rate);
@@ -127,26 +150,28 @@ class HelixOf {
     return {a.A1 + b.A1, a.A2 + b.A2, b.A3, a.B, a.B1 + b.B1, a.B2 + b.B2, b.B3};
   }
 
-  /// E(s) y.
+  /// Returns E y at place p.
   template <class P>
   Vec3<P> rotated(const At<P>& p, const Vec& y) const {
     const Vec u = cross(kappa_, y);
     return weighted(P(1), y) + weighted(p.f.S, u) + weighted(p.f.A, cross(kappa_, u));
   }
+  /// Returns the frame E at place p.
   Frame rotation(const At<T>& p) const {
     return {rotated(p, {1, 0, 0}), rotated(p, {0, 1, 0}), rotated(p, {0, 0, 1})};
   }
-  /// The transposes W^T y and (dW[x])^T y: K with the opposite sign of kappa.
+  /// Returns W^T y at place p: W with the opposite sign of kappa.
   Vec W_transposed(const At<T>& p, const Vec& y) const {
     const Vec u = cross(kappa_, y);
     return p.s * y - p.f.A * u + p.f.B * cross(kappa_, u);
   }
+  /// Returns (dW[x])^T y at place p.
   Vec dW_transposed(const At<T>& p, const Vec& x, const Vec& y) const {
     const First d = dW(x, y);
     return p.f.B * d.B + p.f.B1 * d.B1 - p.f.A * d.A - p.f.A1 * d.A1;
   }
 
-  static constexpr Vec3<double> tangent{1, 0, 0};
+  static constexpr Vec3<double> tangent{1, 0, 0};  // e0
 
  private:
   template <class P>
@@ -196,6 +221,7 @@ class HelixOf {
   Terms along_;  // terms of positions: y = e0
 };
 
+/// Helix in double precision.
 using Helix = HelixOf<double>;
 
 }  // namespace tress::models

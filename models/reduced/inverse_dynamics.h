@@ -14,7 +14,6 @@ namespace tress::models {
 /// acceleration of the root [Luh, Walker, Paul 1980]. O(N).
 template <class Kernel, int modes>
 class InverseDynamics {
- public:
   using K = Kinematics<Kernel, modes>;
   using Real = typename K::Real;
   using In = std::span<const Real>;
@@ -22,6 +21,9 @@ class InverseDynamics {
   using Wrench = WrenchOf<Real>;
   static constexpr int dofs = K::dofs;
 
+ public:
+  /// Takes the effects on the points. Uniform accelerations become Kinematics::fall(),
+  /// all others load the points. `kinematics` must outlive it.
   InverseDynamics(K& kinematics, Effects effects)
       : kinematics_(kinematics), effects_(std::move(effects)), needs_(needs(effects_)) {
     Vec uniform;
@@ -51,6 +53,7 @@ class InverseDynamics {
     at_tip_.resize(kinematics.segments().size());
   }
 
+  /// Writes the residual r, as System::residual(), and moves the kinematics to the state.
   void residual(double t, In q, In v, In a, Out r) {
     kinematics_.move(t, q, v, a);
     if (loaded()) {
@@ -75,14 +78,15 @@ class InverseDynamics {
     for (const Effect* effect : loading_) effect->add_load(t, p, load_);
     return load_;
   }
-  /// The vectors that place() fills, for callers that place the points themselves.
+  /// Arrays that place() fills, for callers that place the points themselves.
   struct Places {
-    tress::Out x, v, tangent;
+    tress::Out x, v, tangent;  // 3 numbers per point; empty where no effect reads them
   };
+  /// Returns the arrays that place() fills.
   Places places() { return {x_, v_, tangent_}; }
 
-  /// Computes the wanted quantities of the points on which effects act, at the motion
-  /// held by Kinematics.
+  /// Fills the `wanted` quantities of the points on which effects act, at the motion of
+  /// Kinematics.
   void place(Needs wanted) {
     if (wanted.position) x_.resize(mass_.size() * 3);
     if (wanted.velocity) v_.resize(mass_.size() * 3);
@@ -95,7 +99,7 @@ class InverseDynamics {
       }
     }
   }
-  /// Returns the points as placed.
+  /// Returns the `wanted` quantities of the points as placed.
   Points points(Needs wanted) const {
     const auto filled = [](const std::vector<double>& all, bool is) {
       return is ? tress::In(all) : tress::In{};
@@ -108,16 +112,16 @@ class InverseDynamics {
             .length = length_};
   }
 
-  /// blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.
+  /// Writes blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.
   void derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks, [](const Effect&) { return true; });
   }
-  /// Computes derivatives() of the effects without couplings.
+  /// Writes derivatives() of the effects that couple no points.
   void uncoupled_derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks,
                 [](const Effect& effect) { return !effect.needs().couplings; });
   }
-  /// blocks = df/dt, t the tangents, summed over all effects that depend on them.
+  /// Writes blocks (9 per point) = df/dt, t the tangents, summed over all effects.
   void direction_derivatives(double t, InOut blocks) const {
     std::ranges::fill(blocks, 0.0);
     const Points p = points(needs_);
@@ -125,20 +129,27 @@ class InverseDynamics {
       effect->add_direction_derivatives(t, p, 1, blocks);
     }
   }
-  /// Lists the couplings of the effects.
+  /// Replaces `all` by the couplings of the effects at the points as placed.
   void couplings(double t, std::vector<Coupling>& all) const {
     all.clear();
     const Points p = points(needs_);
     for (const auto& effect : effects_) effect->add_couplings(t, p, all);
   }
 
-  // From the last residual(): the inertial force at each point and the loads alone, in
-  // the components of the segment's start, and the wrench on each tip.
+  // From the last residual(), in the components of each segment's start.
+  /// Returns the loads on a block of points, N.
   const Vec3<Pack>& load(std::size_t block) const { return force_[block].load; }
+  /// Returns mass times acceleration less loads of a block of points, N.
   const Vec3<Pack>& force(std::size_t block) const { return force_[block].total; }
+  /// Returns the wrench that moves all beyond the tip of segment i, in components of the
+  /// tip; from the last residual().
   const Wrench& at_tip(std::size_t i) const { return at_tip_[i]; }
+  /// Returns the wrench that moves all segments, in components of the root; from the last
+  /// residual().
   const Wrench& at_root() const { return at_root_; }
+  /// Returns the quantities of points that any of the effects reads.
   const Needs& effect_needs() const { return needs_; }
+  /// Returns all effects on the strand.
   const Effects& effects() const { return effects_; }
 
  private:

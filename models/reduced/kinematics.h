@@ -20,52 +20,59 @@ namespace tress::models {
 /// The rule by which a kernel without closed forms integrates; std::monostate for others.
 template <class Kernel>
 struct RuleOf {
-  using Type = std::monostate;
+  using Type = std::monostate;  // no rule
 };
+/// The rule of a kernel that has one.
 template <class Kernel>
 requires requires { typename Kernel::Rule; }
 struct RuleOf<Kernel> {
-  using Type = typename Kernel::Rule;
+  using Type = typename Kernel::Rule;  // rule of the kernel
 };
 
 /// Positions and motion of all frames for unknowns q, v, a: one sweep from the root to
 /// the free ends. Quantities that depend on q only are kept and reused at the same q.
 template <class Kernel, int modes>
 class Kinematics {
- public:
-  using Real = typename Kernel::Real;
-  using Vec = Vec3<Real>;
-  using Frame = FrameOf<Real>;
-  using FrameMotion = FrameMotionOf<Real>;
   using Strain = typename Kernel::Strain;
-  using Segment = ReducedSegmentOf<Strain>;
-  using In = std::span<const Real>;
+  using FrameMotion = FrameMotionOf<typename Kernel::Real>;
   template <class T>
   using Point = typename Kernel::template At<T>;
+
+ public:
+  using Real = typename Kernel::Real;        // scalar: a number, or a pack of SIMD lanes
+  using Vec = Vec3<Real>;                    // vector of scalars
+  using Frame = FrameOf<Real>;               // frame of scalars
+  using In = std::span<const Real>;          // read-only array of scalars
+  using Segment = ReducedSegmentOf<Strain>;  // segment as prepared, with its strains
   static constexpr int dofs = modes * Kernel::functions;  // unknowns of a segment
 
+  /// Quantities at a block of points that depend on q only.
   struct BlockGeometry {
-    Point<Pack> at;
-    Vec3<Pack> position;
+    Point<Pack> at;                      // places on the segment
+    Vec3<Pack> position;                 // positions, seen from the segment's start
     std::array<Vec3<Pack>, dofs> slope;  // dP/dq_k
   };
+  /// Quantities of a segment that depend on q only.
   struct SegmentGeometry {
-    Kernel kernel;
-    Point<Real> tip{};
-    Vec position;  // of the tip
-    Frame rotation;
+    Kernel kernel;                      // shape of the segment
+    Point<Real> tip{};                  // place of the tip
+    Vec position;                       // position of the tip, seen from the start
+    Frame rotation;                     // frame of the tip in that of the start
     std::array<Vec, dofs> slope, turn;  // dP/dq_k and W e_k at the tip
   };
+  /// Motion of a segment.
   struct SegmentMotion {
-    FrameMotion tip;
-    Strain rate, acceleration;                                         // kappa', kappa''
-    decltype(Kernel().first(Strain())) moving;                         // P'
+    FrameMotion tip;                            // motion of the tip's frame
+    Strain rate, acceleration;                  // kappa', kappa''
+    decltype(Kernel().first(Strain())) moving;  // P'
     decltype(Kernel().acceleration(Strain(), Strain())) accelerating;  // P''
     Vec velocity;                                                      // P' at the tip
     Vec turning;                  // W kappa' at the tip
-    Vec tip_v, tip_a, tip_alpha;  // tip, in the components of the start
+    Vec tip_v, tip_a, tip_alpha;  // motion of the tip, in the components of the start
   };
 
+  /// Takes the parts of a ReducedStrand. `free_root`: none if the root moves as `root`;
+  /// `root_rotor`: inertia about the tangent at the root, kg m^2.
   Kinematics(const std::vector<ReducedSegment>& segments, std::vector<PointBlock> blocks,
              RootMotion root, const std::optional<FreeRootFrame>& free_root,
              const Real& root_rotor)
@@ -83,19 +90,28 @@ class Kinematics {
     }
   }
 
+  /// Returns the number of segments.
   int count() const { return static_cast<int>(segments_.size()); }
+  /// Returns the number of unknowns, a free root's included.
   int unknowns() const { return count() * dofs + (free_root_ ? 6 : 0); }
+  /// Returns the segments, parents before children.
   const std::vector<Segment>& segments() const { return segments_; }
+  /// Returns the blocks of quadrature points of all segments.
   const std::vector<PointBlock>& blocks() const { return blocks_; }
-  /// The unknowns of a segment at rest; those that it has not are 0.
+  /// Sets the unknowns of segment i at rest; other components are 0.
   void set_rest(std::size_t i, const Strain& rest) { segments_[i].rest = rest; }
+  /// Returns the geometry of segment i at the q of the last shape().
   const SegmentGeometry& geometry(std::size_t i) const { return geometry_[i]; }
+  /// Returns the geometry of block b at the q of the last shape().
   const BlockGeometry& block_geometry(std::size_t b) const { return block_geometry_[b]; }
+  /// Returns the motion of segment i in the last move().
   const SegmentMotion& motion(std::size_t i) const { return motion_[i]; }
+  /// Returns the motion of the frame at the start of segment i in the last move().
   const FrameMotion& start(std::size_t i) const {
     const Segment& segment = segments_[i];
     return segment.mounted ? mounted_[i] : parent_tip(segment);
   }
+  /// Returns the motion of the root in the last move().
   const FrameMotion& root() const { return root_; }
   /// Whether the strand has no branches.
   bool is_chain() const {
@@ -104,20 +120,27 @@ class Kinematics {
       return segment.parent == before++;
     });
   }
+  /// Returns true if the root moves freely.
   bool free() const { return free_root_.has_value(); }
+  /// Returns the free root, which must exist: see free().
   FreeRootFrame& free_root() { return *free_root_; }
+  /// Returns the free root, which must exist: see free().
   const FreeRootFrame& free_root() const { return *free_root_; }
-  const Real& root_rotor() const { return root_rotor_; }  // kg m^2
+  /// Returns the inertia of the rotor at the root, kg m^2.
+  const Real& root_rotor() const { return root_rotor_; }
+  /// Returns true if the root is clamped and the clamp moves.
   bool moving_root() const { return !free_root_ && !root_motion_.fixed(); }
 
+  /// Returns the first breakpoint of the clamp after t (s), or infinity.
   double next_breakpoint(double t) const { return root_motion_.next_breakpoint(t); }
 
-  // Sizes of arrays over points.
+  /// Returns the size of arrays over points, including those that only fill a block.
   std::size_t points() const { return first_point(blocks_.size()); }
+  /// Returns the index of a block's first point.
   static std::size_t first_point(std::size_t block) { return Pack::lanes * block; }
 
-  /// The unknowns of a segment as a strain, vectors of (twist, curvature 1, curvature 2);
-  /// components that are not unknowns are 0.
+  /// Returns the unknowns of segment i in x as a strain, vectors of (twist, curvature 1,
+  /// curvature 2); components that are not unknowns are 0.
   static Strain components(In x, std::size_t i) {
     const Real* p = &x[dofs * i];
     if constexpr (Kernel::functions == 2) {
@@ -126,6 +149,7 @@ class Kinematics {
       return of_function(p);
     }
   }
+  /// Returns the strain of a segment whose unknown k is 1 and all others 0.
   static Strain unit(int k) {
     const auto axis = [](int mode) {
       return Vec(Space<modes>::axis(Space<modes>::component(mode)));
@@ -166,8 +190,8 @@ class Kinematics {
 
   /// Position and motion of a tip; v and omega in the components of its frame.
   struct Tip {
-    Frame frame;
-    Vec x, v, omega;
+    Frame frame;      // frame of the tip
+    Vec x, v, omega;  // position in the world (m); velocity, angular velocity
   };
   /// The root and the tips of all segments, without what only move() needs; at rest:
   /// without v and omega. A function of its arguments alone, whatever was computed
@@ -243,6 +267,8 @@ class Kinematics {
     const Frame& f = start(i).frame;
     return x.x * Vec3<Pack>(f.e0) + x.y * Vec3<Pack>(f.e1) + x.z * Vec3<Pack>(f.e2);
   }
+  /// Returns the velocities of a block of points, in the components of the segment's
+  /// start.
   Vec3<Pack> velocity(std::size_t i, std::size_t block) const {
     const FrameMotion& from = start(i);
     const BlockGeometry& b = block_geometry_[block];

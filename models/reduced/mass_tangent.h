@@ -9,12 +9,12 @@ namespace tress::models {
 /// Frame operations shared by both kinds of tangents.
 template <class Shape>
 class SegmentFrames {
- public:
   using S = Space<Shape::wrench == 3 ? 1 : 3>;
   using Real = typename Shape::Real;
   using Vec = Vec3<Real>;
   using Frame = FrameOf<Real>;
 
+ public:
   /// Transforms a state of `states` 3-vectors to the mount's frame: columns of transfer
   /// and local, rows of local and lift.
   static void mount(const Frame& mount, SegmentTangent<Shape>& tangent) {
@@ -23,6 +23,7 @@ class SegmentFrames {
     mount_wrench(mount, tangent.local);
     mount_wrench(mount, tangent.lift);
   }
+  /// Makes the state columns of m act on a state of the parent's tip.
   template <class M>
   static void mount_states(const Frame& mount, M& m) {
     static_assert(S::size == 6);
@@ -32,6 +33,7 @@ class SegmentFrames {
       }
     }
   }
+  /// Turns the wrench rows of m into the components of the parent's tip.
   template <class M>
   static void mount_wrench(const Frame& mount, M& m) {
     for (int k = 0; k < Shape::wrench; k += 3) {
@@ -41,7 +43,7 @@ class SegmentFrames {
     }
   }
 
-  /// Column of a frame's (translation, rotation), in the space's directions.
+  /// Writes (translation, rotation) to a column, in the directions of Space.
   template <class Column>
   static void put(const Vec& translation, const Vec& rotation, Column&& column) {
     const Real from[2][3] = {{translation.x, translation.y, translation.z},
@@ -51,12 +53,13 @@ class SegmentFrames {
       column[S::translations + i] = from[1][S::rotation[i]];
     }
   }
-  /// f.back(axis(component)).
+  /// Returns f.back(axis(component)).
   static Vec seen(const Frame& f, int component) {
     if (component == 0) return {f.e0.x, f.e1.x, f.e2.x};
     if (component == 1) return {f.e0.y, f.e1.y, f.e2.y};
     return {f.e0.z, f.e1.z, f.e2.z};
   }
+  /// Returns the unit vector of a component, 0 to 2.
   static Vec axis(int component) { return S::axis(component); }
 
  private:
@@ -68,14 +71,14 @@ class SegmentFrames {
   }
 };
 
-/// Elastic stiffness and friction of the unknowns, by component.
+/// Returns w.pos K + w.vel C of the unknowns of a segment, by component.
 template <class Strain>
 Strain restoring(const ReducedSegmentOf<Strain>& segment, Weights w) {
   return w.pos * segment.stiffness + w.vel * segment.friction;
 }
 
-/// local += sum J^T B J over the points of a segment, with B the symmetric matrices of
-/// the effects.
+/// Adds local += sum J^T B J over the points of a segment, with B the symmetric matrices
+/// of the effects.
 template <class Kernel, int modes>
 void add_effect_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i,
                         In matrices,
@@ -249,7 +252,8 @@ void mass_tangent(const Kinematics<Kernel, modes>& kinematics, std::size_t i, We
   copy(part(transfer).transpose(), tangent.lift);
 }
 
-/// Computes the mass tangent of a free root.
+/// Writes mass_tangent() of a free root, which has a rotor only. Does nothing in the
+/// plane.
 template <class Kernel, int modes>
 void mass_root_tangent(const Kinematics<Kernel, modes>& kinematics, Weights w,
                        RootTangent<MassShapeOf<Kernel, modes>>& root) {

@@ -24,14 +24,15 @@ struct PointMatrix {
     }
   }
 
+  /// Returns the products with the vector x of each point.
   Vec3<Pack> operator*(const Vec3<Pack>& x) const {
     return x.x * column[0] + x.y * column[1] + x.z * column[2];
   }
 
-  Vec3<Pack> column[3];
+  Vec3<Pack> column[3];  // columns of the four matrices
 };
 
-/// Returns the first entries of four matrices.
+/// Returns entry (0, 0) of four matrices (9 numbers each).
 inline Pack first_entries(const double* matrices) { return gather3(matrices, 9).x; }
 
 /// Whether a matrix is a number times the unit matrix, as of drag. False for a matrix

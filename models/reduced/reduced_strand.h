@@ -16,7 +16,7 @@ namespace tress::models {
 
 /// Four quadrature points that carry mass of a segment.
 struct PointBlock {
-  Pack s, mass, length;
+  Pack s, mass, length;  // arc length (m), mass (kg) and length (m) of each point
 };
 
 /// One segment of a reduced-coordinate strand. Strains are over (twist, curvature 1,
@@ -25,6 +25,7 @@ struct PointBlock {
 template <class Strain = LinearStrain>
 struct ReducedSegmentOf {
   ReducedSegmentOf() = default;
+  /// Converts a segment with another kind of strain; Vec takes the mean.
   template <class Other>
   requires(!std::same_as<Other, Strain>) explicit ReducedSegmentOf(
       const ReducedSegmentOf<Other>& s)
@@ -42,29 +43,32 @@ struct ReducedSegmentOf {
         first_block(s.first_block),
         last_block(s.last_block) {}
 
-  int parent = -1;
-  double length = 0;
+  int parent = -1;       // index of an earlier segment; -1: the root
+  double length = 0;     // arc length, m
   bool mounted = false;  // mount is not the identity
-  Frame mount;
-  double rotor = 0;  // rotational inertia about the tangent at the tip, kg m^2
-  Strain held;       // fixed values of components that are not unknowns
-  Strain rest;       // unknowns at rest
-  Strain initial;    // unknowns at t = 0
-  Strain stiffness;  // moment per unknown
-  Strain friction;   // moment per rate of unknown
-  Strain inertia;    // of the section's rotation, beyond the rotors; of linear strains
-  std::size_t first_block = 0, last_block = 0;
+  Frame mount;           // frame of the start in that of the parent's tip
+  double rotor = 0;      // rotational inertia about the tangent at the tip, kg m^2
+  Strain held;           // fixed values of components that are not unknowns
+  Strain rest;           // unknowns at rest
+  Strain initial;        // unknowns at t = 0
+  Strain stiffness;      // generalised force per unknown
+  Strain friction;       // generalised force per rate of an unknown
+  Strain inertia;  // of the section's rotation, beyond the rotors; of linear strains
+  std::size_t first_block = 0, last_block = 0;  // its blocks, the last excluded
 };
+/// Segment of linear strains.
 using ReducedSegment = ReducedSegmentOf<>;
 
-/// Terms of the Jacobian. elastic_local: the elastic Jacobian, solved by our
+/// Terms of the Jacobian. exact: all. elastic: mass, friction, elasticity, and effects
+/// made semidefinite. elastic_local: the elastic Jacobian, solved by our
 /// reconstruction of a recursion that is "less implicit" than the composite matrix.
 enum class ReducedJacobian { exact, elastic, elastic_local };
 
+/// Options of reduced models.
 struct ReducedOptions {
   int dofs = 3;  // 3: bend_twist, 2: bend, 1: bend_planar
-  ReducedJacobian jacobian = ReducedJacobian::exact;
-  TreeMethod method = TreeMethod::recursive;
+  ReducedJacobian jacobian = ReducedJacobian::exact;  // terms of the Jacobian
+  TreeMethod method = TreeMethod::recursive;          // solver of the linear equations
   /// The section's rotational inertia about the tangent, rho (I1 + I2) per length, lumped
   /// at the ends of helices (trapezoidal rule), for a rigid link as a whole. Without it
   /// the mass matrix of a straight strand with twist is singular.
@@ -72,30 +76,31 @@ struct ReducedOptions {
   int quadrature = 0;  // Gauss-Legendre points per segment; 0: by its winding angle
 };
 
-/// The catalogue parameters of these options, and their reader.
+/// Returns the catalogue parameters of ReducedOptions.
 std::span<const Parameter> reduced_parameters();
+/// Reads ReducedOptions from parameters of reduced_parameters().
 ReducedOptions reduced_options(const Parameters& parameters);
 
-/// Unknowns of a segment: the curvatures of a helix, those of a clothoid (two for each
-/// component), or the rotation vector of a ball joint. A joint represents the bending of
-/// half of each adjacent link.
+/// Unknowns of a segment. curvature: twist and curvatures of a helix; linear_curvature:
+/// those of a clothoid, two for each component; joint_angle: rotation vector of a ball
+/// joint. A joint represents the bending of half of each adjacent link.
 enum class Unknown { curvature, linear_curvature, joint_angle };
 
 /// A strand prepared for ReducedSystem.
 struct ReducedStrand {
-  std::vector<ReducedSegment> segments;
-  std::vector<PointBlock> blocks;
-  RootMotion root;
-  std::optional<FreeRoot> free_root;
-  double root_rotor = 0;  // as ReducedSegment::rotor, of the root
-  Frame to_tip;  // from the frame of the last segment's tip to its section's, at rest
-  Effects effects;
-  ReducedJacobian jacobian = ReducedJacobian::exact;
-  TreeMethod method = TreeMethod::recursive;
-  double unknown_scale = 1;  // reduced_scale()
-  double length = 1;         // m
-  double rate = 1;           // reduced_rate()
-  bool regular_mass = true;
+  std::vector<ReducedSegment> segments;  // parents before children
+  std::vector<PointBlock> blocks;        // quadrature points of all segments
+  RootMotion root;                       // motion of the clamp
+  std::optional<FreeRoot> free_root;     // none: the root is clamped
+  double root_rotor = 0;                 // as ReducedSegment::rotor, of the root
+  Frame to_tip;     // from the frame of the last segment's tip to its section's, at rest
+  Effects effects;  // effects on the strand
+  ReducedJacobian jacobian = ReducedJacobian::exact;  // terms of the Jacobian
+  TreeMethod method = TreeMethod::recursive;          // solver of the linear equations
+  double unknown_scale = 1;                           // reduced_scale()
+  double length = 1;                                  // length of the strand, m
+  double rate = 1;                                    // reduced_rate()
+  bool regular_mass = true;  // whether the mass matrix is regular
 };
 
 /// Returns a typical unknown: one radian over the length, in joints over their number.
@@ -119,7 +124,9 @@ int quadrature_points(double angle);
 /// `angle` is the sum of the angles of mean and half. Throws InputError above
 /// most_clothoid_winding.
 int clothoid_points(double angle);
+/// Largest angle by which an element of linear curvature may wind, rad.
 inline constexpr double most_clothoid_winding = 24;
+/// Largest number of points of an element of linear curvature.
 inline constexpr int most_clothoid_points = 32;
 
 }  // namespace tress::models

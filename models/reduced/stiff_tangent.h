@@ -31,11 +31,12 @@ TreeTangent<Shape> empty_tangent(const K& kinematics) {
 /// omitted.
 template <class Kernel, int modes>
 class StiffTangent {
- public:
   using K = Kinematics<Kernel, modes>;
   using In = typename K::In;
   using Shape = MassShapeOf<Kernel, modes>;
 
+ public:
+  /// Takes kinematics and dynamics, which at() moves; they must outlive it.
   StiffTangent(K& kinematics, InverseDynamics<Kernel, modes>& dynamics)
       : kinematics_(kinematics),
         dynamics_(dynamics),
@@ -45,6 +46,7 @@ class StiffTangent {
     of_effects_.resize(9 * kinematics.points());
   }
 
+  /// Returns the matrix of weights w at (t, q, v), valid until the next call.
   const TreeTangent<Shape>& at(double t, In q, In v, Weights w) {
     if (of_effects_.empty() || (w.vel == 0 && w.pos == 0)) {
       kinematics_.shape(q);
@@ -56,9 +58,10 @@ class StiffTangent {
     make_semidefinite(of_effects_);
     return here(w, of_effects_);
   }
-  /// Computes the tangent without effects, at the state of Kinematics.
+  /// Returns the matrix without effects, at the shape of Kinematics.
   const TreeTangent<Shape>& here(Weights w) { return here(w, {}); }
 
+  /// Returns the matrix of the last call.
   const TreeTangent<Shape>& last() const { return tangent_; }
 
  private:

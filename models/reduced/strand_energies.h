@@ -7,7 +7,7 @@ namespace tress::models {
 /// Energies of a strand without those of its effects, J.
 template <class Real>
 struct StrandEnergies {
-  Real kinetic{0}, elastic{0};
+  Real kinetic{0}, elastic{0};  // kinetic and elastic energy, J
 };
 
 /// Returns the kinetic energy (J) of a frame that spins about its e0.

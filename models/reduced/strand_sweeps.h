@@ -15,13 +15,14 @@ namespace tress::models {
 class SweptStrand {
  public:
   virtual ~SweptStrand() = default;
-  /// Destination of the points' motion; a span is empty where no effect reads it.
+  /// Arrays for the motion of the points, empty where no effect reads them.
   struct Places {
-    Out x, v, tangent;
+    Out x, v, tangent;  // 3 numbers per point, in components of the world
   };
 
-  /// Returns the motion in the clamp's own components, relative to free fall.
+  /// Returns the motion of the clamp in its own components, relative to free fall.
   virtual FrameMotion clamp(double t) = 0;
+  /// Returns the arrays that the sweeps fill before loads() and stiffness().
   virtual Places places() = 0;
   /// Whether loads() returns any.
   virtual bool loaded() const = 0;
@@ -39,26 +40,29 @@ class SweptStrand {
 /// Pack: one strand per lane. O(elements points).
 template <class T>
 class StrandSweepsOf {
- public:
   using In = std::span<const T>;
   using Out = std::span<T>;
 
+ public:
   virtual ~StrandSweepsOf() = default;
   /// Sets the unknowns at rest.
   virtual void set_rest(In values) = 0;
+  /// Writes the residual r, as System::residual().
   virtual void residual(double t, In q, In v, In a, Out r) noexcept = 0;
   /// Factors S(w). Returns false if elimination without exchange of rows is inaccurate in
   /// some lane, or a pivot is unusable.
   virtual bool factor(double t, In q, In v, In a, Weights w) noexcept = 0;
-  virtual void solve(In b, Out x) noexcept = 0;  // b and x may be the same
+  /// Solves S(w) x = b with the last factors. b and x may be the same.
+  virtual void solve(In b, Out x) noexcept = 0;
 };
+/// Sweeps of one strand.
 using StrandSweeps = StrandSweepsOf<double>;
 
 /// Strands to sweep over, which must outlive the sweeps, and the data they are made of.
 /// Lanes beyond the last strand repeat the first.
 struct ToSweep {
-  std::vector<const ReducedStrand*> made;
-  std::vector<SweptStrand*> strands;
+  std::vector<const ReducedStrand*> made;  // data, one strand per lane
+  std::vector<SweptStrand*> strands;       // motion and loads, in the same order
 };
 
 /// Makes sweeps of strands whose unknowns are curvatures or joint angles, two or three
@@ -66,6 +70,7 @@ struct ToSweep {
 /// recursively, and agree in the numbers of elements and of points.
 std::unique_ptr<StrandSweeps> strand_sweeps(const ToSweep& strand, Unknown unknown,
                                             int modes);
+/// Makes sweeps of up to four strands, one per lane. Returns null as strand_sweeps().
 std::unique_ptr<StrandSweepsOf<Pack>> sweeps_of_four(const ToSweep& strands,
                                                      Unknown unknown, int modes);
 

@@ -21,13 +21,18 @@ namespace tress::models {
 std::unique_ptr<System> super_helix(const Strand& strand, const ReducedOptions& options,
                                     Effects effects);
 
+/// Returns the parameters that make_super_helix() reads.
 std::span<const Parameter> super_helix_parameters();
+/// Makes super_helix() with the options that `parameters` contain.
 std::unique_ptr<System> make_super_helix(const Strand& strand,
                                          const Parameters& parameters, Effects effects);
 
-/// The trees of models/reduced/trees.h.
+/// Returns the parameters that make_super_helix_tree() reads.
 std::span<const Parameter> super_helix_tree_parameters();
+/// Returns the tree of models/reduced/trees.h that `parameters` choose, with their
+/// material and root.
 Strand described_tree(const Parameters& parameters);
+/// Makes super_helix() of described_tree(parameters).
 std::unique_ptr<System> make_super_helix_tree(const Parameters& parameters);
 
 }  // namespace tress::models

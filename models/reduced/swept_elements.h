@@ -16,13 +16,14 @@ namespace tress::models {
 /// calls at one of them.
 template <class Kind, bool twist>
 class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
- public:
   using T = typename Kind::Real;
   using In = std::span<const T>;
   using Out = std::span<T>;
   using V = Vec3<T>;
   using Kernel = ReducedKernel<Kind>;
 
+ public:
+  /// Copies the data of the strands. `points`: result of swept_points().
   SweptElements(const ToSweep& of, int points)
       : strands_(of.strands),
         each_(strands_.size()),
@@ -360,6 +361,8 @@ inline int swept_points(const ToSweep& of, int modes) {
   return alike ? points : 0;
 }
 
+/// Makes sweeps of strands of helices or chains. Returns null if the strands cannot be
+/// swept or have other unknowns.
 template <class T>
 std::unique_ptr<StrandSweepsOf<T>> sweeps_of(const ToSweep& of, Unknown unknown,
                                              int modes) {

@@ -21,17 +21,19 @@ namespace tress::models {
 /// and blocks are as in TreeTangent. Products and solves are sweeps from the root, O(N).
 template <class Kernel, int dofs>
 class TransportMatrix {
- public:
   using Real = typename Kernel::Real;
   using In = std::span<const Real>;
   using Out = std::span<Real>;
   using Shape = MassShape<dofs, Real>;
   using Dofs = Eigen::Matrix<Real, dofs, 1>;
 
+ public:
+  /// Allocates for this number of segments.
   explicit TransportMatrix(std::size_t segments)
       : full_(segments), inverse_(segments), start_(segments + 1) {}
 
-  /// Sums composite bodies from the mass tangent at weights {1, 0, 0}.
+  /// Sums composite bodies from the mass tangent at weights {1, 0, 0}, which must outlive
+  /// all further calls.
   void compose(const TreeTangent<Shape>& mass) {
     mass_ = &mass;
     Inertia hanging;
@@ -43,7 +45,7 @@ class TransportMatrix {
     }
   }
 
-  /// r += M_ft a
+  /// Adds M_ft a to r.
   void add_product(In a, Out r) {
     sweep(a);
     for (std::size_t i = 0; i < full_.size(); ++i) {
@@ -69,6 +71,7 @@ class TransportMatrix {
     return Status::ok;
   }
 
+  /// Solves (acc M_ft + diagonal) x = b with the last factors.
   void solve(In b, Out x) {
     start_[0].setZero();
     for (std::size_t i = 0; i < full_.size(); ++i) {
@@ -81,7 +84,7 @@ class TransportMatrix {
     }
   }
 
-  /// dense += factor M_ft
+  /// Adds factor M_ft to `dense`.
   void add_dense(double factor, Eigen::MatrixXd& dense) const {
     for (std::size_t m = 0; m < full_.size(); ++m) {
       add(own(m), block(dense, m, m), factor);
@@ -242,11 +245,12 @@ class TransportMatrix {
 /// The equations of ForceTransport and their elastic Jacobian, in O(n).
 template <class Kernel, int dofs>
 class TransportSweeps {
- public:
   using K = Kinematics<Kernel, dofs>;
   using In = typename K::In;
   using Out = std::span<typename K::Real>;
 
+ public:
+  /// Works on the kinematics, dynamics and mass of a chain, which must outlive it.
   TransportSweeps(K& kinematics, InverseDynamics<Kernel, dofs>& dynamics,
                   StiffTangent<Kernel, dofs>& mass)
       : kinematics_(kinematics),
@@ -256,24 +260,29 @@ class TransportSweeps {
         zero_(static_cast<std::size_t>(kinematics.unknowns())),
         restoring_(zero_) {}
 
+  /// Writes the residual r, as System::residual().
   void residual(double t, In q, In v, In a, Out r) {
     dynamics_.residual(t, q, v, zero_, r);
     compose(q);
     matrix_.add_product(a, r);
   }
+  /// Factors the elastic Jacobian S(w) at q; `retry` if a pivot is not usable.
   Status factor(In q, Weights w) {
     kinematics_.shape(q);
     compose(q);
     return matrix_.factor(w.acc, restoring(w));
   }
+  /// Solves S(w) x = b with the last factors.
   void solve(In b, Out x) { matrix_.solve(b, x); }
 
-  /// Composite bodies at q, the state of Kinematics; kept for the next call.
+  /// Sums composite bodies at q, the state of Kinematics, unless they are those of the
+  /// last call.
   void compose(In q) {
     if (std::ranges::equal(q, composed_)) return;
     matrix_.compose(mass_.here({1, 0, 0}));
     composed_.assign(q.begin(), q.end());
   }
+  /// Returns the diagonal of friction and elasticity, w.vel C + w.pos K.
   In restoring(Weights w) {
     for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
       const auto of_segment = models::restoring(kinematics_.segments()[i], w);
@@ -283,6 +292,7 @@ class TransportSweeps {
     }
     return restoring_;
   }
+  /// Returns M_ft, as composed last.
   TransportMatrix<Kernel, dofs>& matrix() { return matrix_; }
 
  private:

@@ -14,8 +14,9 @@ namespace tress::models {
 /// takes the mean.
 template <class T>
 struct LinearStrainOf {
-  Vec3<T> mean, half;
+  Vec3<T> mean, half;  // mean, and half the difference between tip and start
 
+  /// Returns the mean, which elements of constant strain take.
   explicit operator Vec3<T>() const { return mean; }
 
   friend LinearStrainOf operator+(const LinearStrainOf& a, const LinearStrainOf& b) {
@@ -32,13 +33,15 @@ struct LinearStrainOf {
     return dot(a.mean, b.mean) + dot(a.half, b.half);
   }
 };
+/// Linear strain in double precision.
 using LinearStrain = LinearStrainOf<double>;
 
-/// sum k_i x_i^2
+/// Returns sum k_i x_i^2.
 template <class T>
 T weighed_square(const Vec3<T>& k, const Vec3<T>& x) {
   return k.x * x.x * x.x + k.y * x.y * x.y + k.z * x.z * x.z;
 }
+/// Returns sum k_i x_i^2 over mean and half.
 template <class T>
 T weighed_square(const LinearStrainOf<T>& k, const LinearStrainOf<T>& x) {
   return weighed_square(k.mean, x.mean) + weighed_square(k.half, x.half);

@@ -12,7 +12,7 @@ class ExactElement {
  public:
   /// Kernel of the sweeps along a strand.
   using Kernel = ReducedKernel<Kind>;
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using T = typename Kind::Real;
   /// Vector of these scalars.
   using Vec = Vec3<T>;

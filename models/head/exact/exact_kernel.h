@@ -18,7 +18,8 @@ namespace tress::models {
 ///     s_tip = A s + B x,    w = C s + D x + G w_tip,    r = R s + H x + J w_tip
 ///
 /// The part that hangs on a tip responds with w_tip = L s_tip + beta
-/// (models/reduced/tree/recursive_solver.h). Elimination of x from r = b passes to the start
+/// (models/reduced/tree/recursive_solver.h). Elimination of x from r = b passes to the
+/// start
 ///
 ///     L' = C + G L A - Y R',  Y = (D + G L B) H'^-1,  R' = R + J L A,  H' = H + J L B
 ///     beta' = G beta + Y (b - J beta)
@@ -36,7 +37,7 @@ class ExactKernel {
  public:
   /// Kernel of the sweeps along a strand.
   using Kernel = ReducedKernel<Kind>;
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using T = typename Kind::Real;
   /// Vector of these scalars.
   using Vec = Vec3<T>;

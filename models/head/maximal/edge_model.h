@@ -22,7 +22,7 @@ namespace tress::models {
 template <class Pack, int per_element>
 class EdgeModel {
  public:
-  /// scalar: a number, or a pack of lanes.
+  /// Scalar: a number, or a pack of SIMD lanes.
   using Real = Pack;
   /// Vector of these scalars.
   using V = Vec3<Real>;

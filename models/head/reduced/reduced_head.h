@@ -23,9 +23,10 @@ namespace tress::models {
 /// material and root.
 template <class Kind>
 class ReducedHead : public Head {
- public:
   using T = typename Kind::Real;
 
+ public:
+  /// Makes an empty batch. Throws InputError as stiff_helix_head().
   ReducedHead(const LaneOptions& options, Instructions instructions)
       : options_(with_uniform_effects(options)),
         instructions_(instructions),
@@ -243,21 +244,25 @@ class ReducedHead : public Head {
 
   using Root = LaneRoot<T>;
 
+  /// Working memory of one thread.
   struct Own final : Scratch {
+    /// Allocates for a block. `kernel` must outlive it.
     Own(const ReducedKernel<Kind>& kernel, const HeadUnits& units,
         Instructions instructions)
         : elements(static_cast<std::size_t>(kernel.elements())),
           before(elements.size()),
           loads(kernel, units, instructions),
           others(width) {}
+    /// Elements of a block between sweeps (elements).
     std::vector<typename ReducedKernel<Kind>::Scratch> elements;
-    std::vector<Vec3<T>> before;  // q
-    ReducedLoads<Kind> loads;
-    double t = std::numeric_limits<double>::quiet_NaN();  // of what follows
-    RootPose pose;
-    std::vector<NearBody> bodies;            // that reach the head
-    std::vector<const Effect*> all_strands;  // other effects that reach it
-    std::vector<NearBody> near;              // those that reach a block
+    std::vector<Vec3<T>> before;  // unknowns before the step (elements)
+    ReducedLoads<Kind> loads;     // loads of effects on the block
+    double t = std::numeric_limits<double>::quiet_NaN();  // time of all members below, s
+    RootPose pose;                                        // motion of the head at t
+    std::vector<NearBody> bodies;                         // bodies that reach the head
+    std::vector<const Effect*> all_strands;               // other effects that reach it
+    std::vector<NearBody> near;                           // bodies that reach the block
+    /// Other effects that reach each strand of the block.
     std::vector<std::vector<const Effect*>> others;
   };
 

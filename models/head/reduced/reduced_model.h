@@ -19,42 +19,54 @@ namespace tress::models {
 /// ReducedKernel with its exact Jacobian as a LaneModel.
 template <class Kind>
 class ReducedModel {
- public:
-  using Real = typename Kind::Real;
-  using V = Vec3<Real>;
+  using V = Vec3<typename Kind::Real>;
   using Kernel = ReducedKernel<Kind>;
-  static constexpr bool iterates = true, takes_bodies = true, takes_stresses = false,
-                        straight = Kind::straight;
-  static constexpr double most_stretched = 1;
+
+ public:
+  using Real = typename Kind::Real;  // scalar: a number, or a pack of SIMD lanes
+  /// Whether the Jacobian is exact and again() exists; whether find_loads() exists.
+  static constexpr bool iterates = true, takes_bodies = true;
+  static constexpr bool takes_stresses = false;     // take_stresses() does not exist
+  static constexpr bool straight = Kind::straight;  // whether elements are straight
+  static constexpr double most_stretched = 1;  // largest length of a strand over length()
+  /// Tolerance of Newton's method over that of a step's error.
   static constexpr double newton_part = 0.03;
+  /// Remedy in error messages on effects that the model does not take.
   static constexpr const char* use_others =
       "use a method of one linear solve, or run the strands one by one";
 
+  /// Data of a strand that steps do not change.
   struct Strand {
-    LaneRoot<Real> root;
-    ReducedMaterial<Real> material;
-    Real by_scale, time;  // 1 over a typical unknown, and a typical time
+    LaneRoot<Real> root;             // position and frame in the head
+    ReducedMaterial<Real> material;  // properties of the elements
+    Real by_scale, time;             // 1 over a typical unknown, 1 over a typical rate
   };
-  struct Element {  // the rest shape alone: as many vectors as elements
-    V rest;
-    static constexpr std::size_t kept = 0;
+  /// Rest shape of an element alone: an array of these is read as an array of vectors.
+  struct Element {
+    V rest;                                 // unknowns at rest
+    static constexpr std::size_t kept = 0;  // count of numbers that steps change
+    /// Writes the numbers of a lane that steps change: none.
     void keep(int /*lane*/, double* /*to*/) const {}
+    /// Restores what keep() wrote: nothing.
     void recall(int /*lane*/, const double* /*from*/) {}
   };
-  using Clamp = ReducedMotion<Real>;
+  using Clamp = ReducedMotion<Real>;  // motion of the root, in its own components
+  /// Working memory of one thread.
   struct Scratch {
+    /// Allocates for a block of `model`, which must outlive it.
     explicit Scratch(const ReducedModel& model)
         : elements(model.elements()),
           factors(model.elements()),
           loads(model.kernel_, model.units_, model.instructions_) {}
-    std::vector<typename Kernel::Scratch> elements;
+    std::vector<typename Kernel::Scratch> elements;  // state of the elements
+    /// Factors of the exact Jacobian (elements).
     std::vector<typename ExactKernel<Kind>::Factors> factors;
-    ReducedLoads<Kind> loads;
-    // Of find_loads(): which may touch the strands, and how these lie.
-    std::span<const NearBody> bodies;
-    V from;
-    FrameOf<Real> frame;
-    double h = 0;  // s
+    ReducedLoads<Kind> loads;  // loads of bodies
+    // Set by find_loads().
+    std::span<const NearBody> bodies;  // bodies that may touch the strands
+    V from;                            // positions of the roots from that of the head, m
+    FrameOf<Real> frame;               // frames of the roots in the world
+    double h = 0;                      // length of the step, s
   };
 
   /// `units`, which are whole with the first strand, must outlive it.
@@ -69,25 +81,32 @@ class ReducedModel {
         exact_(kernel_, instructions),
         energies_(kernel_) {}
 
+  /// Returns the number of elements of a strand.
   std::size_t elements() const { return n_; }
+  /// Returns the number of unknowns of a strand.
   std::size_t unknowns() const { return 3 * n_; }
+  /// Returns the unit of an unknown in SI: 1 over the unit of length, or 1 (rad).
   double unit(const HeadUnits& units, std::size_t /*k*/) const {
     return 1 / Kind::unit(units.length);
   }
+  /// Returns the mass of the strand in a lane, in units of the batch.
   double mass(const Strand& strand, int lane) const {
     return static_cast<double>(n_) *
            lane_of(strand.material.density * strand.material.length, lane);
   }
+  /// Returns the length of each strand, in units of the batch.
   Real length(const Strand& strand) const {
     return Real(static_cast<double>(n_)) * strand.material.length;
   }
+  /// Returns the length of an element of each strand, in units of the batch.
   Real element_length(const Strand& strand) const { return strand.material.length; }
-  /// Seen from the head's position.
+  /// Returns the positions of the roots from that of the head, in axes of the world.
   static V root_at(const Strand& strand, const Frame& head) {
     return frame_of(head) * strand.root.from;
   }
 
-  /// Describes a strand in the initial state of ReducedHead.
+  /// Writes a strand, its elements and the initial state of ReducedHead to one lane.
+  /// `centre`: position of the head.
   void describe(const models::Strand& strand, const Vec& centre, const HeadUnits& units,
                 int lane, Strand& to, Element* elements, Real* q, Real* v) const {
     set_lane(to.root.from, lane, (1 / units.length) * (strand.root.position - centre));
@@ -104,17 +123,19 @@ class ReducedModel {
     }
   }
 
+  /// Returns the motion of the root for a motion of the head.
   Clamp clamp(const Strand& strand, const RootPose& pose) const {
     const auto in_head = [&](const Vec& x) { return pose.frame.back(x); };
     return root_motion<Real>(
         strand.root, {in_head(pose.v), in_head(pose.omega), in_head(pose.a - gravity_),
                       in_head(pose.alpha)});
   }
-  /// There are no reference frames.
+  /// Returns 0 and changes nothing: the model has no reference frames.
   Real renew(Element* /*elements*/, const Clamp& /*clamp*/, Real* /*q*/,
              Real* /*v*/) const {
     return Real(0);
   }
+  /// Writes q + h v to q_bar.
   void predict(const Strand& /*strand*/, const RootPose& /*from*/, const RootPose& /*to*/,
                double h, const Real* q, const Real* v, Real* q_bar) const {
     for (std::size_t k = 0; k < unknowns(); ++k) q_bar[k] = q[k] + Real(h) * v[k];
@@ -130,6 +151,8 @@ class ReducedModel {
     scratch.h = h;
   }
 
+  /// Computes Newton's correction. Returns its size over a typical unknown, NaN in lanes
+  /// where it is not finite.
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
@@ -144,6 +167,7 @@ class ReducedModel {
                               vectors(v), vectors(a), vectors(correction),
                               scratch.factors.data()));
   }
+  /// Computes a correction with the matrix of the last newton(); returns as newton().
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
@@ -158,27 +182,33 @@ class ReducedModel {
                              vectors(a), vectors(correction), scratch.elements.data(),
                              scratch.factors.data()));
   }
+  /// Returns the largest entry of dq in each lane over a typical unknown.
   Real coordinate_size(const Strand& strand, const Real* dq) const {
     Real most(0);
     for (std::size_t k = 0; k < unknowns(); ++k) most = larger(most, magnitude(dq[k]));
     return strand.by_scale * most;
   }
+  /// Returns the size below which a correction of newton() is a rounding error.
   double resolved(const Strand& strand, Weights w, int lane) const {
     constexpr double eps = std::numeric_limits<typename Real::Scalar>::epsilon();
     return eps * std::max(1.0, w.vel / w.pos * lane_of(strand.time, lane));
   }
 
+  /// Calls use(i, position) for root (i = 0) and tips, seen from the position of the
+  /// head.
   template <class Use>
   void positions(const Strand& strand, const Frame& head, const Real* q, Use use) const {
     run_along(strand, head, {}, q, q,
               [&](std::size_t i, const V& at, const V& /*u*/) { use(i, at); });
   }
+  /// Calls use(i, velocity) for root (i = 0) and tips, in axes of the world.
   template <class Use>
   void velocities(const Strand& strand, const RootPose& pose, const Real* q,
                   const Real* v, Use use) const {
     run_along(strand, pose.frame, clamp(strand, pose), q, v,
               [&](std::size_t i, const V& /*at*/, const V& u) { use(i, u); });
   }
+  /// Returns the energies of the strands at (q, v), in units of the batch.
   LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
                               const RootPose& pose, const Real* q, const Real* v) const {
     return energies_(

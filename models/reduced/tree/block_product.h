@@ -8,13 +8,14 @@
 
 namespace tress::models {
 
-/// sum += weight a for a column of a product (below).
+/// Adds weight times a to sum, a column of multiply().
 template <int rows>
 [[gnu::always_inline]] inline void add_scaled(double weight, const double* a,
                                               double* sum) {
 #pragma GCC unroll 1
   for (int i = 0; i < rows; ++i) sum[i] += weight * a[i];
 }
+/// Adds weight times a to sum, a column of packs.
 template <int rows>
 [[gnu::always_inline]] inline void add_scaled(const Pack& weight, const Pack* a,
                                               Pack* sum) {
@@ -72,42 +73,50 @@ template <int sign, bool onto, int rows, int inner, int columns, class T>
 /// each of which takes the compiler as long as the whole product.
 template <class T, int rows, int columns>
 struct Part {
+  /// Size of the block, named as in Eigen.
   static constexpr int RowsAtCompileTime = rows, ColsAtCompileTime = columns;
-  T* first;
-  int row_stride, column_stride;
+  T* first;                       // address of entry (0, 0)
+  int row_stride, column_stride;  // steps from row to row, from column to column
 
+  /// Returns the address of entry (0, 0).
   T* data() const { return first; }
+  /// Returns the step from row to row, in entries.
   int rowStride() const { return row_stride; }
+  /// Returns the step from column to column, in entries.
   int colStride() const { return column_stride; }
+  /// Returns entry (i, j).
   T& operator()(int i, int j) const { return first[row_stride * i + column_stride * j]; }
-  T& operator[](int i) const { return first[row_stride * i]; }  // of a column
+  T& operator[](int i) const { return first[row_stride * i]; }  // entry i of a column
+  /// Returns the transposed block.
   Part<T, columns, rows> transpose() const { return {first, column_stride, row_stride}; }
 };
 
-/// The block of a matrix whose first entry is (row, column).
+/// Returns the block of a matrix whose first entry is (row, column).
 template <int rows, int columns, class M>
 auto part(M& m, int row, int column) {
   using T = std::remove_pointer_t<decltype(m.data())>;
   const auto stride = static_cast<int>(m.outerStride());
   return Part<T, rows, columns>{m.data() + row + stride * column, 1, stride};
 }
-/// One column, or all, of a matrix of fixed size.
+/// Returns a column of a matrix of fixed size as a block.
 template <class M>
 auto column_of(M& m, int column) {
   return part<M::RowsAtCompileTime, 1>(m, 0, column);
 }
+/// Returns a whole matrix of fixed size as a block.
 template <class M>
 auto part(M& m) {
   return part<M::RowsAtCompileTime, M::ColsAtCompileTime>(m, 0, 0);
 }
 
-/// b = a; b += factor a
+/// Copies a to b, which may be a block.
 template <class A, class B>
 inline void copy(const A& a, B&& b) {
   for (int j = 0; j < A::ColsAtCompileTime; ++j) {
     for (int i = 0; i < A::RowsAtCompileTime; ++i) b(i, j) = a(i, j);
   }
 }
+/// Adds factor times a to b, which may be a block.
 template <class A, class B>
 inline void add(const A& a, B&& b, double factor = 1) {
   for (int j = 0; j < A::ColsAtCompileTime; ++j) {

@@ -10,6 +10,7 @@ namespace tress::models {
 template <class Shape>
 class CompositeSolver final : public TreeSolver<Shape> {
  public:
+  /// Allocates for tangents with the parents and the root of `structure`.
   explicit CompositeSolver(const TreeTangent<Shape>& structure)
       : dense_(structure.unknowns(), Shape::symmetric),
         composite_(structure, dense_.matrix) {}

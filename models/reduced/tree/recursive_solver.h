@@ -36,6 +36,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   using typename TreeSolver<Shape>::In, typename TreeSolver<Shape>::Out,
       typename TreeSolver<Shape>::Load;
 
+  /// Allocates for tangents with the parents and the root of `structure`.
   explicit RecursiveSolver(const TreeTangent<Shape>& structure)
       : eliminated_(structure.parent.size()), hanging_(structure.parent.size()) {
     if constexpr (refines) {

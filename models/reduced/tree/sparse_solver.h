@@ -15,6 +15,7 @@ namespace tress::models {
 template <class Shape>
 class SparseTreeSolver final : public TreeSolver<Shape> {
  public:
+  /// Allocates for tangents with the parents and the root of `structure`.
   explicit SparseTreeSolver(const TreeTangent<Shape>& structure)
       : pattern_(make_pattern(structure)),
         // Turning a nearly straight strand about its axis moves almost no mass, so small

@@ -13,6 +13,7 @@ namespace tress::models {
 template <class Shape>
 class TransposedProduct {
  public:
+  /// Writes x = S^T mu, both of tangent.unknowns() numbers.
   void compute(const TreeTangent<Shape>& tangent, In mu, Out x) {
     const std::size_t root = Shape::dofs * tangent.segments.size();
     by_tip_.resize(tangent.segments.size());

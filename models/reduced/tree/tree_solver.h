@@ -24,17 +24,19 @@ enum class TreeMethod {
 template <class Shape>
 class TreeSolver {
  public:
-  using In = std::span<const typename Shape::Real>;
-  using Out = std::span<typename Shape::Real>;
+  using In = std::span<const typename Shape::Real>;  // read-only array of scalars
+  using Out = std::span<typename Shape::Real>;       // array of scalars to write
 
   virtual ~TreeSolver() = default;
-  /// `retry` if a pivot is not usable. The tangent must outlive the solves.
+  /// Factors S; `retry` if a pivot is not usable. The tangent must outlive the solves.
   virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;
-  virtual Status solve(In b, Out x) noexcept = 0;  // b and x may be the same
+  /// Solves S x = b with the last factors. b and x may be the same.
+  virtual Status solve(In b, Out x) noexcept = 0;
 
   /// Loads on the tip of a segment (-1: on the root).
   struct Load {
-    int segment;
+    int segment;  // index of the segment; -1: the root
+    /// Wrenches P_i of respond().
     Eigen::Matrix<typename Shape::Real, Shape::wrench, 3> columns;
   };
   /// Computes the response of tips of a chain to loads on these tips, in ascending order
@@ -45,7 +47,8 @@ class TreeSolver {
   virtual bool respond(std::span<const Load>, Out /*blocks*/) noexcept { return false; }
 };
 
-/// The last two methods exist for symmetric shapes; exact Jacobians get `recursive`.
+/// Makes the solver for tangents with the parents and the root of `structure`. The last
+/// two methods exist for symmetric shapes; exact Jacobians get `recursive`.
 template <class Shape>
 std::unique_ptr<TreeSolver<Shape>> make_tree_solver(TreeMethod method,
                                                     const TreeTangent<Shape>& structure);

@@ -16,14 +16,15 @@ namespace tress::models {
 /// problems side by side.
 template <int states_, int wrench_, int dofs_, class Real_ = double>
 struct TreeShape {
-  using Real = Real_;
-  static constexpr int states = states_;
-  static constexpr int wrench = wrench_;
-  static constexpr int dofs = dofs_;
-  static constexpr int columns = states + dofs;
-  static constexpr int rows = wrench + dofs;
-  static constexpr bool symmetric = states == wrench;
+  using Real = Real_;                     // scalar: a number, or a pack of SIMD lanes
+  static constexpr int states = states_;  // numbers of a state
+  static constexpr int wrench = wrench_;  // numbers of a wrench
+  static constexpr int dofs = dofs_;      // unknowns of a segment
+  static constexpr int columns = states + dofs;        // numbers of [s; x]
+  static constexpr int rows = wrench + dofs;           // numbers of [w; r]
+  static constexpr bool symmetric = states == wrench;  // whether S is symmetric
 
+  /// Matrix of scalars with r rows and c columns.
   template <int r, int c>
   using Matrix = Eigen::Matrix<Real, r, c>;
 };
@@ -42,14 +43,15 @@ struct TreeShape {
 /// `stiffness` is the diagonal part of local from friction and elasticity.
 template <class Shape>
 struct SegmentTangent {
+  /// Matrix of scalars with r rows and c columns.
   template <int r, int c>
   using Matrix = typename Shape::template Matrix<r, c>;
 
-  Matrix<Shape::states, Shape::columns> transfer;
-  Matrix<Shape::rows, Shape::columns> local;
-  Matrix<Shape::wrench, Shape::states> tip;
-  Matrix<Shape::rows, Shape::wrench> lift;
-  Matrix<Shape::dofs, 1> stiffness;
+  Matrix<Shape::states, Shape::columns> transfer;  // [s; x] to s_tip
+  Matrix<Shape::rows, Shape::columns> local;       // [s; x] to [w; r]
+  Matrix<Shape::wrench, Shape::states> tip;        // s_tip to w_tip
+  Matrix<Shape::rows, Shape::wrench> lift;         // w_tip to [w; r]
+  Matrix<Shape::dofs, 1> stiffness;                // part of the diagonal of local
 };
 
 /// Adds m transfer to c, where m has one column per state; skips the zero blocks of
@@ -90,36 +92,39 @@ auto with_hanging(
 /// of the first segments, and satisfy local y + lift (sum of their w) = b.
 template <class Shape>
 struct RootTangent {
+  /// Matrix of scalars with r rows and c columns.
   template <int r, int c>
   using Matrix = typename Shape::template Matrix<r, c>;
 
-  Matrix<Shape::states, 6> transfer;
-  Matrix<6, 6> local;
-  Matrix<6, Shape::wrench> lift;
+  Matrix<Shape::states, 6> transfer;  // y to s
+  Matrix<6, 6> local;                 // y to its equations
+  Matrix<6, Shape::wrench> lift;      // sum of w to the equations of y
 };
 
 /// Contribution of one contact between segments (Coupling): with y = sum by_a [s_a; x_a]
 /// over its ends, [w_a; r_a] += onto_a y.
 template <class Shape>
 struct TreeCoupling {
-  static constexpr int rank = 4;
+  static constexpr int rank = 4;  // numbers of y
+  /// One end of the contact.
   struct End {
-    int segment;
-    typename Shape::template Matrix<rank, Shape::columns> by;
-    typename Shape::template Matrix<Shape::rows, rank> onto;
+    int segment;                                               // index of the segment
+    typename Shape::template Matrix<rank, Shape::columns> by;  // [s; x] to y
+    typename Shape::template Matrix<Shape::rows, rank> onto;   // y to [w; r]
   };
-  std::array<End, 4> ends;
+  std::array<End, 4> ends;  // ends of the contact
 };
 
 /// Input of a tree solver. Unknowns are ordered by segment, the root's last.
 template <class Shape>
 struct TreeTangent {
   std::vector<int> parent;  // per segment, an earlier one; -1: the root
-  std::vector<SegmentTangent<Shape>> segments;
-  RootTangent<Shape> root;  // read when free_root
-  bool free_root = false;
-  std::vector<TreeCoupling<Shape>> couplings;  // for TreeMethod::composite only
+  std::vector<SegmentTangent<Shape>> segments;  // equations of all segments
+  RootTangent<Shape> root;                      // read when free_root
+  bool free_root = false;                       // whether the root has 6 unknowns
+  std::vector<TreeCoupling<Shape>> couplings;   // for TreeMethod::composite only
 
+  /// Returns the number of unknowns, a free root's included.
   int unknowns() const {
     return static_cast<int>(parent.size()) * Shape::dofs + (free_root ? 6 : 0);
   }
