@@ -99,7 +99,7 @@ class LinearlyImplicitMidpoint final : public FixedStep, public ErrorIndicator {
 
 IntegratorEntry linearly_implicit_midpoint_entry() {
   return {.id = "linearly_implicit_midpoint",
-          .summary = "one linear solve, with any tangent",
+          .summary = "one linear solve, with any Jacobian",
           .source = "Steihaug-Wolfbrandt 1979",
           .tangent = true,
           .formulations = of_order(2, projected_formulations),

@@ -73,7 +73,8 @@ constexpr Parameter own_settings[] = {
 };
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"scene", "scenes",
+     "your own scene (several: a.toml,b.toml) instead of the built-in ones", true},
 };
 
 constexpr double targets[] = {1e-2, 1e-3};

@@ -112,7 +112,7 @@ constexpr Parameter own_settings[] = {
 };
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "scene file to look at (several: a.toml,b.toml)", true},
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml)", true},
     {"advise", "advise",
      "scene file: prints what to take, next best and what not to do; writes "
      "<scene>.advised.toml next to --out",

@@ -79,7 +79,8 @@ constexpr Parameter own_settings[] = {
 };
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"scene", "scenes",
+     "your own scene (several: a.toml,b.toml) instead of the built-in ones", true},
 };
 
 void set_numbers(const Scene& scene, Row& row) {

@@ -83,7 +83,7 @@ constexpr Parameter own_settings[] = {
 };
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "scene file to look at (several: a.toml,b.toml)", true},
+    {"scene", "scenes", "your own scene (several: a.toml,b.toml)", true},
     {"budget", "budget_ms",
      "best accuracy within this time per frame, ms (--set fps=30: 30 frames a second)"},
 };
@@ -213,8 +213,9 @@ int main(int argc, char** argv) {
   const Experiment experiment{
       .name = "head_accuracy",
       .question =
-          "which share of a head of hair must be simulated, and how finely, for a wanted "
-          "error of all hairs?",
+          "which share of a groom must be simulated, and how finely, for a target error "
+          "of "
+          "all hairs?",
       .example = "--scene scenes/full_head.toml --set accuracy=0.01 --budget 16",
       .quick_timeout_s = 600,
       .columns = head_columns(),

@@ -256,15 +256,16 @@ constexpr Unused unused[] = {{"repeat", "--set frames sets the timed duration of
 int main(int argc, char** argv) {
   using namespace tress::experiments;
   using namespace tress::experiments::heads;
-  const Experiment experiment{
-      .name = "heads",
-      .question = "what does a head of hair cost, and is it the same by all threads?",
-      .example = "--strands 200000",
-      .columns = columns,
-      .settings = own_settings,
-      .options = command_options,
-      .unused = unused,
-      .cases = cases,
-      .checks = judge};
+  const Experiment experiment{.name = "heads",
+                              .question =
+                                  "what does a batch of strands cost, and is it the same "
+                                  "for any number of threads?",
+                              .example = "--strands 200000",
+                              .columns = columns,
+                              .settings = own_settings,
+                              .options = command_options,
+                              .unused = unused,
+                              .cases = cases,
+                              .checks = judge};
   return run_experiment(experiment, argc, argv);
 }

@@ -83,7 +83,8 @@ constexpr Parameter own_settings[] = {
 };
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"scene", "scenes",
+     "your own scene (several: a.toml,b.toml) instead of the built-in ones", true},
     {"time", "time", "instant of the motion (s)"},
     {"strand", "strand", "number of the strand of the scene, from 1"},
 };

@@ -27,7 +27,7 @@ namespace {
 constexpr Column columns[] = {
     {"structure", "straight strand, kind of tree, or scene file"},
     {"model", "catalogue id"},
-    {"solver", "linear solver of the model for S x = b; head: SIMD lanes"},
+    {"solver", "linear solver of the model for S x = b; head: SIMD lanes of a batch"},
     {"jacobian", "terms of S (Jacobian approximation)"},
     {"modes", "unknowns per element"},
     {"grows",
@@ -36,7 +36,7 @@ constexpr Column columns[] = {
     {"strands", "number of strands, for a scene file"},
     {"unknowns", "number of coordinates"},
     {"device",
-     "device that took the steps, for a scene file as a head: a GPU or cpu; why "
+     "device that took the steps, for a scene file as a batch: a GPU or cpu; why "
      "not a GPU"},
     {"cost_per_step_s",
      "wall time of a linearly implicit step of the released strand, or of the scene",
@@ -153,7 +153,7 @@ std::vector<Case> cases(const CommandLine& line) {
                                        : head_costs(line, list, device);
   }
   if (device != DeviceChoice::cpu) {
-    throw InputError("a device steps heads of hair only, and these are single strands",
+    throw InputError("a device steps batches only, and these are single strands",
                      line.place("device"), "give --scene head.toml, or --device cpu");
   }
   const double chosen = settings.experiment().number("row_s");
@@ -168,9 +168,10 @@ std::vector<Case> cases(const CommandLine& line) {
 }
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"scene", "scenes",
+     "your own scene (several: a.toml,b.toml) instead of the built-in ones", true},
     {"device", "device",
-     "gpu or auto: your scene as a head of hair, by a GPU (default cpu: strand by "
+     "gpu or auto: your scene as a batch, by a GPU (default cpu: strand by "
      "strand)"},
 };
 

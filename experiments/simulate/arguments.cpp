@@ -15,14 +15,14 @@ constexpr const char* help_end =
     "Writes <out>/<scene>.csv (time series), .meta.json (how it was made) and .json (for "
     "the\nreport page), with --error-bars .errors.csv (errors over time),\nwith "
     "--gradient .gradient.csv (derivatives); of a "
-    "scene with rest = \"inverse\" .rest.csv\n(how each strand is held); of a head .h5 "
+    "scene with rest = \"inverse\" .rest.csv\n(how each strand is held); of a batch .h5 "
     "and .xdmf\n(all frames, for ParaView and others) and .failed.csv (strands that "
     "could "
     "not be computed).\nExit codes: 0 done, 1 internal error, 2 usage or input error, 3 "
     "a "
     "scene did not run to\nits end, or failed strands, 130 interrupted (--resume "
     "continues)\n\nmpirun -n 4 simulate ... --as batch: four processes share the "
-    "head; the results are the same\n";
+    "batch; the results are the same\n";
 
 /// Endings of the files that a run writes in its folder, or may write.
 std::vector<std::string> endings(bool head, const SceneRunOptions& options) {
@@ -60,25 +60,26 @@ void declare(CLI::App& app, Arguments& a) {
          "formats to write by name: vtk, usd, hair, or gltf (a .glb file for viewers)")
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
-  app.add_option("--as", a.as,
-                 "strands: each by itself. head: all in one batch, up to a million, in "
-                 "SIMD lanes or as replicated systems (cost_of_accuracy --list prints "
-                 "the batch matrix). auto: a head, where 1000 strands have lanes, or "
-                 "above 10000 strands (default auto)")
+  app.add_option(
+         "--as", a.as,
+         "strands: each by itself. batch: all in one, up to a million, in SIMD lanes "
+         "or as replicated systems (cost_of_accuracy --list prints the matrix). "
+         "auto: batch where 1000 strands have lanes, or above 10000 strands "
+         "(default auto)")
       ->check(CLI::IsMember({"auto", "strands", "batch"}));
   app.add_option("--precision", a.bits,
-                 "floating-point precision of a head in bits: 64 or 32 (default 64)")
+                 "floating-point precision of a batch in bits: 64 or 32 (default 64)")
       ->check(CLI::IsMember({64, 32}));
   app.add_option("--simd-width", a.lanes,
-                 "strands per SIMD pack of a head: 1, 4 or 8 with --precision 64, 8 or "
+                 "strands per SIMD pack of a batch: 1, 4 or 8 with --precision 64, 8 or "
                  "16 with --precision 32 (default 8, 16). Results are bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
-                 "device for the time steps of a head: cpu, gpu or auto (default cpu). "
+                 "device for the time steps of a batch: cpu, gpu or auto (default cpu). "
                  "auto: gpu if there is one and the scene has gravity and drag only")
       ->check(CLI::IsMember({"cpu", "gpu", "auto"}));
   app.add_option("--frames", a.frames,
-                 "bits of a coordinate in a head's .h5: 32, 64, or none (default 32)")
+                 "bits of a coordinate in a batch's .h5: 32, 64, or none (default 32)")
       ->check(CLI::IsMember({"32", "64", "none"}));
   app.add_flag("--resume", a.resume, "continue an interrupted run");
   app.add_option(

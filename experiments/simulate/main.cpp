@@ -116,7 +116,7 @@ std::optional<NoHead> no_head(const SceneOutline& outline, const Arguments& a) {
   return simulation::no_head(outline, pack_of(a).number);
 }
 
-/// One head for each number of elements, said on standard error.
+/// One batch for each number of elements, said on standard error.
 std::vector<Job> heads_of(const Job& job, const Arguments& a) {
   if (!job.head || !has_classes(job.outline)) return {job};
   std::vector<Job> jobs;
@@ -126,7 +126,7 @@ std::vector<Job> heads_of(const Job& job, const Arguments& a) {
                         one.outline.series->size(), one.elements);
     jobs.push_back({job.file, std::move(one.outline), true, one.elements});
   }
-  tell("simulate: {}: heads of equal elements: strands {}\n", job.outline.scene.name,
+  tell("simulate: {}: batches of equal elements: strands {}\n", job.outline.scene.name,
        list);
   return jobs;
 }
@@ -147,7 +147,7 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
   if (a.as == "auto" && no && strands > held_at_once.strands) {
     throw InputError(
         fmt::format("{} strands are too many to run one by one (at most {}), "
-                    "and not a head: {}",
+                    "and not as a batch: {}",
                     strands, held_at_once.strands, no->reason),
         file, no->remedy);
   }
@@ -156,10 +156,9 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
                      "give --as batch, or --device cpu");
   }
   if (!job.head && a.bits != 64) {
-    throw InputError(
-        "single precision is for heads of hair, and this runs strand by strand" +
-            (no ? ": " + no->reason : std::string()),
-        file, no ? no->remedy : "give --as batch, or --precision 64");
+    throw InputError("single precision is for batches, and this runs strand by strand" +
+                         (no ? ": " + no->reason : std::string()),
+                     file, no ? no->remedy : "give --as batch, or --precision 64");
   }
   if (!job.head && ranks.size() > 1) {
     throw InputError("strands that run one by one are not shared by ranks", file,

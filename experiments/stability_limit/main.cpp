@@ -27,7 +27,7 @@ constexpr Column columns[] = {
     {"jacobian", "terms of S (Jacobian approximation)"},
     {"modes", "unknowns per element"},
     {"elements", "number of elements"},
-    {"damping", "internal friction: none, light (1e-12) or seed (1e-10 kg m^3/s)"},
+    {"damping", "internal friction: none, light (1e-12) or published (1e-10 kg m^3/s)"},
     {"start",
      "nodal: space, shaken in all directions by 1e-3 of its rates; plane, not out of it"},
     {"dt_max_s", "largest step such that every step tested up to it was stable"},
@@ -148,7 +148,8 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
 }
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"scene", "scenes",
+     "your own scene (several: a.toml,b.toml) instead of the built-in ones", true},
 };
 
 void answer(const CommandLine& line, const std::vector<Row>& rows) {

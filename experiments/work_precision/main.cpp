@@ -117,7 +117,8 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
 bool finding(const Row&) { return true; }
 
 constexpr OwnOption command_options[] = {
-    {"scene", "scenes", "your own scene (several: a.toml,b.toml) instead of ours", true},
+    {"scene", "scenes",
+     "your own scene (several: a.toml,b.toml) instead of the built-in ones", true},
 };
 
 constexpr Unused unused[] = {not_random};

@@ -21,9 +21,10 @@ std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
 std::span<const Parameter> wind_parameters();
 
 /// Makes the load of moving air: a field of effects/wind_field.h (`profile`) and a law of
-/// effects/air_law.h (`law`) for the relative velocity. It includes the drag: use it
-/// instead of linear_drag or quadratic_drag. law = force is a given force per length
-/// along the wind, F w/|U|, independent of the strand's motion. F is in N/m and U the
+/// effects/air_law.h (`law`) for the relative velocity. Laws of a relative
+/// velocity include the drag: use them instead of linear_drag or quadratic_drag. law =
+/// force is a given force per length along the wind, F w/|U|, independent of the
+/// strand's motion: it has no drag. F is in N/m and U the
 /// given velocity. Throws InputError if U = 0 with law = force.
 std::unique_ptr<const Effect> make_wind(const Parameters& parameters,
                                         const RootMotion& head);

@@ -26,19 +26,19 @@ namespace tress::models {
 ///     iterates                              // whether its Jacobian is exact, and it has
 ///     again(as newton)                      // with the matrix of the last newton()
 ///     takes_stresses                        // whether it has
-///     take_stresses(Strand, Element*, q, which, Scratch&)   // from where terms of
-///     second
-///                                           // order of the next newton() have stresses,
-///                                           // in lanes where which > 0; from then on
-///                                           // those that each correction has found
-///                                           // (StressForm)
+///     take_stresses(Strand, Element*, q, which, Scratch&)
+///                                           // from where the next newton() has the
+///                                           // stresses of its terms of second order, in
+///                                           // lanes where which > 0; later ones have
+///                                           // those that corrections find (StressForm)
 ///     straight                              // whether elements are
 ///     element_length(Strand)
 ///     takes_bodies                          // whether it has these, too:
 ///     root_at(Strand, Frame), length(Strand)   // from the head's position; of strands
 ///     most_stretched                        // their length over that
-///     find_loads(Strand, bodies, RootPose, HeadUnits, h, q, v, Scratch&)  // for
-///     newton() and again(), the latter two at their states; bodies outlive them
+///     find_loads(Strand, bodies, RootPose, HeadUnits, h, q, v, Scratch&)
+///                                           // for newton() and again() at these states;
+///                                           // bodies outlive them
 ///
 /// and an Element has keep(lane, double*), recall(lane, const double*): `kept` numbers.
 ///

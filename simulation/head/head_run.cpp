@@ -300,7 +300,7 @@ void HeadRun::share_motion() {
 
 const std::string& HeadRun::move_to_device() {
   if (const auto no = refused_by_device(*head_)) {
-    throw InputError(no->reason, "head of hair", no->remedy);
+    throw InputError(no->reason, "batch", no->remedy);
   }
   device_ = device_head(*head_);
   return device_->name();

@@ -16,7 +16,7 @@ namespace {
 using models::HeadNumber;
 using models::HeadPack;
 
-constexpr const char* place = "head of hair";
+constexpr const char* place = "batch";
 
 /// Stiff strands need steps some halvings shorter than the first.
 constexpr double room = 16;

@@ -69,7 +69,7 @@ constexpr Parameter file_keys[] = {
     {.name = "mesh",
      .help =
          "file: where elements end: half by length and half by turning, or all equal, "
-         "as a head of hair needs them",
+         "as a batch needs them",
      .choices = "turning|equal"},
     {.name = "fit",
      .help = "file: a distance counts from the helices between joints, or from straight "

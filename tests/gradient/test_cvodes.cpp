@@ -86,7 +86,11 @@ class RightSide {
           t, N_VGetArrayPointer(at), {k == 0 ? side : 0, k == 1 ? side : 0},
           N_VGetArrayPointer(rate));
       if (code != 0) return code;
-      N_VLinearSum(0.5 / side, rate, side > 0 ? 0 : 1, s_dot, s_dot);
+      if (side > 0) {
+        N_VScale(0.5 / side, rate, s_dot);
+      } else {
+        N_VLinearSum(0.5 / side, rate, 1, s_dot, s_dot);
+      }
     }
     return 0;
   }
