@@ -116,12 +116,13 @@ class ReducedHead : public Head {
     const double step = h / units_.time;
     auto* const elements = scratch.elements.data();
     ReducedMotion<T> end;
-    by(instructions_, [&] { end = kernel_.move(material, root, step, q, v, elements); });
+    by<T>(instructions_,
+          [&] { end = kernel_.move(material, root, step, q, v, elements); });
     const LoadSums<T>* const* loads = nullptr;
     if (const auto reached = reached_by_effects(block, h, scratch)) {
       loads = scratch.loads.find(*reached, v, elements);
     }
-    by(instructions_, [&] {
+    by<T>(instructions_, [&] {
       kernel_.linearly_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
                                      elements);
     });
@@ -197,7 +198,7 @@ class ReducedHead : public Head {
     const Root& root = roots_[block];
     const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
     LaneEnergies<T> sums;
-    by(instructions_, [&] {
+    by<T>(instructions_, [&] {
       sums = energies_(
           materials_[block], root_of(root, pose), head * root.from, head * root.frame,
           [rest = &rest_[n_ * block]](int i) { return rest[i]; }, &q_[n_ * block],
