@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "contract/input_error.h"
+#include "simulation/fit/record_runs.h"
 
 namespace tress::experiments::calibrate {
 namespace {
@@ -322,10 +323,12 @@ std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model
 
 std::vector<Specimen> strands_of(const Records& records, const Scene& scene) {
   for (const Record& record : records.all) {
-    if (record.of_strand.empty()) continue;
-    const auto& [key, value, where] = record.of_strand.front();
-    throw InputError("the scene says itself what '" + key + "' is", where,
-                     "leave out the column, or --scene");
+    if (!record.of_strand.empty()) {
+      const auto& [key, value, where] = record.of_strand.front();
+      throw InputError("the scene says itself what '" + key + "' is", where,
+                       "leave out the column, or --scene");
+    }
+    check_last_time(scene, "t_s", record.t.back(), record.end);
   }
   return {records.all.size(), specimen(scene)};
 }

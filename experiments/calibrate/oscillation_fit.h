@@ -58,7 +58,7 @@ struct OscillationFit {
 std::vector<Specimen> strands_of(const Records& records, const ModelEntry& model,
                                  const Parameters& parameters, Fitted fitted);
 /// The scene's strand, for each record; throws InputError at a cell that sets what the
-/// scene defines.
+/// scene defines, and at a time after the scene's end.
 std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 
 /// Fits internal friction gamma, air drag nu and Young's modulus E to damped

@@ -19,11 +19,21 @@ constexpr double most_work = 2e7;  // per run
 constexpr std::string_view of_oscillations[] = {"fit",       "signal",  "axis",
                                                 "horizon_s", "noise_m", "noise_seed"};
 
-std::vector<std::string> named_by(const Scene& scene) {
-  refuse_if(!scene.tables->gradient,
-            fmt::format("scene {} does not say what to fit", scene.name), "--set by",
+/// Sets the parameters: those of --set by, or of the scene.
+void set_parameters(const CommandLine& line, std::string_view given, const Scene& scene,
+                    FitTask& task) {
+  if (!given.empty()) {
+    task.by = names_of(given);
+    task.place = line.place("set:by");
+    return;
+  }
+  refuse_if(scene.tables == nullptr || !scene.tables->gradient,
+            fmt::format("scene {} does not say what to fit", scene.name),
+            line.place("set:scenes"),
             "give --set by=youngs_modulus_pa, or [gradient] by in the scene");
-  return names_of(scene.tables->gradient->values().word("by"));
+  const Table& gradient = *scene.tables->gradient;
+  task.by = names_of(gradient.values().word("by"));
+  task.place = gradient.place("by");
 }
 
 }  // namespace
@@ -47,9 +57,9 @@ PointFit point_fit(const CommandLine& line, const Settings& settings) {
   leave_strands_to_the_scene(line);
   settings.leave_models_to_the_scene();
   refuse_if(line.integrators.size() > 1, "several methods for one fit",
-            line.place("--integrators"), "give one");
+            line.place("integrators"), "give one");
   PointFit all;
-  all.scenes = read_scenes(split(own.word("scenes"), ',', line.place("scene")));
+  all.scenes = read_scenes(split(own.word("scenes"), ',', line.place("set:scenes")));
   for (Scene& scene : all.scenes) {
     if (!line.integrators.empty()) {
       scene.integrator = find_integrator(line.integrators.front()).id;
@@ -63,16 +73,21 @@ PointFit point_fit(const CommandLine& line, const Settings& settings) {
   refuse_if(
       all.scenes.size() > 1 && all.scenes.size() != all.records.size(),
       fmt::format("{} scenes for {} records", all.scenes.size(), all.records.size()),
-      line.place("scene"), "give one scene for all records, or one for each");
-  all.by =
-      own.word("by").empty() ? named_by(all.scenes.front()) : names_of(own.word("by"));
+      line.place("set:scenes"), "give one scene for all records, or one for each");
   all.bounds = own.word("bounds");
   all.priors = own.word("priors");
-  all.confidence = own.number("confidence");
-  parse_bounds(all.bounds, line.place("set:bounds"));
-  parse_priors(all.priors, line.place("set:priors"));
-  for (const Scene& scene : all.scenes) {  // refuses names before anything runs
-    static_cast<void>(gradient_parameters(scene, all.by, line.place("set:by")));
+  set_parameters(line, own.word("by"), all.scenes.front(), all.asked);
+  all.asked.bounds = parse_bounds(all.bounds, line.place("set:bounds"));
+  all.asked.priors = parse_priors(all.priors, line.place("set:priors"));
+  all.asked.confidence = own.number("confidence");
+  check_fit(all.task());
+  return all;
+}
+
+FitTask PointFit::task() const {
+  FitTask all = asked;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    all.records.push_back({&scenes[scenes.size() > 1 ? i : 0], &records[i]});
   }
   return all;
 }
@@ -95,26 +110,18 @@ Row PointFit::identity() const {
   row.set("data", data).set("data_hash", run_id("records and scenes", hashed));
   row.set("scene", scene)
       .set("signal", "points")
-      .set("fit", fmt::format("{}", fmt::join(by, ",")));
+      .set("fit", fmt::format("{}", fmt::join(asked.by, ",")));
   row.set("bounds", bounds).set("priors", priors);
   row.set("model", first.model->id).set("integrator", first.integrator);
   row.set("elements", first.strands.empty() ? 0 : first.strands.front().segments.size());
-  row.set("confidence", confidence);
+  row.set("confidence", asked.confidence);
   return row;
 }
 
 std::vector<Row> PointFit::rows(const Row& identity) const {
-  FitTask task{.by = by,
-               .bounds = parse_bounds(bounds, "--set bounds"),
-               .priors = parse_priors(priors, "--set priors"),
-               .confidence = confidence,
-               .place = "--set by"};
   std::size_t points = 0;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    task.records.push_back({&scenes[scenes.size() > 1 ? i : 0], &records[i]});
-    points += records[i].observations.size();
-  }
-  const SceneFit fit = fit_scenes(task);
+  for (const PointRecord& one : records) points += one.observations.size();
+  const SceneFit fit = fit_scenes(task());
   std::vector<Row> all;
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FittedParameter& one = fit.parameters[k];

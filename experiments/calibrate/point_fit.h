@@ -14,10 +14,11 @@ namespace tress::experiments::calibrate {
 struct PointFit {
   std::vector<Scene> scenes;  // one for all records, or one for each
   std::vector<PointRecord> records;
-  std::vector<std::string> by;
   std::string bounds, priors;  // as given
-  double confidence = 0.95;
+  FitTask asked;               // without its records
 
+  /// The fit of these records, to which it refers.
+  FitTask task() const;
   Row identity() const;
   /// A row for each fitted parameter.
   std::vector<Row> rows(const Row& identity) const;

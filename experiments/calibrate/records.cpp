@@ -97,6 +97,7 @@ class Reader {
           "give ascending times since the start; a column 'record' parts repetitions");
     }
     record.t.push_back(t);
+    record.end = place(i + 1, time_);
     record.value.push_back(observed_ == Observed::envelope ? positive(i, amplitude_)
                                                            : number(i, amplitude_));
     if (sigma_) record.sigma.push_back(positive(i, *sigma_));

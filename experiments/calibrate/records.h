@@ -28,6 +28,7 @@ struct Record {
   std::vector<double> value;       // m; of an envelope > 0
   std::vector<double> sigma;       // m, > 0, standard errors; empty: all equal
   std::vector<Setting> of_strand;  // parameters of the measured strand
+  std::string end;                 // file:line:column of the last time
 };
 
 /// The records of one file.

@@ -84,6 +84,18 @@ class Fits(unittest.TestCase):
             tress.fit(scene, "none.csv", BY)
         with self.assertRaisesRegex(tress.InputError, "sigma_m"):
             tress.fit(scene, columns, BY, priors={BY[0]: (3e9, 1e8)})
+        with self.assertRaisesRegex(tress.InputError, r"\(bounds\): give a lower limit"):
+            tress.fit(scene, columns, BY, bounds={BY[0]: (4e9, 1e9)})
+        with self.assertRaisesRegex(tress.InputError, r"\(bounds\): give two finite numbers"):
+            tress.fit(scene, columns, BY, bounds={BY[0]: (1e9, np.inf)})
+        with self.assertRaisesRegex(tress.InputError, r"\(priors\): give a sigma above 0"):
+            tress.fit(scene, columns, BY, priors={BY[0]: (3e9, 0)})
+        with self.assertRaisesRegex(tress.InputError, r"has no strand 1 \(record 0:2:"):
+            strands = np.ones(columns["time_s"].size, dtype=int)
+            tress.fit(scene, {**columns, "strand": strands}, BY)
+        late = columns["time_s"] + 0.1
+        with self.assertRaisesRegex(tress.InputError, "which lasts 0.2 s .*set duration_s"):
+            tress.fit(scene, {**columns, "time_s": late}, BY)
 
     def test_progress_may_end_it(self):
         def stop(evaluations, rms):

@@ -17,6 +17,39 @@ constexpr double search_tolerance = 1e-5;
 // 1e-4 of its distance from the start.
 constexpr double weak_prior = 100;
 
+/// Index of each named parameter among those of the fit. Throws InputError on a name that
+/// is not fitted or stands twice.
+template <class Named>
+std::vector<std::size_t> indices(const std::vector<Named>& given, std::string_view what,
+                                 const std::vector<SceneParameter>& parameters) {
+  std::vector<std::string_view> fitted;
+  for (const SceneParameter& one : parameters) fitted.push_back(one.name);
+  std::vector<std::size_t> all;
+  for (const Named& one : given) {
+    const auto found = std::ranges::find(fitted, one.name);
+    refuse_if(found == fitted.end(),
+              fmt::format("{} of {}, which is not fitted", what, one.name), one.place,
+              suggestion(one.name, fitted,
+                         fmt::format("fitted are: {}", fmt::join(fitted, ", "))));
+    const auto k = static_cast<std::size_t>(found - fitted.begin());
+    refuse_if(std::ranges::count(all, k) > 0, fmt::format("two {} of {}", what, one.name),
+              one.place, "leave one out");
+    all.push_back(k);
+  }
+  return all;
+}
+
+void check(const FitPrior& prior, const SceneParameter& parameter) {
+  const std::string text = fmt::format("the prior of {} is {:g} with sigma = {:g}",
+                                       prior.name, prior.value, prior.sigma);
+  refuse_if(!std::isfinite(prior.value) || !std::isfinite(prior.sigma), text, prior.place,
+            "give two finite numbers");
+  refuse_if(!(prior.sigma > 0), text, prior.place, "give a sigma above 0");
+  refuse_if(prior.value < parameter.min || prior.value > parameter.max, text, prior.place,
+            fmt::format("give a value between {:g} and {:g}, its range in a scene",
+                        parameter.min, parameter.max));
+}
+
 }  // namespace
 
 FitSearch::FitSearch(const FitTask& task)
@@ -25,24 +58,19 @@ FitSearch::FitSearch(const FitTask& task)
       simulated_(runs_.count()),
       by_(runs_.count() * runs_.parameters().size()) {
   const auto& parameters = runs_.parameters();
-  const auto index = [&](const std::string& name, std::string_view what) {
-    const auto found = std::ranges::find(parameters, name, &SceneParameter::name);
-    refuse_if(found == parameters.end(),
-              fmt::format("{} of {}, which is not fitted", what, name), task.place,
-              "leave it out, or fit that parameter");
-    return static_cast<std::size_t>(found - parameters.begin());
-  };
-  for (const FitBound& bound : task.bounds) index(bound.name, "bounds");
-  for (const FitPrior& prior : task.priors) {
-    refuse_if(!(prior.sigma > 0),
-              fmt::format("the prior of {} has sigma = {:g}", prior.name, prior.sigma),
-              task.place, "give one above 0");
+  std::vector<const FitBound*> bounds(parameters.size());
+  const std::vector<std::size_t> bounded = indices(task.bounds, "bounds", parameters);
+  for (std::size_t i = 0; i < bounded.size(); ++i) bounds[bounded[i]] = &task.bounds[i];
+  const std::vector<std::size_t> known = indices(task.priors, "priors", parameters);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const FitPrior& prior = task.priors[i];
+    check(prior, parameters[known[i]]);
     refuse_if(!runs_.sigma_known(), "a prior needs the records' standard errors",
-              task.place, "give the records a column sigma_m, or leave out priors");
-    priors_.push_back({index(prior.name, "a prior"), prior.value, prior.sigma});
+              prior.place, "give the records a column sigma_m, or leave out priors");
+    priors_.push_back({known[i], prior.value, prior.sigma});
   }
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    variables_.emplace_back(parameters[k], task.bounds, task.place);
+    variables_.emplace_back(parameters[k], bounds[k]);
     free_.push_back(k);
     x_.push_back(variables_.back().start());
   }

@@ -39,12 +39,33 @@ std::vector<Named> parse_named(std::string_view text, std::string_view form,
   return all;
 }
 
+void check(const SceneParameter& parameter, const FitBound& bound) {
+  const std::string& name = parameter.name;
+  const std::string both =
+      fmt::format("the bounds of {} are {:g} and {:g}", name, bound.low, bound.high);
+  refuse_if(!std::isfinite(bound.low) || !std::isfinite(bound.high), both, bound.place,
+            "give two finite numbers");
+  refuse_if(!(bound.low < bound.high), both, bound.place,
+            "give a lower limit below the upper one");
+  refuse_if(parameter.positive && !(bound.low > 0),
+            fmt::format("the lower bound of {} is {:g}", name, bound.low), bound.place,
+            "give one above 0");
+  refuse_if(bound.low < parameter.min || bound.high > parameter.max, both, bound.place,
+            fmt::format("give limits between {:g} and {:g}, its range in a scene",
+                        parameter.min, parameter.max));
+  refuse_if(!(bound.low <= parameter.value && parameter.value <= bound.high),
+            fmt::format("the scene's {} = {:g}, where the fit starts, is not between its "
+                        "bounds {:g} and {:g}",
+                        name, parameter.value, bound.low, bound.high),
+            bound.place, "change the scene or the bounds");
+}
+
 }  // namespace
 
 std::vector<FitBound> parse_bounds(std::string_view text, const std::string& where) {
   std::vector<FitBound> all;
   for (Named& one : parse_named(text, "NAME:LOW:HIGH", where)) {
-    all.push_back({std::move(one.name), one.one, one.other});
+    all.push_back({std::move(one.name), one.one, one.other, where});
   }
   return all;
 }
@@ -52,32 +73,18 @@ std::vector<FitBound> parse_bounds(std::string_view text, const std::string& whe
 std::vector<FitPrior> parse_priors(std::string_view text, const std::string& where) {
   std::vector<FitPrior> all;
   for (Named& one : parse_named(text, "NAME:VALUE:SIGMA", where)) {
-    all.push_back({std::move(one.name), one.one, one.other});
+    all.push_back({std::move(one.name), one.one, one.other, where});
   }
   return all;
 }
 
-FitVariable::FitVariable(const SceneParameter& parameter,
-                         std::span<const FitBound> bounds, const std::string& where)
+FitVariable::FitVariable(const SceneParameter& parameter, const FitBound* bound)
     : logarithmic_(parameter.positive), measure_(parameter.measure) {
   const auto u_of = [&](double p) { return logarithmic_ ? std::log(p) : p / measure_; };
   const double start = u_of(parameter.value);
   start_ = start;
-  const auto bound = std::ranges::find(bounds, parameter.name, &FitBound::name);
-  if (bound == bounds.end()) return;
-  const std::string& name = parameter.name;
-  refuse_if(logarithmic_ && !(bound->low > 0),
-            fmt::format("the lower bound of {} is {:g}", name, bound->low), where,
-            "give one above 0");
-  refuse_if(
-      !(bound->low < bound->high),
-      fmt::format("the bounds of {} are {:g} and {:g}", name, bound->low, bound->high),
-      where, "give the lower one first");
-  refuse_if(!(bound->low <= parameter.value && parameter.value <= bound->high),
-            fmt::format("the scene's {} = {:g}, where the fit starts, is not within {:g} "
-                        "and {:g}",
-                        name, parameter.value, bound->low, bound->high),
-            where, "change the scene or the bounds");
+  if (bound == nullptr) return;
+  check(parameter, *bound);
   const double low = u_of(bound->low), high = u_of(bound->high);
   middle_ = (low + high) / 2;
   reach_ = (high - low) / 2;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,14 +10,16 @@ namespace tress::simulation {
 
 /// Limits of a fitted parameter, in its unit.
 struct FitBound {
-  std::string name;  // name of the parameter
-  double low, high;  // lower and upper limit
+  std::string name;              // name of the parameter
+  double low, high;              // lower and upper limit
+  std::string place = "bounds";  // where they are given, in messages
 };
 
 /// Knowledge of a parameter from before the records: a normal distribution, in its unit.
 struct FitPrior {
-  std::string name;     // name of the parameter
-  double value, sigma;  // mean and standard deviation
+  std::string name;              // name of the parameter
+  double value, sigma;           // mean and standard deviation
+  std::string place = "priors";  // where it is given, in messages
 };
 
 /// Returns the bounds of "NAME:LOW:HIGH,NAME:LOW:HIGH". Throws InputError naming `where`.
@@ -35,9 +36,9 @@ std::vector<FitPrior> parse_priors(std::string_view text, const std::string& whe
 /// [James, Roos 1975, Comput. Phys. Commun. 10, 343 (MINUIT)].
 class FitVariable {
  public:
-  /// Throws InputError naming `where` on bounds that leave no room or exclude the start.
-  FitVariable(const SceneParameter& parameter, std::span<const FitBound> bounds,
-              const std::string& where);
+  /// `bound` may be null. Throws InputError on a bound that leaves no room, exceeds the
+  /// range of the parameter, or excludes the start.
+  FitVariable(const SceneParameter& parameter, const FitBound* bound);
 
   /// Returns whether u = ln p.
   bool logarithmic() const { return logarithmic_; }

@@ -21,6 +21,10 @@ constexpr std::size_t most_index = 10'000'000;
 constexpr const char* header_remedy =
     "give time_s, x_m, y_m, z_m, and where needed strand, point, sigma_m";
 
+std::string text_of(const std::string& file, const CellPlace& at) {
+  return fmt::format("{}:{}:{}", file, at.line, at.column);
+}
+
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file)
@@ -50,12 +54,14 @@ class Reader {
     return std::ranges::count(table_.header, name) > 0;
   }
   std::string place(std::size_t line, std::size_t c) const {
-    const CellPlace& at = table_.places[line][c];
-    return fmt::format("{}:{}:{}", file_, at.line, at.column);
+    return text_of(file_, table_.places[line][c]);
+  }
+  const CellPlace& cell_place(std::size_t i, std::string_view name) const {
+    const auto c = std::ranges::find(table_.header, name) - table_.header.begin();
+    return table_.places[i + 1][static_cast<std::size_t>(c)];
   }
   std::string place(std::size_t i, std::string_view name) const {
-    const auto c = std::ranges::find(table_.header, name) - table_.header.begin();
-    return place(i + 1, static_cast<std::size_t>(c));
+    return text_of(file_, cell_place(i, name));
   }
   /// Of a column that the table may lack: empty.
   std::string_view cell(std::size_t i, std::string_view name) const {
@@ -93,7 +99,12 @@ class Reader {
       refuse_if(!(sigma > 0), fmt::format("sigma_m = {} is not positive", sigma),
                 place(i, "sigma_m"), "give a standard error above 0, or leave it out");
     }
-    record.places.push_back(place(i, "time_s"));
+    const int time = cell_place(i, "time_s").column;
+    const auto column = [&](std::string_view name) {
+      return has(name) ? cell_place(i, name).column : time;
+    };
+    record.places.push_back(
+        {cell_place(i, "time_s").line, time, column("strand"), column("point")});
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
       if (cell(i, coordinates[k]).empty()) continue;
       one.component = k;
@@ -108,6 +119,11 @@ class Reader {
 };
 
 }  // namespace
+
+std::string PointRecord::place(const Observation& one, int RowPlace::*cell) const {
+  const RowPlace& row = places[one.row];
+  return text_of(file, {row.line, row.*cell});
+}
 
 bool has_points(const std::vector<std::string>& header) {
   return std::ranges::any_of(

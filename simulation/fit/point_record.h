@@ -20,16 +20,23 @@ struct Observation {
   std::size_t row = 0;                    // of the file, from 0
 };
 
+/// Place of a row in its file, counted from 1: its line, and the columns where cells
+/// start. Absent cells have the column of the time.
+struct RowPlace {
+  int line = 1;                         // line of the file
+  int time = 1, strand = 1, point = 1;  // columns of these cells
+};
+
 /// Points of strands over time, from t = 0 of the scene's run.
 struct PointRecord {
   std::string file = {};                       // name of the CSV file
   std::string hash = {};                       // of the text, 16 hexadecimal digits
   std::vector<Observation> observations = {};  // coordinates in the order of rows
   std::vector<double> sigma = {};              // m, of each observation; empty: not known
-  std::vector<std::string> places = {};        // file:line:column of each row
+  std::vector<RowPlace> places = {};           // place of each row
 
-  /// Returns the place of an observation in the file: file:line:column.
-  const std::string& place(const Observation& one) const { return places[one.row]; }
+  /// Returns the place of a cell of an observation's row: file:line:column.
+  std::string place(const Observation& one, int RowPlace::*cell) const;
 };
 
 /// Whether the header of a table names a coordinate (x_m, y_m or z_m).

@@ -59,12 +59,40 @@ class ChangedScene {
   std::vector<double> s_;
 };
 
+/// Why a run has no derivatives at these values: they are at the end of their range, and
+/// a derivative looks to both sides. Empty: it has.
+std::string out_of_range(std::span<const SceneParameter> parameters, In values) {
+  // As far as integrators/gradient/varied_system.h goes, of the measure.
+  constexpr double below = 1e-5, above = 0.25;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const SceneParameter& one = parameters[k];
+    if (values[k] - below * one.measure >= one.min &&
+        values[k] + above * one.measure <= one.max) {
+      continue;
+    }
+    return fmt::format("{} = {:.4g} comes to the end of its range, {:g} to {:g}",
+                       one.name, values[k], one.min, one.max);
+  }
+  return {};
+}
+
 std::string start_of(const Scene& scene) {
   if (!scene.tables->gradient) return "auto";
   return std::string(scene.tables->gradient->values().word("start"));
 }
 
 }  // namespace
+
+void check_last_time(const Scene& scene, std::string_view column, double last,
+                     const std::string& place) {
+  constexpr double rounding = 1e-8;  // of times with 9 digits, as in tables of simulate
+  refuse_if(
+      last > scene.duration * (1 + rounding),
+      fmt::format("the last {} = {} is after the end of scene {}, which lasts {} s",
+                  column, last, scene.name, scene.duration),
+      place,
+      fmt::format("set duration_s = {} in the scene, or leave out later rows", last));
+}
 
 RecordRuns::RecordRuns(const FitTask& task) {
   refuse_if(task.by.empty(), "no parameter to fit", task.place,
@@ -88,11 +116,14 @@ void RecordRuns::add(const FitTask& task, const FitRecord& from) {
                      task.place, "leave out .each, or give scenes with equal elements");
   }
   const std::vector<Observation>& all = from.points->observations;
+  const Observation& last = *std::ranges::max_element(all, {}, &Observation::t);
+  check_last_time(*from.scene, "time_s", last.t,
+                  from.points->place(last, &RowPlace::time));
   std::map<std::size_t, OfStrand> strands;
   for (const Observation& one : all) {
     refuse_if(one.strand >= from.scene->strands.size(),
               fmt::format("scene {} has no strand {}", from.scene->name, one.strand),
-              from.points->place(one),
+              from.points->place(one, &RowPlace::strand),
               fmt::format("it has {}, the first is 0", from.scene->strands.size()));
     strands[one.strand].times.push_back(one.t);
   }
@@ -140,7 +171,7 @@ void RecordRuns::check_points(const FitRecord& record, const OfStrand& one) cons
     if (point.strand != one.strand || point.point.value_or(0) < count) continue;
     throw InputError(
         fmt::format("strand {} has no point {}", one.strand, *point.point),
-        record.points->place(point),
+        record.points->place(point, &RowPlace::point),
         fmt::format("it has points 0 to {}, the last one is the tip", count - 1));
   }
 }
@@ -148,6 +179,8 @@ void RecordRuns::check_points(const FitRecord& record, const OfStrand& one) cons
 std::string RecordRuns::run(In values, Finer finer, Out simulated, Out by) const {
   const std::size_t p = parameters().size();
   for (const Record& record : records_) {
+    std::string beyond = out_of_range(record.parameters, values);
+    if (!beyond.empty()) return beyond;
     const ChangedScene changed(*record.scene, record.parameters, values, finer);
     const Scene scene = changed.at_values();
     GradientTask task{changed.parameters(), record.damped, {}, 1};

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,11 @@
 #include "simulation/gradient/scene_gradient.h"
 
 namespace tress::simulation {
+
+/// Throws InputError naming `place` where a record goes on after the end of its scene.
+/// `column`: name of its times; `last`: the last one (s).
+void check_last_time(const Scene& scene, std::string_view column, double last,
+                     const std::string& place);
 
 /// Residuals of records and their derivatives, for values of the parameters.
 class RecordRuns {

@@ -227,4 +227,6 @@ SceneFit Fit::result() {
 
 SceneFit fit_scenes(const FitTask& task) { return Fit(task).result(); }
 
+void check_fit(const FitTask& task) { static_cast<void>(FitSearch(task)); }
+
 }  // namespace tress::simulation

@@ -87,8 +87,12 @@ struct SceneFit {
 /// u is part of the search, and of no statistics. Shifts are one Gauss-Newton step from
 /// the result with the residuals and derivatives of the finer run.
 ///
-/// Throws InputError on parameters that the scenes do not have, records of strands or
-/// points that they do not have, and as check_derivatives().
+/// Throws InputError as check_fit() does.
 SceneFit fit_scenes(const FitTask& task);
+
+/// Checks a task without a run. Throws InputError on parameters that the scenes do not
+/// have, records of strands, points or times that they do not have, bounds and priors
+/// that are wrong, too few coordinates, and as check_derivatives().
+void check_fit(const FitTask& task);
 
 }  // namespace tress::simulation

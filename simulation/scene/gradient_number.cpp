@@ -83,6 +83,8 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
   all.unit = unit_of(*p);
   all.measure = or_one(all.value);
   all.positive = all.value > 0 && p->min >= 0;
+  all.min = p->min;
+  all.max = p->max;
   if (all.value <= p->min || all.value + reach * all.measure > p->max) {
     refuse_gradient(
         name,

@@ -8,6 +8,7 @@
 
 #include "contract/input_error.h"
 #include "simulation/scene/root_table.h"
+#include "simulation/scene/shared_parameter.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
@@ -146,11 +147,12 @@ class Finder {
       refuse(name, "it is 0, where a change has no two sides", "give it a small value");
     }
     const double value = found->value(first());
+    const Parameter key = shared_parameter(name);
     to.push_back({std::string(name), std::string(found->unit), value, value, false,
                   [scale = found->scale](Scene& scene, double s) {
                     for (Strand& strand : scene.strands) scale(strand, s);
                   },
-                  true});
+                  true, key.min, key.max});
     return true;
   }
 
@@ -245,7 +247,7 @@ class Finder {
                     }
                     scene.tables = std::move(tables);
                   },
-                  of.positive});
+                  of.positive, of.min, of.max});
     return true;
   }
 
@@ -264,7 +266,7 @@ class Finder {
                     EffectChoice& changed = scene.effects[i];
                     changed.parameters.set(of.key, of.text(changed.parameters, s));
                   },
-                  of.positive});
+                  of.positive, of.min, of.max});
     return true;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,6 +22,8 @@ struct GradientNumber {
   double measure = 1;                         // a change by s is one by s times this
   std::string unit = {};                      // unit of the value
   bool positive = false;                      // no value below 0 is allowed
+  double min = -std::numeric_limits<double>::infinity();  // least value of the key
+  double max = std::numeric_limits<double>::infinity();   // largest value of the key
 
   /// The text of the key for Parameters::set, changed by s.
   std::string text(const Parameters& values, double s) const;
@@ -56,6 +59,8 @@ struct SceneParameter {
   /// Changes the value in a scene by s times the measure.
   std::function<void(Scene& scene, double s)> change;
   bool positive = false;  // a number above 0, which a fit changes in proportion
+  double min = -std::numeric_limits<double>::infinity();  // least value of its key
+  double max = std::numeric_limits<double>::infinity();   // largest value of its key
 };
 
 /// Returns the parameters that the scene's [gradient] names. Throws InputError with its

@@ -39,9 +39,11 @@ TEST(CalibratePoints, FindsStiffnessFrictionAndDragOfTheShippedRecord) {
 TEST(CalibratePoints, RefusesWithPlaceAndRemedyBeforeAnyRun) {
   Toy calibrate;
   const auto refused = [&](const std::string& arguments) {
+    const auto before = calibrate.files();
     const Toy::Result run = calibrate.run(arguments + " --out t.csv --progress none");
     EXPECT_EQ(run.code, 2) << arguments;
     EXPECT_EQ(run.error_lines(), 1) << run.err;
+    EXPECT_EQ(calibrate.files(), before) << arguments;
     return run.err;
   };
   const std::string both = "--scene " + scene + " --set data=" + record;
@@ -55,6 +57,48 @@ TEST(CalibratePoints, RefusesWithPlaceAndRemedyBeforeAnyRun) {
   calibrate.write("bad.csv", "time_s,x_m\n0.1,oops\n");
   EXPECT_THAT(refused("--scene " + scene + " --set data=bad.csv"),
               HasSubstr("bad.csv:2:5"));
+}
+
+// A record, a bound or a prior that does not fit the scene, and a scene whose run has no
+// derivatives.
+TEST(CalibratePoints, RefusesWhatDoesNotFitTheSceneBeforeAnyRun) {
+  Toy calibrate;
+  const auto refused = [&](const std::string& arguments) {
+    const auto before = calibrate.files();
+    const Toy::Result run = calibrate.run("--scene " + scene + " " + arguments +
+                                          " --out t.csv --progress none");
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_EQ(run.error_lines(), 1) << run.err;
+    EXPECT_EQ(calibrate.files(), before) << arguments;
+    return run.err;
+  };
+  calibrate.write("strand.csv", "time_s,strand,x_m\n0.1,0,0\n0.2,1,0\n0.3,0,0\n");
+  EXPECT_THAT(refused("--set data=strand.csv"),
+              HasSubstr("has no strand 1 (strand.csv:3:5): it has 1, the first is 0"));
+  calibrate.write("point.csv", "time_s,x_m,point\n0.1,0,0\n0.2,0,41\n0.3,0,0\n");
+  EXPECT_THAT(refused("--set data=point.csv"),
+              HasSubstr("no point 41 (point.csv:3:7): it has points 0 to 40"));
+  calibrate.write("late.csv", "time_s,x_m\n0.1,0\n0.6,0\n0.2,0\n0.3,0\n");
+  EXPECT_THAT(refused("--set data=late.csv"),
+              HasSubstr("the last time_s = 0.6 is after the end of scene swinging_curl, "
+                        "which lasts 0.5 s (late.csv:3:1): set duration_s = 0.6"));
+  calibrate.write("few.csv", "time_s,x_m\n0.1,0\n0.2,0\n0.3,0\n");
+  EXPECT_THAT(refused("--set data=few.csv"),
+              HasSubstr("3 measured coordinates for 3 parameters"));
+  EXPECT_THAT(refused("--set data=" + record + " --set by=linear_dragg.drag_kg_m_s"),
+              HasSubstr("(--set by=linear_dragg.drag_kg_m_s)"));
+  const auto with = [&](const std::string& setting) {
+    return refused("--set data=" + record + " --set " + setting);
+  };
+  EXPECT_THAT(with("bounds=youngs_modulus_pa:5e9:1e9"),
+              HasSubstr("(--set bounds=youngs_modulus_pa:5e9:1e9): give a lower limit"));
+  EXPECT_THAT(with("bounds=youngs_modulus_pa:1e9:2e9"), HasSubstr("change the scene"));
+  EXPECT_THAT(with("bounds=youngs_modulus_pa:1e9:1e99"), HasSubstr("its range"));
+  EXPECT_THAT(with("bounds=radius_m:1e-6:1e-4"), HasSubstr("which is not fitted (--set"));
+  EXPECT_THAT(with("priors=youngs_modulus_pa:3e9:0"), HasSubstr("(--set priors="));
+  EXPECT_THAT(with("priors=radius_m:4e-5:1e-6"), HasSubstr("which is not fitted (--set"));
+  EXPECT_THAT(refused("--set data=" + record + " --integrators velocity_verlet"),
+              HasSubstr("no gradient"));
 }
 
 }  // namespace tress::test_calibrate_points

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/fit/record_runs.h"
 #include "simulation/fit/scene_fit.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "tests/support/refusal.h"
@@ -69,7 +70,7 @@ PointRecord record_of(const Scene& scene, std::size_t count, double sigma,
       one.row = k;
       if (sigma > 0) record.sigma.push_back(sigma);
     }
-    record.places.push_back("r.csv:" + std::to_string(k + 2) + ":1");
+    record.places.push_back({.line = static_cast<int>(k) + 2, .strand = 7, .point = 9});
   }
   return record;
 }
@@ -242,6 +243,37 @@ TEST(SceneFit, OfSeveralRecordsSharesTheParameters) {
   EXPECT_NEAR(found.fitted[1][2], of_two.observations[2].value, 1e-9);
 }
 
+// A time as a table prints it, with 9 digits, is not after the end.
+TEST(SceneFit, AcceptsTheLastFrameOfATable) {
+  const Scene scene = Curl{.duration = 1.0 / 3}.scene();
+  PointRecord record = record_of(scene, 5, 0);
+  for (Observation& one : record.observations) one.t *= 0.333333334 * 3;
+  EXPECT_EQ(refusal([&] {
+              check_fit({.records = {{&scene, &record}},
+                         .by = {four[0]},
+                         .bounds = {},
+                         .priors = {}});
+            }),
+            "");
+}
+
+// Values to which a search comes, and which no scene may have, are as a run that fails.
+TEST(SceneFit, ASearchStaysWithinTheRangesOfAScene) {
+  const Scene scene = Curl{}.scene();
+  const PointRecord record = record_of(scene, 5, 0);
+  const RecordRuns runs({.records = {{&scene, &record}},
+                         .by = {four[0], four[2]},
+                         .bounds = {},
+                         .priors = {}});
+  std::vector<double> x(runs.count()), by(2 * runs.count());
+  const auto run = [&](double modulus, double drag) {
+    return runs.run(std::vector{modulus, drag}, RecordRuns::Finer::no, x, by);
+  };
+  EXPECT_EQ(run(3e9, 5e-5), "");
+  EXPECT_THAT(run(1e15, 5e-5), HasSubstr("youngs_modulus_pa = 1e+15 comes to the end"));
+  EXPECT_THAT(run(3e9, 1e-10), HasSubstr("linear_drag.drag_kg_m_s = 1e-10"));
+}
+
 // Numbers of [root] change one scene, one after the other.
 TEST(SceneFit, FindsTheMotionOfTheRoot) {
   const std::vector<std::string> by{"root.amplitude_m", "root.frequency_hz"};
@@ -272,7 +304,9 @@ TEST(PointRecord, ReadsStrandsPointsAndMissingCoordinates) {
   EXPECT_EQ(record.observations[2].point, 3u);
   EXPECT_EQ(record.observations[2].value, 4);
   EXPECT_EQ(record.sigma, (std::vector<double>{0.1, 0.1, 0.2}));
-  EXPECT_EQ(record.place(record.observations[2]), "r.csv:3:1");
+  EXPECT_EQ(record.place(record.observations[2], &RowPlace::time), "r.csv:3:1");
+  EXPECT_EQ(record.place(record.observations[2], &RowPlace::strand), "r.csv:3:5");
+  EXPECT_EQ(record.place(record.observations[2], &RowPlace::point), "r.csv:3:7");
 }
 
 TEST(PointRecord, RefusesWhatItCannotReadWithThePlace) {
@@ -293,8 +327,11 @@ TEST(PointRecord, RefusesWhatItCannotReadWithThePlace) {
 TEST(SceneFit, RefusesWhatItCannotFit) {
   const Scene scene = Curl{}.scene();
   const PointRecord record = record_of(scene, 5, 0);
+  // Without a run, and the same as by the fit.
   const auto refused = [&](const FitTask& task) {
-    return refusal([&] { fit_scenes(task); });
+    const std::string before = refusal([&] { check_fit(task); });
+    EXPECT_EQ(refusal([&] { fit_scenes(task); }), before);
+    return before;
   };
   FitTask task{
       .records = {{&scene, &record}}, .by = {four[0]}, .bounds = {}, .priors = {}};
@@ -306,38 +343,50 @@ TEST(SceneFit, RefusesWhatItCannotFit) {
   EXPECT_THAT(with([](FitTask& t) { t.by = {}; }), HasSubstr("no parameter to fit"));
   EXPECT_THAT(with([](FitTask& t) { t.by = {"youngs_moduls_pa"}; }),
               HasSubstr("unknown parameter"));
-  EXPECT_THAT(with([](FitTask& t) {
-                t.bounds = {{four[1], 1, 2}};
-              }),
-              HasSubstr("which is not fitted"));
-  EXPECT_THAT(with([](FitTask& t) {
-                t.bounds = {{four[0], 0, 4e9}};
-              }),
-              HasSubstr("give one above 0"));
-  EXPECT_THAT(with([](FitTask& t) {
-                t.bounds = {{four[0], 4e9, 1e9}};
-              }),
-              HasSubstr("lower one first"));
-  EXPECT_THAT(with([](FitTask& t) {
-                t.bounds = {{four[0], 1e9, 2e9}};
-              }),
-              HasSubstr("where the fit starts"));
-  EXPECT_THAT(with([](FitTask& t) {
-                t.priors = {{four[0], 3e9, 1e8}};
-              }),
-              HasSubstr("sigma_m"));
+  const auto with_bounds = [&](std::vector<FitBound> bounds) {
+    return with([&](FitTask& t) { t.bounds = std::move(bounds); });
+  };
+  EXPECT_THAT(with_bounds({{four[1], 1, 2}}),
+              HasSubstr("which is not fitted (bounds): fitted are: youngs_modulus_pa"));
+  EXPECT_THAT(with_bounds({{"youngs_moduls_pa", 1, 2}}), HasSubstr("did you mean"));
+  EXPECT_THAT(with_bounds({{four[0], 0, 4e9}}), HasSubstr("(bounds): give one above 0"));
+  EXPECT_THAT(with_bounds({{four[0], 4e9, 1e9}}), HasSubstr("limit below the upper one"));
+  EXPECT_THAT(with_bounds({{four[0], 3e9, 3e9}}), HasSubstr("limit below the upper one"));
+  EXPECT_THAT(with_bounds({{four[0], 1e9, HUGE_VAL}}), HasSubstr("two finite numbers"));
+  EXPECT_THAT(with_bounds({{four[0], 1e9, 2e9}}), HasSubstr("where the fit starts"));
+  EXPECT_THAT(with_bounds({{four[0], 1e9, 1e16}}), HasSubstr("between 0.001 and 1e+15"));
+  EXPECT_THAT(with_bounds({{four[0], 1e9, 4e9}, {four[0], 2e9, 4e9}}),
+              HasSubstr("two bounds of youngs_modulus_pa (bounds)"));
+  const auto with_priors = [&](std::vector<FitPrior> priors) {
+    return with([&](FitTask& t) { t.priors = std::move(priors); });
+  };
+  EXPECT_THAT(with_priors({{four[0], 3e9, 1e8}}),
+              HasSubstr("(priors): give the records a column sigma_m"));
+  EXPECT_THAT(with_priors({{four[0], 3e9, 0}}), HasSubstr("give a sigma above 0"));
+  EXPECT_THAT(with_priors({{four[0], 3e9, std::nan("")}}), HasSubstr("finite numbers"));
+  EXPECT_THAT(with_priors({{four[0], -3e9, 1e8}}), HasSubstr("(priors): give a value"));
+  EXPECT_THAT(with_priors({{four[1], 1e-10, 1e-11}}),
+              HasSubstr("is not fitted (priors)"));
   PointRecord elsewhere = record;
   elsewhere.observations[0].strand = 1;
   EXPECT_THAT(with([&](FitTask& t) {
                 t.records = {{&scene, &elsewhere}};
               }),
-              HasSubstr("has no strand 1 (r.csv:2:1)"));
+              HasSubstr("has no strand 1 (r.csv:2:7)"));
   elsewhere.observations[0].strand = 0;
   elsewhere.observations[0].point = 6;
   EXPECT_THAT(with([&](FitTask& t) {
                 t.records = {{&scene, &elsewhere}};
               }),
-              HasSubstr("no point 6 (r.csv:2:1): it has points 0 to 5"));
+              HasSubstr("no point 6 (r.csv:2:9): it has points 0 to 5"));
+  elsewhere = record;
+  elsewhere.observations[4].t = 0.3;
+  EXPECT_THAT(
+      with([&](FitTask& t) {
+        t.records = {{&scene, &elsewhere}};
+      }),
+      HasSubstr("the last time_s = 0.3 is after the end of scene curl, which lasts "
+                "0.25 s (r.csv:3:1): set duration_s = 0.3"));
   EXPECT_THAT(refusal([] { parse_bounds("youngs_modulus_pa:1", "--set bounds"); }),
               HasSubstr("is not NAME:LOW:HIGH (--set bounds)"));
   EXPECT_THAT(refusal([] { parse_priors("youngs_modulus_pa:1:x", "--set priors"); }),

@@ -150,6 +150,10 @@ TEST(CalibrateScene, RefusesWhatItCannotFitWithTheReason) {
   EXPECT_THAT(refusal(file, {{"signal", "envelope"}}), HasSubstr("displacement"));
   EXPECT_THAT(refusal(file, {{"signal", "envelope"}, {"fit", "stiffness"}}),
               HasSubstr("no frequency"));
+  const std::string late =
+      file_of("late.csv", "t_s,amplitude_m\n0.1,1\n0.2,1\n0.3,1\n0.4,1\n0.6,1\n");
+  EXPECT_THAT(refusal(file, {{"data", late}}),
+              HasSubstr("late.csv:6:1): set duration_s"));
   const std::string free = file_of("free.toml", hair("[root]\nmotion = \"free\"\n"));
   EXPECT_THAT(refusal(free), HasSubstr("flies freely"));
 }
