@@ -20,6 +20,15 @@ def _smooth(tables):
     return rows[~rows["model"].isin(_KINKED)]
 
 
+def _kinked_names():
+    return " and ".join(f"`{name}`" for name in _KINKED)
+
+
+def smooth_models(tables):
+    """Returns the models that statements about all models are about."""
+    return f"the {_smooth(tables)['model'].nunique()} models other than {_kinked_names()}"
+
+
 def _work(tables, column):
     """Returns the linearizations for a target: a row for each model, a column for each method."""
     rows = tables.rows("cost_of_gradient", _DEFAULT)
@@ -46,7 +55,8 @@ def _advice(tables, column):
     work = tried.dropna(axis=1, how="any") if tried.notna().all().any() else tried
     over = work.div(tried.min(axis=1), axis=0).max()
     best = over.idxmin()
-    compared = "the fewest on every model" if over[best] == 1 else f"at most {number(over[best], 3)} times the fewest on any model"
+    population = f"of these {len(tried)} models"
+    compared = f"the fewest on each {population}" if over[best] == 1 else f"at most {number(over[best], 3)} times the fewest on any {population}"
     return f"take `{best}`: it needs {span(work[best], lambda x: number(x, 3))} linearizations of the run and its derivatives, {compared}"
 
 
@@ -71,8 +81,8 @@ def backward_euler(tables):
     rows = _smooth(tables)
     rows = _finest(rows[rows["integrator"] == "backward_euler"])
     tip = rows["tip_error_rel"]
-    return (f"with {rows['steps'].iloc[0]} steps its gradient is {span(rows['gradient_error_rel'], percent)} wrong, where its tip is "
-            f"{span(tip, percent)} of the length off")
+    return (f"with {rows['steps'].iloc[0]} steps its gradient is {span(rows['gradient_error_rel'], percent)} wrong on these "
+            f"{rows['model'].nunique()} models, where its tip is {span(tip, percent)} of the length off")
 
 
 def _space(tables):
@@ -97,8 +107,9 @@ def space_first(tables):
     time = _smooth(tables)
     time = time[(time["integrator"] == "tr_bdf2") & (time["steps"] == _OTHER_STEPS) & time["model"].isin(rows["model"])]
     must(time["gradient_error_rel"].max() < rows["gradient_error_rel"].min(), "space limits the gradient")
-    return (f"with {_COARSE} elements the error in space is {span(rows['gradient_error_rel'], percent)}, and the error in time of `tr_bdf2` with "
-            f"{_OTHER_STEPS} steps is {span(time['gradient_error_rel'], percent)}. `super_clothoid` needs fewer elements")
+    return (f"with {_COARSE} elements the error in space is {span(rows['gradient_error_rel'], percent)} for the {len(rows)} models that "
+            f"converge to the rod, `super_clothoid` apart, which needs fewer elements. Their error in time with `tr_bdf2` and "
+            f"{_OTHER_STEPS} steps is {span(time['gradient_error_rel'], percent)}")
 
 
 def reference_gap(tables):
@@ -109,15 +120,16 @@ def kinked(tables):
     rows = _measured(tables, _DEFAULT)
     rows = _finest(rows[rows["model"].isin(_KINKED)])
     must(rows["linearizations_1_percent"].isna().all(), "kinked models do not reach 1 %")
-    return (f"`mass_spring` and `inextensible_strand` reach neither: their best gradient with "
-            f"{rows['steps'].iloc[0]} steps is {percent(rows['gradient_error_rel'].min())} wrong.")
+    return (f"{_kinked_names()} reach neither: their best gradient with "
+            f"{rows['steps'].iloc[0]} steps is {percent(rows['gradient_error_rel'].min())} wrong. Every statement about errors in time "
+            "leaves them out, unless it names them.")
 
 
 def over_tip(tables):
     rows = _smooth(tables)
     ratio = rows["gradient_error_rel"] / rows["tip_error_rel"]
-    return (f"It is {number(ratio.min())} to {number(ratio.max())} times as wrong as the tip over the length; the median is "
-            f"{number(ratio.median())}.")
+    return (f"On {smooth_models(tables)} it is {number(ratio.min())} to {number(ratio.max())} times as wrong as the tip over the "
+            f"length; the median over their methods and steps is {number(ratio.median())}.")
 
 
 def by_steps(tables):
@@ -164,7 +176,7 @@ def starts(tables):
         with_start = damped[damped["integrator"] == method]["gradient_error_rel"]
         worst = members.loc[members["gradient_error_rel"].idxmax()]
         lines.append([f"`{method}`", percent(with_start.max()), percent(worst["gradient_error_rel"]), f"`{worst['model']}`"])
-    return table(["method", "with the damped start, worst model", "without it, worst model", "that model"], lines)
+    return table(["method", "with the damped start, worst of these models", "without it, worst of these models", "that model"], lines)
 
 
 def elastic(tables):
@@ -172,12 +184,17 @@ def elastic(tables):
     exact = _smooth(tables).set_index(["model", "integrator", "steps"])["gradient_error_rel"]
     ratio = {key: row / exact[key] for key, row in rows.set_index(["model", "integrator", "steps"])["gradient_error_rel"].items()}
     worst = max(ratio, key=ratio.get)
+    models = list(dict.fromkeys(key[0] for key in ratio))
     return (f"the error with {_OTHER_STEPS} steps is {number(min(ratio.values()))} to {number(max(ratio.values()))} times that with the exact one; "
-            f"the worst is `{worst[0]}` with `{worst[1]}`")
+            f"the worst of {', '.join(f'`{model}`' for model in models)} is `{worst[0]}` with `{worst[1]}`")
 
 
 def _contact(tables):
     return _measured(tables, {"part": "contact"})
+
+
+def contact_models(tables):
+    return ", ".join(f"`{model}`" for model in _contact(tables)["model"].unique())
 
 
 def contact(tables):
