@@ -1,6 +1,8 @@
 // tress._core: what python/tress/ is made of.
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "contract/parameters.h"
 #include "python/bindings/owned_system.h"
 #include "simulation/plugin/load_plugin.h"
 
@@ -27,6 +29,12 @@ PYBIND11_MODULE(_core, m) {
   });
   m.def("load_plugin", [](const std::filesystem::path& library) {
     tress::simulation::load_plugin(library.string());
+  });
+  // Remedy for an unknown name: its present name, or the nearest of those that are known.
+  m.def("suggestion", [](const std::string& word, const std::vector<std::string>& known,
+                         const std::string& otherwise) {
+    const std::vector<std::string_view> names(known.begin(), known.end());
+    return tress::suggestion(word, names, otherwise);
   });
   add_systems(m);
   add_integrators(m);

@@ -108,10 +108,13 @@ class StrandsRun {
 /// HeadRun in Python, with the guard that simulate has.
 class HeadOfHair {
  public:
-  HeadOfHair(ScenePtr scene, SceneOutline outline, int bits, int threads)
+  HeadOfHair(ScenePtr scene, SceneOutline outline, int precision, int threads)
       : scene_(std::move(scene)), outline_(std::move(outline)) {
+    refuse_if(precision != 64 && precision != 32,
+              "precision = " + std::to_string(precision) + " is not available",
+              "precision", "give 64 or 32");
     const models::HeadNumber number =
-        bits == 64 ? models::HeadNumber::float64 : models::HeadNumber::float32;
+        precision == 64 ? models::HeadNumber::float64 : models::HeadNumber::float32;
     if (const auto no = no_single_head(outline_, number)) {
       throw InputError(no->reason, scene_->name, no->remedy);
     }
@@ -287,14 +290,14 @@ void add_scenes(py::module_& m) {
         return py::make_tuple(e.kinetic, e.elastic, e.effects);
       });
   py::class_<HeadOfHair>(m, "HeadRun")
-      .def(py::init(
-          [](const std::string& text, const std::string& file, int bits, int threads) {
-            // As a file is: an outline, since all strands may be too many to be held.
-            SceneOutline outline = parse_outline(text, file);
-            auto scene = std::make_shared<Scene>(outline.scene);
-            return std::make_unique<HeadOfHair>(std::move(scene), std::move(outline),
-                                                bits, threads);
-          }))
+      .def(py::init([](const std::string& text, const std::string& file, int precision,
+                       int threads) {
+        // As a file is: an outline, since all strands may be too many to be held.
+        SceneOutline outline = parse_outline(text, file);
+        auto scene = std::make_shared<Scene>(outline.scene);
+        return std::make_unique<HeadOfHair>(std::move(scene), std::move(outline),
+                                            precision, threads);
+      }))
       .def("advance", &HeadOfHair::advance)
       .def_property_readonly("time", &HeadOfHair::time)
       .def("positions", &HeadOfHair::positions)

@@ -107,6 +107,24 @@ class Running(unittest.TestCase):
         with self.assertRaises(tress.InputError):
             tress.Scene.read(SCENES / "bead_on_wire.toml").run(kind="head")
 
+    def test_precision_of_a_head(self):
+        scene = tress.Scene.read(SCENES / "head_moving_vertical.toml")
+        head = scene.changed({"duration_s": 0.02, "integrator.id": "linearly_implicit_euler"})
+        ends = []
+        for precision in (64, 32):
+            run = tress.HeadRun(head, precision=precision)
+            run.advance(0.02)
+            ends.append(run.positions)
+        # Rounding of single precision, 6e-8 of places of some 0.1 m, in few steps.
+        self.assertGreater(np.abs(ends[1] - ends[0]).max(), 0)
+        np.testing.assert_allclose(ends[1], ends[0], atol=1e-5)
+        with self.assertRaisesRegex(tress.InputError, "'bits'.*it is called 'precision' now"):
+            tress.HeadRun(head, bits=32)
+        with self.assertRaisesRegex(tress.InputError, "did you mean 'precision'"):
+            tress.HeadRun(head, precison=32)
+        with self.assertRaisesRegex(tress.InputError, r"\(precision\): give 64 or 32"):
+            tress.HeadRun(head, precision=16)
+
     def test_failure_keeps_frames(self):
         scene = tress.Scene.read(SCENES / "cantilever.toml").changed(
             {"model": {"id": "der"}, "integrator": {"id": "rk4", "dt_s": 2e-3}}

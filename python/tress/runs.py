@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import _core
+from .errors import InputError
 
 
 @dataclass
@@ -90,10 +91,16 @@ class StrandsRun:
 
 
 class HeadRun:
-    """A run of all strands of a scene side by side. InputError says why a scene is none."""
+    """A run of all strands of a scene side by side. InputError says why a scene is none.
 
-    def __init__(self, scene, threads=1, bits=64):
-        self._core = _core.HeadRun(scene._text, scene.file, bits, threads)
+    threads: number of threads; precision: floating-point precision, 64 or 32 bits."""
+
+    def __init__(self, scene, threads=1, precision=64, **unknown):
+        known = ("threads", "precision")
+        for name in unknown:
+            remedy = _core.suggestion(name, known, f"use one of: {', '.join(known)}")
+            raise InputError(f"unknown argument '{name}' (HeadRun): {remedy}")
+        self._core = _core.HeadRun(scene._text, scene.file, precision, threads)
 
     def advance(self, t):
         """To t (s) in equal steps of at most the scene's, or as its tolerance asks."""
