@@ -22,7 +22,7 @@ const Row* usual(const std::vector<Row>& rows, std::string_view integrator,
 }  // namespace
 
 void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
-  const auto check = [&](const std::string& claim, const Row* row, auto holds) {
+  const auto check = [&](const Claim& claim, const Row* row, auto holds) {
     if (row == nullptr || !row->has("direct_distance_rel")) {
       verdicts.not_judged(claim);
       return;
@@ -30,11 +30,14 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     const double distance = row->number("direct_distance_rel");
     verdicts.check(claim, holds(distance), distance);
   };
-  check("node by node, twenty sweeps of a hair lock: a tenth of its length or more",
+  check({"node by node, 20 sweeps end 10 % of the length or more from the direct step",
+         "nodes_lock"},
         usual(rows, "vbd", "1", "20"), [](double x) { return x >= 0.1; });
-  check("multipliers free them: within a hundredth",
+  check({"node by node with multipliers, 20 sweeps end within 1 % of the length",
+         "multipliers_free"},
         usual(rows, "vbd_augmented", "1", "20"), [](double x) { return x <= 0.01; });
-  check("solved whole, five sweeps are the direct step to a hundred-thousandth",
+  check({"the whole strand as one block, 5 sweeps end within 1e-5 of the length",
+         "whole_strand_converges"},
         usual(rows, "vbd", "0", "5"), [](double x) { return x <= 1e-5; });
   int points = 0, reached = 0;
   for (const Row& row : rows) {
@@ -43,7 +46,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (row.ok() && row.text("within_1_percent") == "true") ++reached;
   }
   verdicts.figure("points of the map of stable_cosserat_rods", points);
-  verdicts.figure("of them within one per cent of the rod", reached);
+  verdicts.figure("points of this map within 1 % of the rod", reached);
 }
 
 }  // namespace tress::experiments::block_descent

@@ -32,10 +32,15 @@ std::string utc_now() {
 
 ordered_json checks_of(const Verdicts& verdicts) {
   ordered_json all = ordered_json::array();
-  for (const auto& [claim, held, value, state, reason] : verdicts.all()) {
-    all.push_back(
-        {{"claim", claim}, {"held", held}, {"value", value}, {"state", name(state)}});
-    if (!reason.empty()) all.back()["reason"] = reason;
+  for (const auto& [claim, held, value, state, reason, key] : verdicts.all()) {
+    ordered_json one = ordered_json::object();
+    one["claim"] = claim;
+    if (!key.empty()) one["key"] = key;
+    one["held"] = held;
+    one["value"] = value;
+    one["state"] = name(state);
+    if (!reason.empty()) one["reason"] = reason;
+    all.push_back(std::move(one));
   }
   return all;
 }

@@ -6,7 +6,13 @@
 
 namespace tress::experiments {
 
-void Verdicts::check_found(std::string claim, bool held, bool complete, double value) {
+void Verdicts::add(Claim claim, Verdict verdict) {
+  verdict.claim = std::move(claim.words);
+  verdict.key = std::move(claim.key);
+  all_.push_back(std::move(verdict));
+}
+
+void Verdicts::check_found(Claim claim, bool held, bool complete, double value) {
   if (held || complete) {
     check(std::move(claim), held, value);
   } else {
@@ -14,7 +20,7 @@ void Verdicts::check_found(std::string claim, bool held, bool complete, double v
   }
 }
 
-void Verdicts::check_known(std::string claim, bool held, double value,
+void Verdicts::check_known(Claim claim, bool held, double value,
                            const KnownLimit& limit) {
   const bool as_known = limit.least <= value && value <= limit.most;
   std::string reason(limit.reason);
@@ -25,17 +31,19 @@ void Verdicts::check_known(std::string claim, bool held, double value,
                          limit.least, limit.most, reason);
   }
   const State state = !held && as_known ? State::known_limit : State::changed;
-  all_.push_back({std::move(claim), held, value, state, std::move(reason)});
+  add(std::move(claim), {{}, held, value, state, std::move(reason)});
 }
 
-void Verdicts::not_judged(std::string claim) {
-  all_.push_back({std::move(claim), false, std::numeric_limits<double>::quiet_NaN(),
-                  State::not_judged, "the rows it speaks of were not run"});
+void Verdicts::not_judged(Claim claim) {
+  add(std::move(claim), {{},
+                         false,
+                         std::numeric_limits<double>::quiet_NaN(),
+                         State::not_judged,
+                         "the rows that it is about were not run"});
 }
 
-void Verdicts::figure(std::string what, double value) {
-  all_.push_back(
-      {std::move(what), false, value, State::figure, "depends on the machine"});
+void Verdicts::figure(Claim what, double value) {
+  add(std::move(what), {{}, false, value, State::figure, "depends on the machine"});
 }
 
 std::string_view name(Verdicts::State state) {

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "contract/layers.h"
@@ -14,6 +15,17 @@ struct KnownLimit {
   std::string_view claim;
   double least, most;
   std::string_view reason;
+};
+
+/// A claim, or the name of a figure. Pages find it in the manifest by its key, if it has
+/// one; the words may change.
+struct Claim {
+  std::string words, key;
+
+  Claim(std::string in_words, std::string its_key = {})
+      : words(std::move(in_words)), key(std::move(its_key)) {}
+  Claim(const char* in_words, std::string its_key = {})
+      : Claim(std::string(in_words), std::move(its_key)) {}
 };
 
 /// Claims about a finished table: printed when it is written and stored in the manifest
@@ -36,27 +48,31 @@ class Verdicts {
     double value;  // the deciding number; NaN: none
     State state = held ? State::held : State::broken;
     std::string reason = {};  // why it neither held nor broke
+    std::string key = {};     // of the claim
 
     bool alarm() const { return state == State::broken || state == State::changed; }
   };
 
-  void check(std::string claim, bool held, double value) {
-    all_.push_back({std::move(claim), held, value});
+  void check(Claim claim, bool held, double value) {
+    const State state = held ? State::held : State::broken;
+    add(std::move(claim), {{}, held, value, state});
   }
 
   /// A claim that one row can show but only all rows together refute: `complete`
   /// indicates whether all rows that could show it were run.
-  void check_found(std::string claim, bool held, bool complete, double value);
+  void check_found(Claim claim, bool held, bool complete, double value);
 
   /// Checks a claim as `check` does, for a claim known to be false.
-  void check_known(std::string claim, bool held, double value, const KnownLimit& limit);
+  void check_known(Claim claim, bool held, double value, const KnownLimit& limit);
 
-  void not_judged(std::string claim);
-  void figure(std::string what, double value);
+  void not_judged(Claim claim);
+  void figure(Claim what, double value);
 
   const std::vector<Verdict>& all() const { return all_; }
 
  private:
+  void add(Claim claim, Verdict verdict);
+
   std::vector<Verdict> all_;
 };
 

@@ -483,7 +483,7 @@ State state_of(const Row& row, std::string_view claim) {
 }
 
 TEST(HardCaseClaims, NothingPassesByToleranceThatIsWrong) {
-  const std::string_view claim = "by tolerance no run";
+  const std::string_view claim = "no adaptive run passes";
   EXPECT_EQ(state_of(by_tolerance("straight", "stable and accurate", 0.01), claim),
             State::held);
   EXPECT_EQ(state_of(by_tolerance("straight", "stable", 0.06), claim), State::broken);

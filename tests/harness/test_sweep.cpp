@@ -146,6 +146,8 @@ TEST_P(PromiseTest, IsToldAndKeptInTheManifest) {
   EXPECT_EQ(result.code, promise.code) << result.err;
   EXPECT_THAT(result.err, HasSubstr(promise.told));
   EXPECT_THAT(toy.read("toy.meta.json"), HasSubstr(promise.kept));
+  // Pages find it by its key, whatever its state and its words.
+  EXPECT_THAT(toy.read("toy.meta.json"), HasSubstr("\"key\": \"key_of_the_promise\""));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -111,7 +111,7 @@ constexpr Unused unused[] = {{"repeat", "it times nothing"}};
 
 /// `rows`: the number of rows, four unless told otherwise.
 void judge(std::string_view promise, double rows, Verdicts& verdicts) {
-  const std::string claim = "the promise";
+  const Claim claim{"the promise", "key_of_the_promise"};
   if (promise == "not_judged") {
     verdicts.not_judged(claim);
   } else if (promise == "figure") {

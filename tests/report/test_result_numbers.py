@@ -62,6 +62,20 @@ class Reading(Made):
         with self.assertRaisesRegex(InputError, "2 rows"):
             tables.row("t", {})
 
+    def test_a_check_of_a_program_is_found_by_its_key_whatever_its_words(self):
+        self.write("results/t.meta.json", json.dumps({"checks": [
+            {"claim": "some words", "held": True, "value": 0.5, "state": "passed"},
+            {"claim": "other words", "key": "hairs", "held": False, "value": 36.0, "state": "figure"},
+            {"claim": "not run", "key": "rest", "held": False, "value": None, "state": "not_judged"}]}))
+        tables = Tables(self.root)
+        self.assertEqual(tables.check("t", "hairs")["claim"], "other words")
+        self.assertEqual(tables.count("t", "hairs"), 36)
+        self.assertEqual(tables.read, {"t"})
+        with self.assertRaisesRegex(InputError, "t.meta.json has 0 checks with the key 'words', expected one; run"):
+            tables.check("t", "words")
+        with self.assertRaisesRegex(InputError, "t.meta.json: the check 'rest' was not judged; run"):
+            tables.check("t", "rest")
+
     def test_a_file_that_is_no_table_is_named_with_its_line(self):
         for text, message in [("a,b\n1,2\n3\n", "t.csv:3: 1 fields where the header has 2"), ("", "t.csv:1: empty"),
                               ('a\n"x', "t.csv:2: unexpected end of data"), ("a,a\n", "t.csv:1: column 'a' appears twice")]:
@@ -154,6 +168,8 @@ class Queries(Made):
         def grazing(name, **more):
             return run(1e-3, more.pop("outcome", "unstable"), case=name, **more)
 
+        self.write("results/hard_cases.meta.json", json.dumps({"checks": [
+            {"claim": "w", "key": "exact_contact_survives", "held": True, "value": 1.0, "state": "passed"}]}))
         self.assertEqual(self.say("hard.rising_count", hard_cases=[
             grazing("grazing_contact"), grazing("grazing_exact", outcome="stable"),
             grazing("grazing_contact", integrator="bdf2"), grazing("grazing_exact", integrator="bdf2", outcome="refused")]),
@@ -252,6 +268,36 @@ class Queries(Made):
         by_drive = self.say("family.model_steps", family_summary=[{**row, "decided_by": "drive is gust_of_wind"}, rods])
         self.assertIn("the drive: the statement is true for 9.4 % of the hairs with gust of wind and for 88 % of the others",
                       by_drive)
+
+    def test_counts_of_a_study_are_those_that_its_program_stored(self):
+        counts = {"hairs": 40, "hairs_at_rest": 29, "hairs_half": 31, "elements": 18, "elements_remeshed": 2,
+                  "elements_following": 3, "limit": 10, "limit_remeshed": 1, "hairs_pilot": 39, "hairs_pilot_always": 38}
+        self.write("results/adaptive_mesh.meta.json", json.dumps({"checks": [
+            {"claim": key, "key": key, "held": False, "value": float(value), "state": "figure"}
+            for key, value in counts.items()]}))
+        rows = [{"part": "elements", "status": "ok", "gain": 1.2, "gain_following": 1.1, "gain_following_always": 1.6},
+                {"part": "in_motion", "status": "ok", "tolerance_rel": 0.005, "tip_error_rel": 0.004},
+                {"part": "in_motion", "status": "ok", "tolerance_rel": 0.0025, "tip_error_rel": 0.012},
+                {"part": "pilot", "status": "ok", "tolerance_rel": 0.005, "elements": 4, "work_rel": 3}]
+        self.assertIn("in 3 of 28 cases, limits included. Numbers of elements that follow the motion gain it in 3 of 18 measured "
+                      "cases by the rms error over a run, and in 1 where", self.say("adaptive_mesh.verdict", adaptive_mesh=rows))
+        self.assertIn("29 of 40 hairs keep a tolerance of 0.5 % of their length. Meshed for a tolerance of 0.25 %, 31 of 40",
+                      self.say("adaptive_mesh.in_motion", adaptive_mesh=rows))
+        self.assertIn("Of 40 hairs, 39 keep 0.5 % of their length by the same measure, and 38 at every",
+                      self.say("adaptive_mesh.pilot", adaptive_mesh=rows))
+
+    def test_statements_about_gradients_name_the_models_that_they_leave_out(self):
+        def row(model, integrator="tr_bdf2", **more):
+            return {"part": "time", "start": "damped", "jacobian": "exact", "status": "ok", "model": model, "steps": 40,
+                    "integrator": integrator, "gradient_error_rel": 0.02, "tip_error_rel": 0.001,
+                    "linearizations_1_percent": 100, **more}
+
+        rows = [row("super_helix"), row("der", linearizations_1_percent=200),
+                row("mass_spring", gradient_error_rel=9, linearizations_1_percent="")]
+        others = "the 2 models other than `mass_spring` and `inextensible_strand`"
+        self.assertEqual(self.say("cost_of_gradient.smooth_models", cost_of_gradient=rows), others)
+        self.assertIn("the fewest on each of these 2 models", self.say("cost_of_gradient.advice_1_percent", cost_of_gradient=rows))
+        self.assertIn(f"On {others} it is 20 to 20 times", self.say("cost_of_gradient.over_tip", cost_of_gradient=rows))
 
     def test_percentiles_are_members_of_the_family(self):
         hairs = [{"family": "hair", "claim": "exact_step_100ms", "hair": k, "gravito_bending": 10 * k} for k in (4, 1, 3, 2)]

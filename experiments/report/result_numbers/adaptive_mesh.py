@@ -9,6 +9,10 @@ def _rows(tables, part):
     return tables.ok_rows("adaptive_mesh", {"part": part})
 
 
+def _count(tables, key):
+    return tables.count("adaptive_mesh", key)
+
+
 def _shown(tables):
     rows = _rows(tables, "elements")
     return rows[rows["gain"] > 0]
@@ -27,17 +31,18 @@ def gains(tables):
                  sorted(measured + limits, key=lambda line: line[0]))
 
 
-def _reached(gain):
-    return (f"{(gain >= _WORTHWHILE).sum()} of {len(gain)} measured cases reach {_WORTHWHILE}; the largest is "
-            f"{number(gain.max(), 3)}.")
+def _reached(tables, column, key):
+    largest = _shown(tables)[column].max()
+    return (f"{_count(tables, key)} of {_count(tables, 'elements')} measured cases reach {_WORTHWHILE}; the largest is "
+            f"{number(largest, 3)}.")
 
 
 def worth_anew(tables):
-    return _reached(_shown(tables)["gain"])
+    return _reached(tables, "gain", "elements_remeshed")
 
 
 def worth_following(tables):
-    return _reached(_shown(tables)["gain_following"])
+    return _reached(tables, "gain_following", "elements_following")
 
 
 def _between(gain):
@@ -53,37 +58,31 @@ def always_following(tables):
 
 
 def verdict(tables):
-    shown, limits = _shown(tables), _rows(tables, "limit")
-
-    def count(*gains):
-        return sum((gain >= _WORTHWHILE).sum() for gain in gains)
-
-    return (f"Remeshing gains a factor of {_WORTHWHILE} in {count(shown['gain'], limits['gain'])} of "
-            f"{len(shown) + len(limits)} cases, limits included. Numbers of elements that follow the motion gain it in "
-            f"{count(shown['gain_following'])} of {len(shown)} measured cases by the rms error over a run, and in "
-            f"{count(shown['gain_following_always'])} where the worst instant counts")
+    remeshed = _count(tables, "elements_remeshed") + _count(tables, "limit_remeshed")
+    measured = _count(tables, "elements")
+    always = (_shown(tables)["gain_following_always"] >= _WORTHWHILE).sum()
+    return (f"Remeshing gains a factor of {_WORTHWHILE} in {remeshed} of {measured + _count(tables, 'limit')} cases, limits "
+            f"included. Numbers of elements that follow the motion gain it in {_count(tables, 'elements_following')} of "
+            f"{measured} measured cases by the rms error over a run, and in {always} where the worst instant counts")
 
 
 def in_motion(tables):
     """Returns how many released hairs keep the tolerance, meshed for it and for a tighter one."""
     rows = _rows(tables, "in_motion")
     asked = rows["tolerance_rel"].max()
-    full, half = rows[rows["tolerance_rel"] == asked], rows[rows["tolerance_rel"] < asked]
-
-    def within(some):
-        return (some["tip_error_rel"] <= asked).sum()
-
-    return (f"{within(full)} of {len(full)} hairs keep a tolerance of {percent(asked)} of their length. Meshed for a tolerance of "
-            f"{percent(half.iloc[0]['tolerance_rel'])}, {within(half)} of {len(half)} keep the former, and the worst is off by "
-            f"{percent(half['tip_error_rel'].max())}.")
+    half = rows[rows["tolerance_rel"] < asked]
+    hairs = _count(tables, "hairs")
+    return (f"{_count(tables, 'hairs_at_rest')} of {hairs} hairs keep a tolerance of {percent(asked)} of their length. Meshed "
+            f"for a tolerance of {percent(half.iloc[0]['tolerance_rel'])}, {_count(tables, 'hairs_half')} of {hairs} keep the "
+            f"former, and the worst is off by {percent(half['tip_error_rel'].max())}.")
 
 
 def pilot(tables):
     """Returns how many hairs meshed by pilot runs keep the tolerance."""
     rows = _rows(tables, "pilot")
     asked = rows.iloc[0]["tolerance_rel"]
-    return (f"Of {len(rows)} hairs, {(rows['tip_error_rel'] <= asked).sum()} keep {percent(asked)} of their length by the same "
-            f"measure, and {(rows['largest_error_rel'] <= asked).sum()} at every joint and frame, with {span(rows['elements'])} "
+    return (f"Of {_count(tables, 'hairs')} hairs, {_count(tables, 'hairs_pilot')} keep {percent(asked)} of their length by the "
+            f"same measure, and {_count(tables, 'hairs_pilot_always')} at every joint and frame, with {span(rows['elements'])} "
             f"elements. For {(rows['work_rel'] == 3).sum()} of them the elements of rest were enough. The runs of a pilot have "
             f"{span(rows['work_rel'])} times the elements of the run that they prepare.")
 

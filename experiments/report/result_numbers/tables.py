@@ -130,6 +130,22 @@ class Tables:
             raise InputError(f"results/{name}.meta.json is missing; run the experiment again")
         return self.manifests[name]
 
+    def check(self, name, key):
+        """Returns the check with this key that the program stored with its table: a dict with
+        `claim`, `held` and `value`."""
+        found = [one for one in self.manifest(name).get("checks", []) if one.get("key") == key]
+        if len(found) != 1:
+            raise InputError(f"results/{name}.meta.json has {len(found)} checks with the key '{key}', expected one; "
+                             "run the experiment again")
+        if found[0]["state"] == "not_judged":
+            raise InputError(f"results/{name}.meta.json: the check '{key}' was not judged; run the whole experiment again")
+        self.read.add(name)
+        return found[0]
+
+    def count(self, name, key):
+        """Returns the value of such a check, which counts something."""
+        return int(self.check(name, key)["value"])
+
     def _manifest(self, path):
         try:
             return json.loads(self.text(path))
