@@ -192,11 +192,11 @@ class Cases {
   void add_scenes() {
     leave_strands_to_the_scene(line_);
     settings_.leave_models_to_the_scene();
-    const auto files = split(own_.word("scenes"), ',', line_.place("scene"));
+    const auto files = split(own_.word("scenes"), ',', line_.place("set:scenes"));
     const bool measured = !own_.word("data").empty();
     if (measured && files.size() > 1) {
-      throw InputError("several scenes, but data is of one strand", line_.place("scene"),
-                       "give one scene");
+      throw InputError("several scenes, but data is of one strand",
+                       line_.place("set:scenes"), "give one scene");
     }
     for (const Scene& scene : read_scenes(files)) {
       static_cast<void>(specimen(scene));  // refuses a scene without a strand

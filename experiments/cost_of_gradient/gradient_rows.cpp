@@ -84,7 +84,7 @@ bool has_gradient(const Scene& scene, std::string_view integrator) {
   const auto system = system_of(scene);
   return refusal(find_integrator(integrator), *system, scene.options.formulation)
              .empty() &&
-         integrators::no_gradient(integrator, *system, scene.options).empty();
+         !integrators::no_gradient(integrator, *system, scene.options);
 }
 
 /// Methods that have gradients and are among those chosen.

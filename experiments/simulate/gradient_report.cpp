@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/input_error.h"
 #include "experiments/run/message.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
@@ -17,6 +18,8 @@ namespace tress::experiments::scene_runs {
 namespace {
 
 constexpr std::size_t most_named = 8;
+// Of the table, which is made in memory: a row for each derivative.
+constexpr double row_bytes = 100, announced_bytes = 1e8, most_bytes = 2e9;
 
 /// Of both runs of a strand that have this frame.
 std::size_t frames(const StrandGradient& one, const StrandGradient& finer) {
@@ -84,7 +87,22 @@ void tell_parameter(const Scene& scene, const SceneGradient& gradient,
 
 }  // namespace
 
+void check_gradient_table(const Scene& scene) {
+  const double rows = count_of_derivatives(scene);
+  refuse_if(
+      rows * row_bytes > most_bytes,
+      fmt::format("the table of derivatives would have {:.2g} rows, about {:.2g} GB",
+                  rows, rows * row_bytes / 1e9),
+      gradient_place(scene),
+      "set of = \"last_tip\", a lower frames_per_s, or fewer parameters");
+}
+
 bool report_gradient(const Scene& scene, const std::string& file) {
+  const double rows = count_of_derivatives(scene);
+  if (rows * row_bytes > announced_bytes) {
+    tell("simulate: {}: gradient: a table of {:.2g} rows, about {:.2g} MB\n", scene.name,
+         rows, rows * row_bytes / 1e6);
+  }
   const SceneGradient gradient = scene_gradient(scene), finer = scene_gradient(scene, 2);
   replace_file(file, table_of(scene, gradient, finer));
   bool finished = true;

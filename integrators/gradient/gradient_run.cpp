@@ -22,39 +22,44 @@ std::vector<VariedSystem> varied_systems(System& system,
 
 }  // namespace
 
-std::string no_gradient(std::string_view method, System& system, const Options& options) {
+std::optional<NoGradient> no_gradient(std::string_view method, System& system,
+                                      const Options& options) {
   if (find_integrator(method).stages == 0) {
     std::string able;
     for (const IntegratorEntry& entry : integrator_catalogue()) {
       if (entry.stages > 0) able += (able.empty() ? "" : ", ") + std::string(entry.id);
     }
-    return std::string(method) +
-           " does not solve the equations of implicit stages, at whose solutions "
-           "derivatives are taken: use " +
-           able;
+    return NoGradient{std::string(method) +
+                          " does not solve the equations of implicit stages, at whose "
+                          "solutions derivatives are taken",
+                      "use " + able};
   }
   if (system.contact_form() != nullptr) {
-    return "the forces of exact contact have no derivative yet: use regularised contact "
-           "(normal = compliant, friction_law = regularised)";
+    return NoGradient{
+        "the forces of exact contact have no derivative yet",
+        "use friction_law = \"regularised\" without normal and restitution"};
   }
   if (system.layout().constraints == 0) {
     if (system.traits().regular_mass) return {};
-    return "the mass matrix is singular, so that accelerations have no derivative: use "
-           "rotary_inertia = true";
+    return NoGradient{
+        "the mass matrix is singular, so that accelerations have no derivative",
+        "use rotary_inertia = \"on\", or another model"};
   }
   if (options.formulation == Formulation::index3) return {};
-  return "constraints as " + std::string(name(options.formulation)) +
-         " have no exact derivative of their bias: use formulation = index3";
+  return NoGradient{"constraints as " + std::string(name(options.formulation)) +
+                        " have no exact derivative of their bias",
+                    "use formulation = \"index3\""};
 }
 
 System& with_gradient(System& system, const GradientRun::Method& method) {
-  std::string reason = no_gradient(method.id, system, method.options);
+  std::optional<NoGradient> no = no_gradient(method.id, system, method.options);
   if (method.options.tolerance > 0) {
-    reason = "steps that a tolerance chooses are not smooth in the parameters";
+    no = NoGradient{"steps that a tolerance chooses are not smooth in the parameters",
+                    "leave out position_tol_rel"};
   }
-  if (reason.empty()) return system;
-  throw InputError("no gradient of a run by " + std::string(method.id), reason,
-                   "change the method or the model");
+  if (!no) return system;
+  throw InputError("no gradient: " + no->reason, "method " + std::string(method.id),
+                   no->remedy);
 }
 
 GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,9 +11,15 @@
 
 namespace tress::integrators {
 
+/// Why a run has no derivative, and what to do.
+struct NoGradient {
+  std::string reason, remedy;  // in words, with the keys of scenes
+};
+
 /// Why the method has no derivative of its runs of this system; empty: it has. For fixed
 /// steps: Options::tolerance is ignored.
-std::string no_gradient(std::string_view method, System& system, const Options& options);
+std::optional<NoGradient> no_gradient(std::string_view method, System& system,
+                                      const Options& options);
 
 /// Start of a run: `as_run`, as the method starts it, or `damped`: with two steps of
 /// backward Euler of a sixteenth of the step each. A parameter that moves the rest shape

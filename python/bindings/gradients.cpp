@@ -1,6 +1,7 @@
 // Derivatives of runs, and fits.
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -20,8 +21,10 @@ constexpr const char* by_place = "by";
 
 /// The named parameters, or those of the scene's own [gradient].
 std::vector<SceneParameter> parameters_of(const Scene& scene, const Names& names) {
+  check_derivatives(scene);
   if (names) return gradient_parameters(scene, *names, by_place);
-  check_gradient(scene);
+  refuse_if(!scene.tables->gradient, "scene " + scene.name + " has no [gradient]",
+            by_place, "give by=[\"youngs_modulus_pa\"], or [gradient] by in the scene");
   return gradient_parameters(scene);
 }
 
@@ -79,7 +82,6 @@ py::dict gradient(const Scene& scene, bool tip, const Names& names,
                   const std::optional<std::string>& start, int parts) {
   GradientTask task;
   task.parameters = parameters_of(scene, names);
-  check_derivatives(scene, by_place);
   task.damped = starts_damped(start_of(scene, start), task.parameters);
   task.times = times_of_frames(scene);
   task.parts = parts;
@@ -108,18 +110,21 @@ py::dict gradient(const Scene& scene, bool tip, const Names& names,
 
 py::dict step_matrices(const Scene& scene, std::size_t strand, double t,
                        std::optional<double> dt, const std::vector<std::string>& names) {
+  check_derivatives(scene);
   const auto parameters = gradient_parameters(scene, names, by_place);
   refuse_if(strand >= scene.strands.size(),
             "there is no strand " + std::to_string(strand), "strand",
             "the scene has " + std::to_string(scene.strands.size()) +
                 " strands, the first is 0");
   const double step = dt.value_or(scene.options.step);
-  refuse_if(!(t >= 0) || !(step > 0), "a step begins at t >= 0 and has a length above 0",
-            "linearized_step", "give t >= 0 and dt > 0, in seconds");
+  refuse_if(!(t >= 0) || !std::isfinite(t), "a step begins at t = 0 or later", "t",
+            "give t >= 0, in seconds");
+  refuse_if(!(step > 0) || !std::isfinite(step), "the length of a step is above 0", "dt",
+            "give dt > 0, in seconds");
   LinearizedStep found;
   {
     const py::gil_scoped_release release;
-    found = linearized_step(scene, strand, t, step, parameters, "linearized_step");
+    found = linearized_step(scene, strand, t, step, parameters);
   }
   if (!found.unfinished.empty()) throw SolveError(found.unfinished);
   const py::ssize_t states = length(2 * found.q.size());
@@ -192,7 +197,7 @@ py::dict fit(const Scenes& scenes, const Texts& texts, const Names& by,
   refuse_if(scenes.empty() || (scenes.size() > 1 && scenes.size() != texts.size()),
             std::to_string(scenes.size()) + " scenes for " +
                 std::to_string(texts.size()) + " records",
-            "fit", "give one scene for all records, or one for each");
+            "scene", "give one scene for all records, or one for each");
   refuse_if(!(confidence > 0 && confidence < 1), "a confidence is between 0 and 1",
             "confidence", "give 0.95");
   std::vector<PointRecord> records;

@@ -2,6 +2,7 @@ import unittest
 
 import numpy as np
 import tress
+from common import SCENES
 
 # A curl that swings: 6 elements, steps that no tolerance chooses.
 CURL = """
@@ -87,11 +88,11 @@ class Gradients(unittest.TestCase):
     def test_refusals(self):
         with self.assertRaisesRegex(tress.InputError, "did you mean|use one of"):
             curl().gradient(by=["youngs_moduls_pa"])
-        with self.assertRaisesRegex(tress.InputError, "no \\[gradient\\]"):
+        with self.assertRaisesRegex(tress.InputError, "no \\[gradient\\] \\(by\\): give by="):
             curl().gradient()
         with self.assertRaisesRegex(tress.InputError, "of 'middle'"):
             curl().gradient(of="middle", by=BY)
-        with self.assertRaisesRegex(tress.InputError, "use backward_euler"):
+        with self.assertRaisesRegex(tress.InputError, r"\(scene .*\): use backward_euler"):
             curl({"integrator": {"id": "rk4", "dt_s": 1e-5}}).gradient(by=BY)
         with self.assertRaisesRegex(tress.InputError, "one of youngs_modulus_pa"):
             curl().gradient(by=BY[:1]).by("radius_m")
@@ -164,8 +165,13 @@ class Steps(unittest.TestCase):
             curl({"integrator.id": "bdf2"}).linearized_step()
         with self.assertRaisesRegex(tress.InputError, "the first is 0"):
             curl().linearized_step(strand=3)
-        with self.assertRaisesRegex(tress.InputError, "dt > 0"):
+        with self.assertRaisesRegex(tress.InputError, r"\(dt\): give dt > 0"):
             curl().linearized_step(dt=0)
+        with self.assertRaisesRegex(tress.InputError, r"\(t\): give t >= 0"):
+            curl().linearized_step(t=-1)
+        bead = tress.Scene.read(SCENES / "bead_on_wire.toml")
+        with self.assertRaisesRegex(tress.InputError, "brings its own shape"):
+            bead.linearized_step(by=["radius_m"])
         constrained = curl(
             {"model.id": "inextensible_strand", "integrator.formulation": "index3",
              "integrator.id": "backward_euler"}

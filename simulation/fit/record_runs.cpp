@@ -103,7 +103,7 @@ RecordRuns::RecordRuns(const FitTask& task) {
 }
 
 void RecordRuns::add(const FitTask& task, const FitRecord& from) {
-  check_derivatives(*from.scene, task.place);
+  check_derivatives(*from.scene);
   Record record{
       from.scene, gradient_parameters(*from.scene, task.by, task.place), false, {}};
   record.damped = starts_damped(start_of(*from.scene), record.parameters);

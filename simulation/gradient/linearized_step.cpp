@@ -19,12 +19,21 @@ using integrators::RunParameter;
 /// Methods of GradientRun whose step depends on what they keep from the steps before.
 constexpr std::string_view methods_with_memory[] = {"bdf2", "generalized_alpha"};
 
-void check_step(const Scene& scene, System& system, const std::string& place) {
-  check_derivatives(scene, place);
-  refuse_if(std::ranges::count(methods_with_memory, scene.integrator) > 0,
+bool has_memory(std::string_view method) {
+  return std::ranges::count(methods_with_memory, method) > 0;
+}
+
+void check_step(const Scene& scene, System& system) {
+  check_derivatives(scene);
+  const std::string place = gradient_place(scene);
+  std::vector<std::string_view> able;
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
+    if (entry.stages > 0 && !has_memory(entry.id)) able.push_back(entry.id);
+  }
+  refuse_if(has_memory(scene.integrator),
             fmt::format("a step of {} depends on the steps before, not on (q, v) alone",
                         scene.integrator),
-            place, "use tr_bdf2, esdirk43, newmark, implicit_midpoint or backward_euler");
+            place, fmt::format("use one of: {}", fmt::join(able, ", ")));
   refuse_if(system.layout().constraints > 0,
             "no matrices of a step of a model with constraints, whose coordinates do not "
             "change independently",
@@ -51,10 +60,9 @@ std::string run_to(const Scene& scene, System& system, double t, GradientRun::St
 }  // namespace
 
 LinearizedStep linearized_step(const Scene& scene, std::size_t strand, double t,
-                               double step, std::span<const SceneParameter> parameters,
-                               const std::string& place) {
+                               double step, std::span<const SceneParameter> parameters) {
   const auto system = system_of(scene, strand);
-  check_step(scene, *system, place);
+  check_step(scene, *system);
   GradientRun::State from;
   LinearizedStep all;
   all.t = t;

@@ -23,10 +23,9 @@ struct LinearizedStep {
 };
 
 /// Runs a strand to `t` and linearizes the step that follows, of length `step`. Throws
-/// InputError naming `place` where the method's step depends on more than (q, v), where
-/// the model has constraints, and as check_derivatives().
+/// InputError where the method's step depends on more than (q, v), where the model has
+/// constraints, and as check_derivatives().
 LinearizedStep linearized_step(const Scene& scene, std::size_t strand, double t,
-                               double step, std::span<const SceneParameter> parameters,
-                               const std::string& place);
+                               double step, std::span<const SceneParameter> parameters);
 
 }  // namespace tress::simulation

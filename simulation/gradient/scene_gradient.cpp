@@ -1,14 +1,11 @@
 #include "simulation/gradient/scene_gradient.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "contract/forms/material_points.h"
 #include "contract/forms/moving_history.h"
-#include "contract/input_error.h"
 #include "contract/jacobian_choice.h"
 #include "integrators/catalogue.h"
 #include "integrators/gradient/adjoint_run.h"
@@ -218,6 +215,7 @@ class StrandRun {
     if (run.sweep(numbers, seed, by) != Status::ok) {
       found_.unfinished = run.failure();
       found_.frames_moved = run.frames_moved();
+      if (found_.frames_moved) found_.unfinished += " (way = \"forward\")";
       found_.points.clear();
       return;
     }
@@ -294,33 +292,6 @@ StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
   return again ? StrandRun(scene, strand, task).gradient(false) : found;
 }
 
-void check_gradient(const Scene& scene) {
-  const std::string where = "--gradient";
-  refuse_if(scene.model->on_strand != nullptr && !scene.tables->gradient,
-            fmt::format("scene {} has no [gradient]", scene.name), where,
-            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
-  const bool names_them = scene.tables != nullptr && scene.tables->gradient;
-  check_derivatives(scene, names_them ? scene.tables->gradient->place() : where);
-}
-
-void check_derivatives(const Scene& scene, const std::string& place) {
-  refuse_if(scene.model->on_strand == nullptr,
-            fmt::format("gradients are of strands, and {} brings its own shape",
-                        scene.model->id),
-            place, "use a scene with [strand] or [groom]");
-  refuse_if(scene.strands_touch(),
-            "no gradient of strands that touch: each is differentiated by itself", place,
-            "leave out effects between strands");
-  refuse_if(scene.rest == RestStrains::inverse,
-            "no gradient with rest = \"inverse\", whose natural strains follow from the "
-            "parameters",
-            place, "leave out rest");
-  const auto system = exact_system_of(scene, 0);
-  const std::string reason =
-      integrators::no_gradient(scene.integrator, *system, scene.options);
-  refuse_if(!reason.empty(), "no gradient: " + reason, place, "change the scene");
-}
-
 GradientOf gradient_of(std::string_view word) {
   return word == "tip"        ? GradientOf::tip
          : word == "last_tip" ? GradientOf::last_tip
@@ -331,6 +302,18 @@ GradientWay gradient_way(std::string_view word) {
   return word == "forward"   ? GradientWay::forward
          : word == "adjoint" ? GradientWay::adjoint
                              : GradientWay::automatic;
+}
+
+double count_of_derivatives(const Scene& scene) {
+  const GradientOf of = gradient_of(scene.tables->gradient->values().word("of"));
+  const auto frames = static_cast<double>(
+      of == GradientOf::last_tip ? std::size_t{1} : scene.last_frame() + 1);
+  double points = 0;
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    points +=
+        of == GradientOf::points ? system_of(scene, k)->material_points()->count() : 1;
+  }
+  return 3 * points * frames * static_cast<double>(gradient_parameters(scene).size());
 }
 
 SceneGradient scene_gradient(const Scene& scene, int parts) {

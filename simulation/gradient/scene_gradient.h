@@ -53,8 +53,10 @@ struct SceneGradient {
 
 /// Throws InputError if the scene has no [gradient], or its run no derivatives.
 void check_gradient(const Scene& scene);
-/// Throws InputError naming `place` if the scene's run has no derivatives.
-void check_derivatives(const Scene& scene, const std::string& place);
+/// Throws InputError if the scene's run has no derivatives.
+void check_derivatives(const Scene& scene);
+/// Place that messages on the derivatives of a scene name: its [gradient], or its name.
+std::string gradient_place(const Scene& scene);
 
 /// Whether a run starts damped, by a word of [gradient] start.
 bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters);
@@ -79,6 +81,9 @@ std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand);
 std::vector<integrators::RunParameter> run_parameters(
     const Scene& scene, std::size_t strand, std::span<const SceneParameter> parameters);
 
+/// Returns how many derivatives [gradient] asks for: of each coordinate, at each frame,
+/// by each parameter.
+double count_of_derivatives(const Scene& scene);
 /// The gradient that [gradient] asks for, with every step divided into `parts`.
 SceneGradient scene_gradient(const Scene& scene, int parts = 1);
 

@@ -65,7 +65,7 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
     std::vector<std::string_view> known;
     for (const Parameter& one : declared) known.push_back(one.name);
     throw InputError(
-        fmt::format("unknown parameter '{}' in [gradient] by", name), place,
+        fmt::format("unknown parameter '{}'", name), place,
         suggestion(key, known, fmt::format("use one of: {}", fmt::join(known, ", "))));
   }
   if (p->text || p->rows || p->whole || !p->choices.empty()) {

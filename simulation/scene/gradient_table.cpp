@@ -127,7 +127,7 @@ class Finder {
     std::vector<std::string> known = names();
     std::vector<std::string_view> views(known.begin(), known.end());
     throw InputError(
-        fmt::format("unknown parameter '{}' in [gradient] by", name), place_,
+        fmt::format("unknown parameter '{}'", name), place_,
         suggestion(name, views, fmt::format("use one of: {}", fmt::join(known, ", "))));
   }
 
@@ -314,7 +314,7 @@ std::vector<SceneParameter> gradient_parameters(const Scene& scene,
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       refuse_if(all[i].name == all[j].name,
-                fmt::format("[gradient] by names {} twice", all[i].name), place,
+                fmt::format("parameter {} is named twice", all[i].name), place,
                 "leave one out");
     }
   }

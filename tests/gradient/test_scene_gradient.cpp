@@ -226,8 +226,8 @@ std::string refused(const std::string& by) {
 }
 
 TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
-  EXPECT_EQ(refused("by = [\"youngs_moduls_pa\"]\n").substr(0, 67),
-            "unknown parameter 'youngs_moduls_pa' in [gradient] by (s.toml:24:6)");
+  EXPECT_EQ(refused("by = [\"youngs_moduls_pa\"]\n").substr(0, 51),
+            "unknown parameter 'youngs_moduls_pa' (s.toml:24:6):");
   EXPECT_NE(refused("by = [\"youngs_moduls_pa\"]\n").find("youngs_modulus_pa'?"),
             std::string::npos);
   EXPECT_NE(refused("by = [\"poisson_ratio\"]\n").find("give shear_modulus_pa"),
@@ -260,10 +260,33 @@ TEST(SceneGradient, IsRefusedWhereARunHasNone) {
   EXPECT_NE(checked(scene_text("")).find("has no [gradient]"), std::string::npos);
   std::string other = scene_text(by);
   other.replace(other.find("tr_bdf2"), 7, "linearly_implicit_euler");
-  EXPECT_NE(checked(other).find("use backward_euler"), std::string::npos)
+  EXPECT_NE(checked(other).find("are taken (s.toml:23:1): use backward_euler"),
+            std::string::npos)
       << checked(other);
-  EXPECT_NE(checked("rest = \"inverse\"\n" + scene_text(by)).find("leave out rest"),
+  EXPECT_NE(checked("rest = \"inverse\"\n" + scene_text(by))
+                .find("leave out rest = \"inverse\""),
             std::string::npos);
+  const std::string body = "[[effects.body]]\nfriction_law = \"exact\"\n";
+  EXPECT_NE(checked(scene_text(body + by)).find("use friction_law = \"regularised\""),
+            std::string::npos)
+      << checked(scene_text(body + by));
+  const std::string rotors = "[model]\nrotary_inertia = \"off\"\n";
+  EXPECT_NE(checked(scene_text(rotors + by)).find("use rotary_inertia = \"on\""),
+            std::string::npos)
+      << checked(scene_text(rotors + by));
+  const std::string touch =
+      checked(scene_text("[effects.strand_interaction]\n[effects.control_mesh]\n" + by));
+  EXPECT_NE(touch.find("leave out [effects."), std::string::npos) << touch;
+}
+
+// The remedies of refusals are settings that the scene reader accepts.
+TEST(SceneGradient, RemediesAreSettingsOfAScene) {
+  const std::string by = "[gradient]\nby = [\"radius_m\"]\n";
+  for (const std::string more : {"[[effects.body]]\nfriction_law = \"regularised\"\n",
+                                 "[model]\nrotary_inertia = \"on\"\n"}) {
+    EXPECT_EQ(refusal([&] { check_gradient(parse_scene(scene_text(more + by), "s")); }),
+              "");
+  }
 }
 
 TEST(SceneGradient, IsKeptByASceneThatIsWritten) {
@@ -276,10 +299,31 @@ TEST(SceneGradient, IsKeptByASceneThatIsWritten) {
   EXPECT_EQ(simulation::scene_text(again), simulation::scene_text(scene));
 }
 
+TEST(SimulateGradient, RefusesATableThatIsTooLargeBeforeItRuns) {
+  Toy simulate;
+  std::string text = scene_text(
+      "[gradient]\nby = [\"natural_curvature_per_m.each\", "
+      "\"natural_curvature2_per_m.each\", \"natural_twist_per_m.each\", "
+      "\"initial_curvature_per_m.each\", \"initial_curvature2_per_m.each\", "
+      "\"initial_twist_per_m.each\"]\nof = \"points\"\n");
+  const std::string few = "frames_per_s = 20\n";
+  text.replace(text.find(few), few.size(), "frames_per_s = 400000\n");
+  simulate.write("s.toml", text);
+  const Toy::Result run = simulate.run("s.toml --gradient --out out --progress none");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.error_lines(), 1) << run.err;
+  // 40001 frames, 6 points, 3 components, 30 parameters.
+  EXPECT_NE(run.err.find("2.2e+07 rows, about 2.2 GB (s.toml:23:1): set of = "
+                         "\"last_tip\""),
+            std::string::npos)
+      << run.err;
+}
+
 TEST(SimulateGradient, WritesTheTableAndSaysWhatAPercentDoes) {
   Toy simulate;
-  simulate.write("s.toml", scene_text("[gradient]\nby = [\"youngs_modulus_pa\", "
-                                      "\"natural_twist_per_m\"]\n"));
+  const std::string text =
+      scene_text("[gradient]\nby = [\"youngs_modulus_pa\", \"natural_twist_per_m\"]\n");
+  simulate.write("s.toml", text);
   const Toy::Result run = simulate.run("s.toml --gradient --out out --progress none");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_NE(run.err.find("1 % of youngs_modulus_pa moves the tip by"), std::string::npos)
@@ -297,6 +341,7 @@ TEST(SimulateGradient, WritesTheTableAndSaysWhatAPercentDoes) {
     EXPECT_TRUE(line.ends_with(",ok")) << line;
   }
   EXPECT_EQ(rows, 3 * 3 * 2);  // frames, components, parameters
+  EXPECT_EQ(count_of_derivatives(parse_scene(text, "s.toml")), rows);
   const Toy::Result refused = simulate.run("s.toml --gradient --as batch --out other");
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.err.find("--gradient cannot be combined with --as batch"),

@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "contract/input_error.h"
+#include "integrators/gradient/gradient_run.h"
+#include "simulation/gradient/scene_gradient.h"
+#include "simulation/scene/strand_tables.h"
+
+namespace tress::simulation {
+namespace {
+
+std::vector<std::string> effects_between_strands(const Scene& scene) {
+  std::vector<std::string> all;
+  for (const EffectChoice& one : scene.effects) {
+    const Parameters* const own = &one.parameters;
+    if (own == scene.interaction() || own == scene.friction() || own == scene.mesh()) {
+      all.push_back(fmt::format("[effects.{}]", one.entry->id));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+void check_gradient(const Scene& scene) {
+  refuse_if(scene.model->on_strand != nullptr && !scene.tables->gradient,
+            fmt::format("scene {} has no [gradient]", scene.name), "--gradient",
+            "add [gradient] by = [\"youngs_modulus_pa\"] to it");
+  check_derivatives(scene);
+}
+
+std::string gradient_place(const Scene& scene) {
+  const bool has_table = scene.tables != nullptr && scene.tables->gradient;
+  return has_table ? scene.tables->gradient->place() : "scene " + scene.name;
+}
+
+void check_derivatives(const Scene& scene) {
+  const std::string place = gradient_place(scene);
+  refuse_if(scene.model->on_strand == nullptr,
+            fmt::format("gradients are of strands, and {} brings its own shape",
+                        scene.model->id),
+            place, "use a scene with [strand] or [groom]");
+  refuse_if(scene.strands_touch(),
+            "no gradient of strands that touch: each is differentiated by itself", place,
+            fmt::format("leave out {}", fmt::join(effects_between_strands(scene), ", ")));
+  refuse_if(scene.rest == RestStrains::inverse,
+            "no gradient with rest = \"inverse\", whose natural strains follow from the "
+            "parameters",
+            place, "leave out rest = \"inverse\"");
+  const auto system = exact_system_of(scene, 0);
+  const auto no = integrators::no_gradient(scene.integrator, *system, scene.options);
+  if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);
+}
+
+}  // namespace tress::simulation
