@@ -35,11 +35,13 @@ void check_calibrate_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (row.text("integrator") != fitting) {
       if (row.text("integrator") != damping || row.text("data") != "two_lengths")
         continue;
-      verdicts.check(what + std::string(row.text("integrator")) +
-                         "'s own damping is seen by halving the step",
+      verdicts.check(what + "half the step detects the damping of " +
+                         std::string(row.text("integrator")),
                      row.status() == "time_error", row.number("step_shift"));
     } else if (row.text("data") == "one_length" && row.text("fit") == "both") {
-      verdicts.check(what + "one length cannot tell gamma from nu, and the row says so",
+      verdicts.check(what +
+                         "one length does not separate gamma from nu, and the row "
+                         "reports it",
                      row.status() == "not_identified", row.number("correlation"));
     } else {
       verdicts.check(what + "the truth is inside the interval",

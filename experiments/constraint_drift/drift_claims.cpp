@@ -43,7 +43,8 @@ Feedback feedback(const std::vector<Row>& rows, std::string_view integrator) {
 }
 
 void check_feedback(const std::vector<Row>& rows, Verdicts& verdicts) {
-  const std::string claim = "symplectic_euler: the best Baumgarte pair drifts 30 x less";
+  const std::string claim =
+      "symplectic_euler: the best Baumgarte pair reduces the drift 30 times or more";
   const Row* drifting =
       find(rows, "grid", "circle bead", "acceleration", "symplectic_euler");
   const Feedback fed = feedback(rows, "symplectic_euler");
@@ -61,7 +62,7 @@ void check_recovery(const std::vector<Row>& rows, Verdicts& verdicts) {
   constexpr double overshoots = 1e-6;  // relative to the violation, the threshold of
                                        // recovery
   const std::string claim =
-      "critical damping recovers fastest of all that do not overshoot";
+      "critical damping recovers fastest of all dampings that do not overshoot";
   bool any = false;
   for (const Row& critical : rows) {
     const double alpha = critical.number("alpha");

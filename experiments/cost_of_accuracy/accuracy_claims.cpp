@@ -95,8 +95,8 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
     // Two times on a loaded machine may differ by more than both scatters: no verdict.
     verdicts.figure(
         scene +
-            ": least time of what meets a winner's target, with its tie, over "
-            "the winner's (below 1: the machine was busy meanwhile)",
+            ": least time of a run that meets a winner's target, times its tie, over "
+            "the winner's time (below 1: the machine was busy)",
         worst.cheaper);
   }
 }

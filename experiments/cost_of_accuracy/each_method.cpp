@@ -247,7 +247,7 @@ void check_method_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
   if (any) return;
   verdicts.not_judged(
-      "what is thrown, implicit_midpoint: keeps angular momentum better than its tip");
+      "flight, implicit_midpoint: keeps angular momentum better than its tip");
 }
 
 }  // namespace tress::experiments::cost_of_accuracy

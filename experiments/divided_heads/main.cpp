@@ -239,15 +239,18 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
       exchange = std::max(exchange, row.number("halo_exchange_per_element_s"));
     }
   }
-  const std::string bits = "any number of ranks gives the same bits";
+  const std::string bits = "results are bitwise equal for any number of ranks";
   if (compared > 0) {
     verdicts.check(bits, different == 0, different);
   } else {
     verdicts.not_judged(bits);
   }
-  verdicts.figure("one and two ranks: largest difference of the model, relative", off);
-  verdicts.figure("the same of numbers of hairs that the model does not know", held_out);
-  verdicts.figure("two ranks: largest time to exchange, by own elements, s", exchange);
+  verdicts.figure("one and two ranks: largest relative error of the cost model", off);
+  verdicts.figure(
+      "one and two ranks: the same for numbers of hairs that the model was not fitted to",
+      held_out);
+  verdicts.figure("two ranks: largest time to exchange halos per own element, s",
+                  exchange);
 }
 
 constexpr Unused unused[] = {

@@ -217,7 +217,7 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
   const bool shipped = shows_all_shipped(rows);
   verdicts.check_found("some effect has to be kept", kept > 0, shipped, kept);
   verdicts.check_found("some effect may be dropped", dropped > 0, shipped, dropped);
-  const std::string claim = "none that is dropped changes more than the accuracy";
+  const std::string claim = "no dropped effect changes more than the accuracy";
   if (dropped > 0) {
     verdicts.check(claim, wrong <= 1, wrong);
   } else {

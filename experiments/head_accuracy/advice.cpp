@@ -109,8 +109,9 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
     }
   }
   const std::string kept =
-                        "every answer keeps its target, the gap of references included",
-                    holds = "its neighbours keep 1.5 times the target",
+                        "every answer meets its target, including the gap between "
+                        "references",
+                    holds = "neighbours of every answer are within 1.5 times its target",
                     least = "no answer to a smaller target takes less work";
   if (answers == 0) {
     for (const std::string& claim : {kept, holds, least}) verdicts.not_judged(claim);

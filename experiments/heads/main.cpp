@@ -227,18 +227,20 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
       if (row.text("state_hash") != other.text("state_hash")) ++different;
     }
   }
-  const std::string bits = "any number of lanes and threads gives the same bits";
+  const std::string bits =
+      "results are bitwise equal for any number of SIMD lanes and threads";
   if (compared > 0) {
     verdicts.check(bits, different == 0, different);
   } else {
     verdicts.not_judged(bits);
   }
-  verdicts.check("no hair fails, but by linearly_implicit_midpoint", lost == 0, lost);
+  verdicts.check("no hair fails, except with linearly_implicit_midpoint", lost == 0,
+                 lost);
   verdicts.check(
-      "in 32 bits no point is off by more than 1e-5 of the length, by Euler's methods "
-      "up to steps of 1/120 s",
+      "in single precision no point is off by more than 1e-5 of the length, with Euler "
+      "methods and steps up to 1/120 s",
       narrow <= 1e-5, narrow);
-  const std::string wasted = "lanes without hairs add no more to iterations than ";
+  const std::string wasted = "idle SIMD lanes lengthen iterations by no more than ";
   if (waste[0] > 0) {
     verdicts.check(wasted + "a fifth up to steps of 1/120 s", waste[0] <= 1.2, waste[0]);
   }

@@ -281,9 +281,8 @@ void check_other_simulators(const std::vector<Row>& rows, Verdicts& verdicts) {
     apart = std::max(apart, row.number("apart_mm"));
   }
   const std::string claim =
-      "One scene: in double precision the other_simulators' tips agree to 2 mm (1 % of "
-      "L) up to 0.5 "
-      "s";
+      "in double precision the tips of the other simulators agree within 2 mm (1 % of "
+      "the length) up to 0.5 s";
   if (compared < 2) {
     verdicts.not_judged(claim);
   } else {

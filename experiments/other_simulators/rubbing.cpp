@@ -171,8 +171,8 @@ void check_other_simulators(const std::vector<Row>& rows, Verdicts& verdicts) {
     creep = std::max(creep, row.number("creep_um"));
     error = std::max(error, std::abs(row.number("error_rel")));
   }
-  const std::string sticks = "What sticks in tress moves by less than 1 nm";
-  const std::string slides = "It slides in tress within 1 % of Coulomb's slope";
+  const std::string sticks = "tress: a sticking strand moves by less than 1 nm";
+  const std::string slides = "tress: a strand slides within 1 % of Coulomb's law";
   if (judged == 0) {
     verdicts.not_judged(sticks);
     verdicts.not_judged(slides);

@@ -34,7 +34,7 @@ void check_target(const std::vector<Row>& rows, std::string_view kind, double er
   }
   verdicts.check_found("some run has " + what, best != nullptr, complete, least);
   if (best == nullptr) return;
-  verdicts.figure("seconds to " + what + ", by " + std::string(best->text("integrator")),
+  verdicts.figure("seconds to " + what + ", " + std::string(best->text("integrator")),
                   best->number("wall_s"));
 }
 

@@ -60,7 +60,7 @@ void check(const std::vector<Row>& rows, const ControlClaim& claim, Verdicts& ve
       std::string(claim.integrator) + ", " + std::string(claim.scene) + ": ";
   const std::string words = who +
                             "time error is at most the tolerance from 1e-2 to 1e-4 and "
-                            "falls with it, by all models that run";
+                            "falls with it, for all models that run";
   double largest = 0, within = 0, runs = 0;
   bool falling = true;
   for (const auto& [model, errors] : curves(rows, claim)) {
