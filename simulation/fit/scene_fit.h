@@ -91,8 +91,8 @@ struct SceneFit {
 SceneFit fit_scenes(const FitTask& task);
 
 /// Checks a task without a run. Throws InputError on parameters that the scenes do not
-/// have, records of strands, points or times that they do not have, bounds and priors
-/// that are wrong, too few coordinates, and as check_derivatives().
+/// have, and on records of strands, points or times that they do not have. Also throws on
+/// wrong bounds and priors, on too few coordinates, and as check_derivatives().
 void check_fit(const FitTask& task);
 
 }  // namespace tress::simulation
