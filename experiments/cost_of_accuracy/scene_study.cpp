@@ -26,10 +26,13 @@ constexpr double slow_run = 1.15;
 /// decide.
 constexpr double never_ended_s = 0.05;
 
-/// Fraction of a search's work; the rest refines the best runs found.
-constexpr double coarse_share = 0.8;
+/// Fraction of a search's work; the rest refines the best runs found, which on the
+/// ladders are up to `ladder_slack` from what they come to.
+constexpr double coarse_share = 0.4;
+/// As much again may be spent on runs that are cheaper than the best.
+constexpr double sweep_share = 2;
 /// As much again may be spent on replacing each choice of the winners.
-constexpr double last_share = 2;
+constexpr double last_share = 3;
 
 /// Counts the work of a search. The time until the deadline matters only in an emergency;
 /// each stage leaves some of it to later ones.
@@ -221,6 +224,9 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
   search.go_on(work.until(1));
   search.refine();
   if (search.cut()) how += ", cut while refining";
+  search.go_on(work.until(sweep_share));
+  search.sweep();
+  if (search.cut()) how += ", cut while sweeping";
   search.go_on(work.until(last_share));
   bounded = false;  // what replaces a winner's choice may take longer
   Finalists finalists(search, study.given, study.methods, [&](const Trial& run) {

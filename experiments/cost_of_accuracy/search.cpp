@@ -59,6 +59,17 @@ std::vector<int> around(int elements) {
   return all;
 }
 
+/// A sweep ends for a number of elements where the error is this many times the target:
+/// shorter steps meet it, longer ones do not.
+constexpr double out_of_reach = 3;
+
+/// Numbers from `first` to `last`, an eighth apart.
+std::vector<int> eighths(int first, int last) {
+  std::vector<int> all;
+  for (int n = first; n <= last; n += std::max(1, n / 8)) all.push_back(n);
+  return all;
+}
+
 double largest_ratio(const std::vector<int>& ladder) {
   double ratio = 1;
   for (std::size_t i = 1; i < ladder.size(); ++i) {
@@ -350,21 +361,50 @@ void Search::comb(const Trial& best) {
   }
 }
 
-/// From the cheapest on: what is found bounds how many more are refined, and how far.
-void Search::refine() {
+/// Errors of space and of time may cancel, so that the cheapest run lies where neither
+/// fewer elements nor longer steps lead to it: all methods are tried wherever a run would
+/// be cheaper than the best so far.
+void Search::sweep() {
+  const std::vector<int> elements =
+      eighths(plan_.elements.front(), plan_.elements.back());
   for (const double target : plan_.targets) {
-    std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t method = 0; method < methods_; ++method) {
-      const auto own = [method](const Trial& run) { return run.method == method; };
-      const Trial* mine = cheapest(runs_, target, own);
-      if (mine != nullptr) order.emplace_back(mine->wall_s, method);
+      for (const int n : elements) sweep(method, n, target);
     }
-    std::ranges::sort(order);
-    for (const auto& [wall_s, method] : order) {
-      const Trial* best = robust(target);
-      if (best == nullptr || wall_s > plan_.slack * best->wall_s) break;
-      refine(method, target, Bound::all);
-    }
+  }
+}
+
+void Search::sweep(std::size_t method, int elements, double target) {
+  const Trial* best = robust(target);
+  if (stopped() || best == nullptr) return;
+  const double one_s = expected_s(method, elements, unit(method)) / unit(method);
+  if (one_s == 0) return;  // no run of the method succeeded
+  int substeps =
+      std::min(static_cast<int>(best->wall_s / one_s), most_substeps(method, elements));
+  for (; substeps >= unit(method); substeps -= std::max(1, substeps / 4)) {
+    const Trial* found = run(method, elements, substeps);
+    if (stopped() || found == nullptr) return;
+    if (found->error > out_of_reach * target) return;
+  }
+}
+
+/// From the cheapest on: what is found bounds how many more are refined, and how far.
+bool Search::refine_next(double target) {
+  const Trial* best = robust(target);
+  const Trial* next = cheapest(runs_, target, [&](const Trial& run) {
+    return !refined_.contains({run.method, target, Bound::all});
+  });
+  if (stopped() || best == nullptr || next == nullptr) return false;
+  if (next->wall_s > plan_.slack * best->wall_s) return false;
+  refine(next->method, target, Bound::all);
+  return true;
+}
+
+/// One method for each target in turn, so that no target uses up the work of another.
+void Search::refine() {
+  std::vector<double> open = plan_.targets;
+  while (!open.empty()) {
+    std::erase_if(open, [this](double target) { return !refine_next(target); });
   }
 }
 

@@ -52,9 +52,11 @@ double ladder_slack(const SearchPlan& plan, double noise);
 ///            that kind.
 ///   prune    For each target the methods within `slack` of the cheapest continue.
 ///   refine   From a method's cheapest run so far, numbers of elements around it are
-///   tried,
-///            each with the fewest substeps that meet the target, by bisection. This is
-///            repeated from the cheapest of those until it no longer changes.
+///            tried, each with the fewest substeps that meet the target, by bisection.
+///            This is repeated from the cheapest of those until it no longer changes.
+///
+///   sweep    Every method is tried with all numbers of elements, an eighth apart, and
+///            with substeps down from those that may cost as much as the best run.
 ///
 /// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
 /// accurate runs are passed over. `stop` decides how far the search goes; the search
@@ -74,6 +76,7 @@ class Search {
 
   void coarse();  // with the probe
   void refine();
+  void sweep();
   /// One method for one target, from its cheapest run so far. Runs are not tried if they
   /// would take longer than the best of the method itself, or of all methods.
   enum class Bound { own, all };
@@ -125,6 +128,11 @@ class Search {
   bool stopped();
   std::vector<std::size_t> promising_first();
   void climb(std::size_t method);
+  /// One method with this many elements.
+  void sweep(std::size_t method, int elements, double target);
+  /// The cheapest method that is not refined yet; false: none is left, or the search
+  /// ends.
+  bool refine_next(double target);
   /// Near the answers of another method of its kind; false: there is none yet.
   bool follow(std::size_t method);
 
