@@ -12,6 +12,9 @@ class StageWatcher {
   /// Called after each stage that was solved: r(t, q, v, a) = G^T lambda within Newton's
   /// tolerance.
   virtual void solved(double t, In q, In v, In a, In lambda) noexcept = 0;
+  /// Called before that with exact contact: the arguments with which the solution was
+  /// prepared by ContactForm::begin().
+  virtual void prepared(double /*tau*/, In /*q0*/, In /*v0*/, In /*x0*/) noexcept {}
 };
 
 }  // namespace tress

@@ -156,7 +156,13 @@ std::span<const ContactLaw> contact_laws() {
       ContactLaw{"regularised, 0.5 N/m^2",
                  "stiffness_n_m2 = 0.5\nslip_speed_m_s = 0.02\n", some},
       ContactLaw{"regularised, 10 N/m^2", "stiffness_n_m2 = 10\nslip_speed_m_s = 0.001\n",
-                 some}};
+                 some},
+      ContactLaw{"exact, rigid",
+                 "friction_law = \"exact\"\nnormal = \"rigid\"\n",
+                 {"bdf2", "backward_euler"}},
+      ContactLaw{"exact, rigid, no friction",
+                 "friction_law = \"exact\"\nnormal = \"rigid\"\nfriction = 0\n",
+                 {"bdf2", "backward_euler"}}};
   return all;
 }
 

@@ -26,6 +26,15 @@ std::size_t frames(const StrandGradient& one, const StrandGradient& finer) {
   return std::min(one.points.size(), finer.points.size());
 }
 
+bool near_contact_change(const StrandGradient& strand, std::size_t frame) {
+  return frame < strand.near_contact_change.size() && strand.near_contact_change[frame];
+}
+
+const char* status_at(const StrandGradient& strand, std::size_t frame) {
+  if (!strand.not_smooth.empty()) return "not_smooth";
+  return near_contact_change(strand, frame) ? "contact_changes" : "ok";
+}
+
 std::string table_of(const Scene& scene, const SceneGradient& gradient,
                      const SceneGradient& finer) {
   const GradientOf of = gradient_of(scene.tables->gradient->values().word("of"));
@@ -35,13 +44,13 @@ std::string table_of(const Scene& scene, const SceneGradient& gradient,
   for (std::size_t k = 0; k < gradient.strands.size(); ++k) {
     const StrandGradient& strand = gradient.strands[k];
     const StrandGradient& other = finer.strands[k];
-    const char* const status = strand.not_smooth.empty() ? "ok" : "not_smooth";
     const double length = scene.strands[k].length();
     const std::size_t last = frames(strand, other);
     for (std::size_t f = of == GradientOf::last_tip ? std::max<std::size_t>(last, 1) - 1
                                                     : 0;
          f < last; ++f) {
       const std::size_t numbers = strand.points[f].size();
+      const char* const status = status_at(strand, f);
       for (std::size_t i = of == GradientOf::points ? 0 : numbers - 3; i < numbers; ++i) {
         for (std::size_t j = 0; j < gradient.parameters.size(); ++j) {
           const SceneParameter& by = gradient.parameters[j];
@@ -85,6 +94,20 @@ void tell_parameter(const Scene& scene, const SceneGradient& gradient,
       size > 0 ? size_of_tip(apart) / size / percent : 0.0);
 }
 
+void warn_of_contact(const Scene& scene, const SceneGradient& gradient) {
+  std::size_t all = 0, near = 0;
+  for (const StrandGradient& strand : gradient.strands) {
+    all += strand.near_contact_change.size();
+    near +=
+        static_cast<std::size_t>(std::ranges::count(strand.near_contact_change, true));
+  }
+  if (near == 0) return;
+  tell(
+      "simulate: {}: gradient: warning: a contact opens, closes, comes to rest or begins "
+      "to slide within a step of {} of {} frames: status contact_changes\n",
+      scene.name, near, all);
+}
+
 }  // namespace
 
 void check_gradient_table(const Scene& scene) {
@@ -105,6 +128,7 @@ bool report_gradient(const Scene& scene, const std::string& file) {
   }
   const SceneGradient gradient = scene_gradient(scene), finer = scene_gradient(scene, 2);
   replace_file(file, table_of(scene, gradient, finer));
+  warn_of_contact(scene, gradient);
   bool finished = true;
   for (const SceneGradient* one : {&gradient, &finer}) {
     for (std::size_t k = 0; k < one->strands.size(); ++k) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contract/forms/material_points.h"
+#include "contract/input_error.h"
 #include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
 
@@ -16,13 +17,24 @@ bool all_zero(In x) {
   return std::ranges::all_of(x, [](double entry) { return entry == 0; });
 }
 
+System& with_adjoint(System& system, const GradientRun::Method& method) {
+  const std::string reason = no_adjoint(system);
+  if (reason.empty()) return with_gradient(system, method);
+  throw InputError("no adjoint of this run", reason, "use GradientRun");
+}
+
 }  // namespace
+
+std::string no_adjoint(System& system) {
+  if (system.contact_form() == nullptr) return {};
+  return "the derivatives of exact contact are computed forward";
+}
 
 AdjointRun::AdjointRun(System& system, std::unique_ptr<System> exact,
                        std::span<const RunParameter> parameters,
                        const GradientRun::Method& method, std::size_t record_bytes)
     : method_(method),
-      system_(with_gradient(system, method)),
+      system_(with_adjoint(system, method)),
       exact_(std::move(exact)),
       record_bytes_(record_bytes),
       n_(size(system.layout().coordinates)),

@@ -12,6 +12,9 @@
 
 namespace tress::integrators {
 
+/// Why runs of this system have no adjoint; empty: they have, if they have a gradient.
+std::string no_adjoint(System& system);
+
 /// A run and the exact derivatives of numbers of its motion by parameters, backward in
 /// time: the discrete adjoint. The run records its stages. A sweep then goes back through
 /// them, and each stage costs one linearization and for each number one solution with the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contract/forms/contact_form.h"
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
@@ -20,6 +21,40 @@ std::vector<VariedSystem> varied_systems(System& system,
   return all;
 }
 
+/// Of exact contact.
+std::optional<NoGradient> no_contact_gradient(const IntegratorEntry& method,
+                                              System& system) {
+  constexpr const char* regularised =
+      "friction_law = \"regularised\" without normal and restitution";
+  ContactForm* const contacts = system.contact_form();
+  if (contacts == nullptr) return {};
+  if (contacts->complementarity() == nullptr) {
+    return NoGradient{"exact friction on a surface that gives way has no derivative",
+                      "use normal = \"rigid\", or friction_law = \"regularised\""};
+  }
+  if (method.stages > 1) {
+    return NoGradient{std::string(method.id) +
+                          " changes its formula at an impact with exact contact, which "
+                          "has no derivative",
+                      std::string("use backward_euler or bdf2, or ") + regularised};
+  }
+  if (system.layout().constraints > 0) {
+    return NoGradient{"exact contact of a model with constraints has no derivative",
+                      std::string("use ") + regularised};
+  }
+  return {};
+}
+
+std::string at_time(const std::string& what, double t) {
+  return "at t = " + std::to_string(t) + " s: " + what;
+}
+
+void add_counts(const Stats& more, Stats& all) {
+  all.residuals += more.residuals;
+  all.linearizations += more.linearizations;
+  all.solves += more.solves;
+}
+
 }  // namespace
 
 std::optional<NoGradient> no_gradient(std::string_view method, System& system,
@@ -34,11 +69,7 @@ std::optional<NoGradient> no_gradient(std::string_view method, System& system,
                           "solutions derivatives are taken",
                       "use " + able};
   }
-  if (system.contact_form() != nullptr) {
-    return NoGradient{
-        "the forces of exact contact have no derivative yet",
-        "use friction_law = \"regularised\" without normal and restitution"};
-  }
+  if (auto no = no_contact_gradient(find_integrator(method), system)) return no;
   if (system.layout().constraints == 0) {
     if (system.traits().regular_mass) return {};
     return NoGradient{
@@ -76,7 +107,12 @@ GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
       q_(size(system.layout().coordinates)),
       v_(q_),
       dq_(parameters.size() * q_.size()),
-      dv_(dq_) {}
+      dv_(dq_) {
+  ContactForm* const contacts = system.contact_form();
+  if (contacts != nullptr && contacts->rebounds()) {
+    rebounds_.emplace(*variational_.contacts());
+  }
+}
 
 template <class Visit>
 void GradientRun::each_system(const Visit& visit) {
@@ -86,8 +122,17 @@ void GradientRun::each_system(const Visit& visit) {
   }
 }
 
-Status GradientRun::start() {
+/// The run before.
+void GradientRun::forget() {
+  if (variational_.contacts() != nullptr) variational_.contacts()->begin();
+  if (rebounds_) rebounds_->begin();
+  cases_.clear();
+  contact_changes_.clear();
   each_system([](System& system) { system.reset(); });
+}
+
+Status GradientRun::start() {
+  forget();
   t_ = 0;
   system_.initial_state(q_, v_);
   variational_.initial_state(dq_, dv_);
@@ -99,10 +144,8 @@ Status GradientRun::start() {
 }
 
 Status GradientRun::start(const State& from) {
-  each_system([&](System& system) {
-    system.reset();
-    system.recall(from.memory);
-  });
+  forget();
+  each_system([&](System& system) { system.recall(from.memory); });
   t_ = from.t;
   q_ = from.q, v_ = from.v;
   dq_ = from.dq, dv_ = from.dv;
@@ -126,7 +169,7 @@ Status GradientRun::begin(std::string_view method, const Options& options) {
   watched_.forget();
   const Status s = run_->start(t_, q_, v_);
   if (s != Status::ok) return fail(s, run_->failure());
-  variational_.follow(q_, v_);
+  variational_.follow(t_, q_, v_);
   const Status c = columns_->start(t_, dq_, dv_);
   return c == Status::ok ? c : fail(c, "derivatives: " + columns_->failure());
 }
@@ -145,17 +188,54 @@ Status GradientRun::advance(double t_end) {
 Status GradientRun::advance_by(Integrator& run, Integrator& columns, double t_end) {
   Status of_columns = Status::ok;
   const Status s = run.advance(t_end, [&](double t, In q, In v) {
-    variational_.follow(q, v);
-    of_columns = columns.advance(t);
+    variational_.follow(t, q, v);
+    of_columns = advance_columns(columns, t, q, v);
     watched_.forget();
     return of_columns == Status::ok && variational_.failure().empty();
   });
   keep(run, columns);
-  if (!variational_.failure().empty()) return fail(Status::fatal, variational_.failure());
+  if (!variational_.failure().empty()) {
+    return fail(Status::fatal, at_time(variational_.failure(), t_));
+  }
   if (of_columns != Status::ok) {
+    if (!failure_.empty()) return of_columns;
     return fail(of_columns, "derivatives: " + columns.failure());
   }
   return s == Status::ok ? s : fail(s, run.failure());
+}
+
+/// The step that the run has come by.
+Status GradientRun::advance_columns(Integrator& columns, double t, In q, In v) {
+  ContactDerivative* const contacts = variational_.contacts();
+  if (contacts == nullptr) return columns.advance(t);
+  if (rebounds_ && !rebounds_->find(watched_.stages().back(), columns.q())) {
+    return fail(Status::fatal, at_time(rebounds_->failure(), t));
+  }
+  const WatchedSystem::Motion& start = variational_.step_start();
+  Status s = shift_columns(columns, start.t, start.q, start.v, 1);
+  if (s == Status::ok) s = columns.advance(t);
+  if (s == Status::ok) s = shift_columns(columns, t, q, v, -1);
+  if (contacts->cases() != cases_) contact_changes_.push_back(t);
+  cases_ = contacts->cases();
+  return s;
+}
+
+/// By the delays of a rebound.
+Status GradientRun::shift_columns(Integrator& columns, double t, In q, In v,
+                                  double sign) {
+  if (!rebounds_ || rebounds_->delays().empty()) return Status::ok;
+  const std::size_t n = q_.size();
+  std::vector<double> a(n), dq(columns.q().begin(), columns.q().end()),
+      dv(columns.v().begin(), columns.v().end());
+  const Status s = variational_.contacts()->free_acceleration(t, q, v, a);
+  if (s != Status::ok) return s;
+  for (std::size_t k = 0; k < varied_.size(); ++k) {
+    const double delay = sign * rebounds_->delays()[k];
+    add(Out(dq).subspan(k * n, n), delay, v);
+    add(Out(dv).subspan(k * n, n), delay, a);
+  }
+  add_counts(columns.stats(), before_);
+  return columns.start(t, dq, dv);
 }
 
 void GradientRun::keep(const Integrator& run, const Integrator& columns) {
@@ -165,11 +245,8 @@ void GradientRun::keep(const Integrator& run, const Integrator& columns) {
   dq_.assign(columns.q().begin(), columns.q().end());
   dv_.assign(columns.v().begin(), columns.v().end());
   stats_ = before_;
-  for (const Stats& done : {run.stats(), columns.stats()}) {
-    stats_.residuals += done.residuals;
-    stats_.linearizations += done.linearizations;
-    stats_.solves += done.solves;
-  }
+  add_counts(run.stats(), stats_);
+  add_counts(columns.stats(), stats_);
   stats_.steps += run.stats().steps;
   stats_.newton_iterations += run.stats().newton_iterations;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/integrator.h"
+#include "integrators/gradient/rebound_delays.h"
 #include "integrators/gradient/variational_system.h"
 
 namespace tress::integrators {
@@ -76,6 +77,9 @@ class GradientRun {
   In dv(std::size_t k) const { return In(dv_).subspan(k * q_.size(), q_.size()); }
   /// Writes the derivatives of MaterialPoints::positions(), (3 count) m.
   void points_by(std::size_t k, Out dx);
+  /// Returns the ends of the steps in which an exact contact opened, closed, came to rest
+  /// or began to slide, s, in order.
+  const std::vector<double>& contact_changes() const { return contact_changes_; }
   /// Returns what ended the last advance(); empty if it ended well.
   const std::string& failure() const { return failure_; }
   /// Steps and Newton iterations of the run; residuals, linearizations and solves of both
@@ -85,9 +89,12 @@ class GradientRun {
  private:
   template <class Visit>
   void each_system(const Visit& visit);
+  void forget();
   Status set_off();
   Status advance_by(Integrator& run, Integrator& columns, double t_end);
   Status begin(std::string_view method, const Options& options);
+  Status advance_columns(Integrator& columns, double t, In q, In v);
+  Status shift_columns(Integrator& columns, double t, In q, In v, double sign);
   void keep(const Integrator& run, const Integrator& columns);
   Status fail(Status s, std::string why);
 
@@ -98,9 +105,12 @@ class GradientRun {
   WatchedSystem watched_;
   VariationalSystem variational_;
   std::unique_ptr<Integrator> run_, columns_;
-  bool damping_ = false;  // in the first steps
+  std::optional<ReboundDelays> rebounds_;  // where points may rebound
+  bool damping_ = false;                   // in the first steps
   double t_ = 0;
   std::vector<double> q_, v_, dq_, dv_;
+  std::vector<ContactDerivative::Case> cases_;
+  std::vector<double> contact_changes_;
   std::string failure_;
   Stats stats_, before_;  // before_: the present method
 };

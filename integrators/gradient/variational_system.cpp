@@ -20,6 +20,10 @@ VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
   if (constraints > 0) {
     starts_.emplace(system, varied, acceleration_options(options), sparse, copies);
   }
+  if (system.contact_form() != nullptr) {
+    contacts_.emplace(stages_.dynamics(), varied);
+    contact_columns_.emplace(*contacts_, *system.contact_form(), columns());
+  }
   for (auto* x : {&start_.q, &start_.v, &start_.a}) x->resize(n_);
   start_.lambda.resize(size(constraints));
 }
@@ -41,7 +45,10 @@ void VariationalSystem::initial_state(Out dq, Out dv) const {
   }
 }
 
-void VariationalSystem::follow(In q, In v) {
+void VariationalSystem::follow(double t, In q, In v) {
+  from_ = start_;
+  if (contacts_) contacts_->start(from_);
+  start_.t = t;
   std::ranges::copy(q, start_.q.begin());
   std::ranges::copy(v, start_.v.begin());
   looked_ = false;
@@ -63,21 +70,38 @@ Status VariationalSystem::look_at(double t) noexcept {
   if (looked_ && nearest->t == looked_at_) return Status::ok;
   looked_ = true;
   looked_at_ = nearest->t;
+  if (contacts_ && !contacts_->hold(*nearest)) {
+    failure_ = std::string(ContactDerivative::other_contacts);
+    return Status::fatal;
+  }
   return stages_.move(*nearest);
 }
 
 Status VariationalSystem::linearize(double t, In, In, In, Weights w) noexcept {
-  const Status s = look_at(t);
-  return s == Status::ok ? stages_.factor(w) : s;
+  Status s = look_at(t);
+  if (s == Status::ok) s = stages_.factor(w);
+  return s == Status::ok && contacts_ ? contacts_->factor(w) : s;
 }
 
 Status VariationalSystem::residual(double t, In dq, In dv, In da, Out r) noexcept {
-  if (const Status s = look_at(t); s != Status::ok) return s;
-  return stages_.excess(dq, dv, da, r);
+  Status s = look_at(t);
+  if (s == Status::ok) s = stages_.excess(dq, dv, da, r);
+  if (s != Status::ok || !contacts_) return s;
+  const std::size_t rows = contacts_->rows();
+  laws_.resize(columns() * rows);
+  for (std::size_t k = 0; k < columns(); ++k) {
+    contacts_->laws(k, column(dq, k), column(dv, k), Out(laws_).subspan(k * rows, rows));
+  }
+  return s;
 }
 
 Status VariationalSystem::solve(In b, Out x) noexcept {
   if (b.data() != x.data()) std::ranges::copy(b, x.begin());
+  if (!contacts_) return Status::ok;
+  const std::size_t rows = contacts_->rows();
+  for (std::size_t k = 0; k < columns(); ++k) {
+    contacts_->correct(In(laws_).subspan(k * rows, rows), column(x, k));
+  }
   return Status::ok;
 }
 

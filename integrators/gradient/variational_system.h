@@ -6,6 +6,7 @@
 
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/moving_history.h"
+#include "integrators/gradient/contact_columns.h"
 #include "integrators/gradient/linearized.h"
 
 namespace tress::integrators {
@@ -30,6 +31,9 @@ namespace tress::integrators {
 /// Accelerations at a start are those of M da = -(r_q dq + r_v dv + dr/ds). The maps of
 /// History::accept() and MovingHistory::carry() are differentiated by the stencils.
 ///
+/// Exact contact: the method moves the places of points along bodies as it moves q
+/// (ContactColumns), and their forces follow from the laws (ContactDerivative).
+///
 /// A stage costs one linearization, however many the columns are. Each column costs two
 /// residuals at the stage's own q (or products with the matrices of SparseForm), the
 /// residuals of its stencil (none, one or four) and a solution.
@@ -46,7 +50,11 @@ class VariationalSystem final : public System,
   /// Writes the columns of initial_state().
   void initial_state(Out dq, Out dv) const override;
   /// The run has come to this state by the step that its record holds, or starts there.
-  void follow(In q, In v);
+  void follow(double t, In q, In v);
+  /// Returns the derivatives of exact contact; null: there is none.
+  ContactDerivative* contacts() { return contacts_ ? &*contacts_ : nullptr; }
+  /// Returns the state at which the last step of the run began.
+  const WatchedSystem::Motion& step_start() const { return from_; }
   /// Why a step failed beyond its equations; empty: nothing did.
   const std::string& failure() const { return failure_; }
 
@@ -58,6 +66,9 @@ class VariationalSystem final : public System,
   Status solve(In b, Out x) noexcept override;
   ExplicitForm* explicit_form() override { return this; }
   History* history() override { return system_.history() == nullptr ? nullptr : this; }
+  ContactForm* contact_form() override {
+    return contact_columns_ ? &*contact_columns_ : nullptr;
+  }
 
  private:
   Status acceleration(double t, In dq, In dv, Out da) noexcept override;
@@ -80,8 +91,11 @@ class VariationalSystem final : public System,
   std::size_t n_;
   Linearized stages_;
   std::optional<Linearized> starts_;  // with g'' = 0, where there are constraints
-  WatchedSystem::Motion start_;
-  double looked_at_ = 0;  // of the record
+  std::optional<ContactDerivative> contacts_;
+  std::optional<ContactColumns> contact_columns_;
+  std::vector<double> laws_;            // of contact, of all columns
+  WatchedSystem::Motion start_, from_;  // from_: where the last step of the run began
+  double looked_at_ = 0;                // of the record
   bool looked_ = false;
   mutable std::size_t carried_ = 0;
   std::string failure_;

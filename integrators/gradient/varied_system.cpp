@@ -60,6 +60,18 @@ struct Probe {
   }
 };
 
+/// The points at a state, at several times.
+std::vector<double> points_at(System& system, In q) {
+  MaterialPoints& points = *system.material_points();
+  std::vector<double> all;
+  for (const double t : probed_times) {
+    std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
+    points.positions(t, q, x);
+    all.insert(all.end(), x.begin(), x.end());
+  }
+  return all;
+}
+
 /// Whether f(1/2) is the mean of f(0) and f(1), entry by entry, up to rounding.
 bool affine(const std::vector<double>& at_0, const std::vector<double>& at_half,
             const std::vector<double>& at_1) {
@@ -192,7 +204,9 @@ VariedSystem varied_system(System& system, const RunParameter& parameter,
                at_1 = probe.of(*far);
     // A parameter that does not act at these states, of what is not touched yet, may be
     // anything.
-    bool all_affine = at_0 != at_1;
+    bool all_affine =
+        at_0 != at_1 && (system.contact_form() == nullptr ||
+                         points_at(system, probe.q) == points_at(*far, probe.q));
     for (std::size_t i = 0; i < at_0.size(); ++i) {
       all_affine = all_affine && affine(at_0[i], at_half[i], at_1[i]);
     }

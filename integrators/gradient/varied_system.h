@@ -64,8 +64,9 @@ enum class VariedMemory { own, of_run };
 
 /// With the affine stencil where residual, start and points are affine in s: measured at
 /// one state, in which all terms are alive, and several times. Never of systems with a
-/// History of their own, which makes the residual depend on the states behind it.
-/// `simple` is measured at three such states and tried at a fourth one.
+/// History of their own, which makes the residual depend on the states behind it. The
+/// laws of exact contact are not affine in what moves the points. `simple` is measured at
+/// three such states and tried at a fourth one.
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory = VariedMemory::own);
 

@@ -1,5 +1,7 @@
 #include "integrators/gradient/watched_system.h"
 
+#include "contract/forms/contact_form.h"
+
 namespace tress::integrators {
 
 void WatchedSystem::Motions::add(double t, In q, In v, In a, In lambda) {
@@ -14,6 +16,17 @@ void WatchedSystem::Motions::add(double t, In q, In v, In a, In lambda) {
 
 void WatchedSystem::solved(double t, In q, In v, In a, In lambda) noexcept {
   stages_.add(t, q, v, a, lambda);
+  ContactForm* const contacts = system_.contact_form();
+  if (contacts == nullptr) return;
+  contact_.multipliers = contacts->multipliers();
+  stages_.storage[stages_.count - 1].contact = contact_;
+}
+
+void WatchedSystem::prepared(double tau, In q0, In v0, In x0) noexcept {
+  contact_.tau = tau;
+  contact_.q0.assign(q0.begin(), q0.end());
+  contact_.v0.assign(v0.begin(), v0.end());
+  contact_.x0.assign(x0.begin(), x0.end());
 }
 
 bool WatchedSystem::accept(double t, InOut q, InOut v) {

@@ -19,6 +19,13 @@ class WatchedSystem final : public System, public StageWatcher, private MovingHi
     double t = 0;                 // time, s
     std::vector<double> q, v, a;  // coordinates, rates and accelerations (n)
     std::vector<double> lambda;   // multipliers of the constraints (m)
+    /// Exact contact of a stage.
+    struct Contact {
+      double tau = 0;                  // as q0, v0, x0: arguments of ContactForm::begin()
+      std::vector<double> q0, v0, x0;  // the state from which the motion continues
+      std::vector<double> multipliers;  // multipliers of the solution
+    };
+    Contact contact = {};  // empty without exact contact
   };
 
   /// `system` must outlive it.
@@ -61,6 +68,7 @@ class WatchedSystem final : public System, public StageWatcher, private MovingHi
   History* history() override { return system_.history() == nullptr ? nullptr : this; }
 
   void solved(double t, In q, In v, In a, In lambda) noexcept override;
+  void prepared(double tau, In q0, In v0, In x0) noexcept override;
 
  private:
   /// Motions whose storage is used again.
@@ -83,6 +91,7 @@ class WatchedSystem final : public System, public StageWatcher, private MovingHi
   Motions stages_;
   mutable Motions carried_;
   Motion accepted_;
+  Motion::Contact contact_;  // of the next solution
   bool moved_ = false;
 };
 

@@ -50,6 +50,9 @@ Status Stage::solve(double t, In q_bar, In v_bar, Weights w, InOut a, InOut lamb
     if (s == Status::retry && effort == Effort::whole) s = by_all_means();
   }
   if (watcher_ != nullptr && s == Status::ok) {
+    if (contacts_ != nullptr) {
+      watcher_->prepared(w.pos / w.vel, q_start_, v_bar, place_bar_);
+    }
     watcher_->solved(t, q(), v(), x_.a, x_.lambda);
   }
   std::ranges::copy(x_.a, a.begin());

@@ -64,6 +64,8 @@ void TakenContacts::velocities(double t, In q, In v, Out u) noexcept {
   }
   for (std::size_t i = 0; i < taken_.size(); ++i) {
     store3(taken_[i].axes * touches_[i].velocity, &u[3 * i]);
+    // The normal turns with the point: a slide has a part along that of before.
+    u[3 * i] = dot(touches_[i].normal, touches_[i].velocity);
   }
 }
 

@@ -62,7 +62,8 @@ Asked asked(const std::vector<double>& points, bool tip) {
   return {tip ? points.size() - 3 : 0, points.size()};
 }
 
-/// (points, jacobian, not_smooth) of one strand: (F, P, 3) and (F, P, 3, K).
+/// (points, jacobian, not_smooth, near_contact_change) of one strand: (F, P, 3), (F, P,
+/// 3, K), and a list of F.
 py::tuple arrays_of(const StrandGradient& strand, bool tip) {
   std::vector<double> points, by;
   for (std::size_t f = 0; f < strand.points.size(); ++f) {
@@ -75,7 +76,7 @@ py::tuple arrays_of(const StrandGradient& strand, bool tip) {
   const py::ssize_t frames = length(strand.points.size());
   return py::make_tuple(copy(points, {frames, -1, 3}),
                         copy(by, {frames, -1, 3, length(strand.by.size())}),
-                        strand.not_smooth);
+                        strand.not_smooth, strand.near_contact_change);
 }
 
 py::dict gradient(const Scene& scene, bool tip, const Names& names,

@@ -21,8 +21,12 @@ class Gradient:
     parameters: np.ndarray  # (K) values of the parameters
     strand: np.ndarray  # (P) the strand of each point
     damped: bool  # the run began with two short steps of backward Euler
-    # "ok", or "not_smooth" where a force jumped during the run
+    # "ok"; "not_smooth" where a force jumped during the run; "contact_changes" where
+    # contact_changes is true of some frame
     status: str = "ok"
+    # (F) whether an exact contact opens, closes, comes to rest or begins to slide within a
+    # step of the frame
+    contact_changes: np.ndarray = None
     # Largest distance, over the length of the strand, of the points of a run with a
     # tolerance from those of the run with its accepted steps frozen.
     moved: float = 0.0
@@ -80,16 +84,19 @@ def gradient(scene, of, by, start, time_errors):
     names = None if by is None else _names(by)
     found = _core.gradient(scene._core, of == "tip", names, start, 1)
     strands = found.pop("strands")
+    changes = np.any([near for _, _, _, near in strands], axis=0)
+    rough = any(reason for _, _, reason, _ in strands)
     result = Gradient(
-        value=np.concatenate([points for points, _, _ in strands], axis=1),
-        jacobian=np.concatenate([jacobian for _, jacobian, _ in strands], axis=1),
+        value=np.concatenate([s[0] for s in strands], axis=1),
+        jacobian=np.concatenate([s[1] for s in strands], axis=1),
         strand=np.repeat(np.arange(len(strands)), [s[0].shape[1] for s in strands]),
-        status="not_smooth" if any(reason for _, _, reason in strands) else "ok",
+        status="not_smooth" if rough else "contact_changes" if changes.any() else "ok",
+        contact_changes=changes,
         **found,
     )
     if time_errors:
         finer = _core.gradient(scene._core, of == "tip", names, start, 2)["strands"]
-        other = np.concatenate([jacobian for _, jacobian, _ in finer], axis=1)
+        other = np.concatenate([s[1] for s in finer], axis=1)
         result.time_error = np.abs(result.jacobian - other)
     return result
 

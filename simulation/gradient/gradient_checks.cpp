@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "integrators/gradient/adjoint_run.h"
 #include "integrators/gradient/gradient_run.h"
+#include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -29,6 +31,13 @@ void check_gradient(const Scene& scene) {
             fmt::format("scene {} has no [gradient]", scene.name), "--gradient",
             "add [gradient] by = [\"youngs_modulus_pa\"] to it");
   check_derivatives(scene);
+  const bool names_them = scene.tables != nullptr && scene.tables->gradient;
+  if (!names_them) return;
+  const std::string way(scene.tables->gradient->values().word("way"));
+  if (gradient_way(way) != GradientWay::adjoint) return;
+  const std::string reason = integrators::no_adjoint(*exact_system_of(scene, 0));
+  refuse_if(!reason.empty(), "no adjoint: " + reason, scene.tables->gradient->place(),
+            "use way = \"auto\"");
 }
 
 std::string gradient_place(const Scene& scene) {
@@ -52,6 +61,12 @@ void check_derivatives(const Scene& scene) {
   const auto system = exact_system_of(scene, 0);
   const auto no = integrators::no_gradient(scene.integrator, *system, scene.options);
   if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    refuse_if(
+        begins_inside(scene, k),
+        fmt::format("no gradient: strand {} begins inside a body with exact contact", k),
+        place, "move the body or the strand");
+  }
 }
 
 }  // namespace tress::simulation

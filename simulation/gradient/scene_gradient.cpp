@@ -11,6 +11,8 @@
 #include "integrators/gradient/adjoint_run.h"
 #include "integrators/gradient/gradient_run.h"
 #include "models/strand_copies.h"
+#include "simulation/gradient/contact_at_stops.h"
+#include "simulation/gradient/run_stops.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
@@ -30,75 +32,6 @@ Parameters exact_options(const Scene& scene) {
     }
   }
   return options;
-}
-
-/// End of a step; asked: points are wanted there.
-struct Stop {
-  double t;
-  bool asked;
-};
-
-/// Of a fixed step.
-std::vector<Stop> stops_at(std::span<const double> times) {
-  std::vector<Stop> stops;
-  for (const double t : times) {
-    if (t > 0) stops.push_back({t, true});
-  }
-  return stops;
-}
-
-std::vector<double> points_at(System& system, double t, In q) {
-  MaterialPoints& points = *system.material_points();
-  std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
-  points.positions(t, q, x);
-  return x;
-}
-
-/// A run with a tolerance: its accepted steps, which are cut at the times asked for, and
-/// its points there.
-struct Accepted {
-  std::vector<Stop> stops;
-  std::vector<std::vector<double>> points;
-  std::string unfinished;
-};
-
-Accepted accepted_steps(const Scene& scene, std::size_t strand,
-                        std::span<const double> times) {
-  const auto system = system_of(scene, strand);
-  std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q);
-  system->initial_state(q, v);
-  system->accept(0, q, v);
-  const auto run = integrators::make_integrator(scene.integrator, *system, scene.options);
-  Accepted accepted;
-  Status s = run->start(0, q, v);
-  for (const Stop& asked : stops_at(times)) {
-    if (s == Status::ok) {
-      s = run->advance(asked.t, [&](double t, In, In) {
-        accepted.stops.push_back({t, t == asked.t});
-        return true;
-      });
-    }
-    if (s != Status::ok) {
-      accepted.unfinished = run->failure();
-      return accepted;
-    }
-    accepted.points.push_back(points_at(*system, asked.t, run->q()));
-  }
-  return accepted;
-}
-
-/// Every step divided into `parts`.
-std::vector<Stop> divided(const std::vector<Stop>& stops, int parts) {
-  std::vector<Stop> all;
-  double from = 0;
-  for (const Stop& stop : stops) {
-    for (int k = 1; k < parts; ++k) {
-      all.push_back({from + (stop.t - from) * k / parts, false});
-    }
-    all.push_back(stop);
-    from = stop.t;
-  }
-  return all;
 }
 
 double farthest(const std::vector<double>& x, const std::vector<double>& y) {
@@ -156,7 +89,7 @@ class StrandRun {
   /// Divides the steps that the run takes, which end at stops.
   void divide_steps() {
     double before = 0, longest = 0;
-    for (const Stop& stop : stops_) {
+    for (const RunStop& stop : stops_) {
       longest = std::max(longest, stop.t - before);
       before = stop.t;
     }
@@ -175,7 +108,10 @@ class StrandRun {
     };
     if (s == Status::ok && from_start()) note(0);
     for (std::size_t k = 0; k < stops_.size() && s == Status::ok; ++k) {
+      const double before = run.time();
       s = run.advance(stops_[k].t);
+      longest_step_ =
+          std::max(longest_step_, std::min(run.time() - before, method_.options.step));
       if (s == Status::ok && stops_[k].asked) note(k + 1);
     }
     if (s != Status::ok) found_.unfinished = run.failure();
@@ -194,6 +130,10 @@ class StrandRun {
         found_.by[k].push_back(std::move(dx));
       }
     }));
+    for (std::size_t f = 0; f < found_.points.size(); ++f) {
+      found_.near_contact_change.push_back(
+          near_change(run.contact_changes(), task_.times[f], longest_step_));
+    }
   }
 
   /// A run that fails has derivatives up to there, except at the last frame.
@@ -235,9 +175,10 @@ class StrandRun {
   std::unique_ptr<System> system_;
   std::vector<RunParameter> parameters_;
   GradientRun::Method method_;
-  Accepted accepted_;
-  std::vector<Stop> stops_;
+  AcceptedSteps accepted_;
+  std::vector<RunStop> stops_;
   StrandGradient found_;
+  double longest_step_ = 0;  // s
 };
 
 }  // namespace
@@ -280,12 +221,14 @@ StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
                                const GradientTask& task) {
   bool adjoint = task.way == GradientWay::adjoint;
   if (task.way == GradientWay::automatic) {
-    const auto points = exact_system_of(scene, strand)->material_points()->count();
+    const auto system = exact_system_of(scene, strand);
+    const auto points = system->material_points()->count();
     const auto numbers =
         3 * (task.of == GradientOf::points ? static_cast<std::size_t>(points)
                                            : std::size_t{1});
     const std::size_t frames = task.of == GradientOf::last_tip ? 1 : task.times.size();
-    adjoint = task.parameters.size() > 3 * numbers * frames;
+    adjoint = task.parameters.size() > 3 * numbers * frames &&
+              integrators::no_adjoint(*system).empty();
   }
   StrandGradient found = StrandRun(scene, strand, task).gradient(adjoint);
   const bool again = found.frames_moved && task.way == GradientWay::automatic;

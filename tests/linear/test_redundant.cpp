@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "linear/least_norm.h"
 #include "tests/linear/kkt_case.h"
 
 namespace tress::test_redundant {
@@ -120,6 +123,22 @@ TEST_P(KktRedundant, AsksForARetryWhenRedundantAndSingularOtherwise) {
   p.s.row(9) = p.s.row(8);
   make(p);
   EXPECT_EQ(factor(p), Status::retry);
+}
+
+// A = s t^T has rank 1: A x = 2 s for x = 2 t/(t.t) + any vector perpendicular to t.
+TEST(LeastNorm, IsTheShortestOfTheSolutions) {
+  const std::vector<double> s{1e-6, -3, 2e4}, t{1, 2, -2};
+  std::vector<double> columns, x;
+  for (const double by_column : t) {
+    for (const double by_row : s) columns.push_back(by_row * by_column);
+  }
+  LeastNorm solver;
+  ASSERT_TRUE(solver.factor(columns, s.size()));
+  for (const double entry : s) x.push_back(2 * entry);
+  solver.solve(x);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], 2 * t[i] / 9, 1e-15);
+  columns[4] = std::nan("");
+  EXPECT_FALSE(solver.factor(columns, s.size()));
 }
 
 }  // namespace tress::test_redundant

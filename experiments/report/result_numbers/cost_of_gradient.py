@@ -212,7 +212,7 @@ def _exact(rows):
     exact = euler[euler.index.str.startswith("exact")]
     if exact.empty:
         return ""
-    return (f" With `backward_euler`, the gradient through exact contact is {percent(exact.iloc[0])} wrong, those through regularised contact "
+    return (f" With `backward_euler`, the gradient through exact contact is {span(exact, percent)} wrong, those through regularised contact "
             f"{span(euler[euler.index.str.startswith('regularised')], percent)}.")
 
 
