@@ -28,11 +28,11 @@ constexpr double never_ended_s = 0.05;
 
 /// Fraction of a search's work; the rest refines the best runs found, which on the
 /// ladders are up to `ladder_slack` from what they come to.
-constexpr double coarse_share = 0.4;
-/// As much again may be spent on runs that are cheaper than the best.
-constexpr double sweep_share = 2;
+constexpr double coarse_share = 0.6;
+/// As much may be spent, by then, on runs that are cheaper than the best.
+constexpr double sweep_share = 4;
 /// As much again may be spent on replacing each choice of the winners.
-constexpr double last_share = 3;
+constexpr double last_share = 5;
 
 /// Counts the work of a search. The time until the deadline matters only in an emergency;
 /// each stage leaves some of it to later ones.
@@ -218,15 +218,13 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
       },
       work.until(coarse_share));
   search.coarse();
+  search.go_on(work.until(1));
+  search.refine();
+  search.go_on(work.until(sweep_share));
+  search.sweep();
   std::string how =
       fmt::format("{}: {} of {} methods climbed", search.cut() ? "cut" : "whole",
                   search.tried(), study.methods.size());
-  search.go_on(work.until(1));
-  search.refine();
-  if (search.cut()) how += ", cut while refining";
-  search.go_on(work.until(sweep_share));
-  search.sweep();
-  if (search.cut()) how += ", cut while sweeping";
   search.go_on(work.until(last_share));
   bounded = false;  // what replaces a winner's choice may take longer
   Finalists finalists(search, study.given, study.methods, [&](const Trial& run) {

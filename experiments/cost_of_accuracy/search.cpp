@@ -63,12 +63,17 @@ std::vector<int> around(int elements) {
 /// shorter steps meet it, longer ones do not.
 constexpr double out_of_reach = 3;
 
-/// Numbers from `first` to `last`, an eighth apart.
-std::vector<int> eighths(int first, int last) {
+/// Numbers from `first` to `last`, such a part of them apart.
+std::vector<int> apart_by(int part, int first, int last) {
   std::vector<int> all;
-  for (int n = first; n <= last; n += std::max(1, n / 8)) all.push_back(n);
+  for (int n = first; n <= last; n += std::max(1, n / part)) all.push_back(n);
   return all;
 }
+
+/// Of a sweep: parts by which numbers of elements and substeps differ, and how many of
+/// the latter double them.
+constexpr int elements_part = 16, substeps_part = 8;
+constexpr std::ptrdiff_t parts_of_double = 6;
 
 double largest_ratio(const std::vector<int>& ladder) {
   double ratio = 1;
@@ -273,7 +278,8 @@ std::vector<std::size_t> Search::promising_first() {
 }
 
 void Search::coarse() {
-  for (const std::size_t method : promising_first()) {
+  order_ = promising_first();
+  for (const std::size_t method : order_) {
     if (stopped()) return;
     if (!follow(method)) climb(method);
     ++tried_;
@@ -366,9 +372,9 @@ void Search::comb(const Trial& best) {
 /// be cheaper than the best so far.
 void Search::sweep() {
   const std::vector<int> elements =
-      eighths(plan_.elements.front(), plan_.elements.back());
-  for (const double target : plan_.targets) {
-    for (std::size_t method = 0; method < methods_; ++method) {
+      apart_by(elements_part, plan_.elements.front(), plan_.elements.back());
+  for (const std::size_t method : order_) {
+    for (const double target : plan_.targets) {
       for (const int n : elements) sweep(method, n, target);
     }
   }
@@ -377,14 +383,26 @@ void Search::sweep() {
 void Search::sweep(std::size_t method, int elements, double target) {
   const Trial* best = robust(target);
   if (stopped() || best == nullptr) return;
-  const double one_s = expected_s(method, elements, unit(method)) / unit(method);
-  if (one_s == 0) return;  // no run of the method succeeded
-  int substeps =
-      std::min(static_cast<int>(best->wall_s / one_s), most_substeps(method, elements));
-  for (; substeps >= unit(method); substeps -= std::max(1, substeps / 4)) {
-    const Trial* found = run(method, elements, substeps);
-    if (stopped() || found == nullptr) return;
-    if (found->error > out_of_reach * target) return;
+  // The same for any times of runs.
+  const std::vector<int> tried =
+      apart_by(substeps_part, unit(method), most_substeps(method, elements));
+  /// The last that may cost no more than the best, by the run nearest to one with `like`.
+  const auto affordable = [&](int like) {
+    const double one_s = expected_s(method, elements, like) / like;
+    const double most = one_s > 0 ? best->wall_s / one_s : 0;
+    return std::ranges::upper_bound(tried, most) - tried.begin() - 1;
+  };
+  // Where a tolerance chooses the steps, each run corrects what the next one may take.
+  std::ptrdiff_t at = -1;
+  for (auto next = affordable(unit(method)); next > at;
+       next = std::min(affordable(tried[static_cast<std::size_t>(at)]),
+                       at + parts_of_double)) {
+    at = next;
+    if (run(method, elements, tried[static_cast<std::size_t>(at)]) == nullptr) return;
+  }
+  for (; at >= 0; --at) {
+    const Trial* found = run(method, elements, tried[static_cast<std::size_t>(at)]);
+    if (stopped() || found == nullptr || found->error > out_of_reach * target) return;
   }
 }
 

@@ -55,7 +55,7 @@ double ladder_slack(const SearchPlan& plan, double noise);
 ///            tried, each with the fewest substeps that meet the target, by bisection.
 ///            This is repeated from the cheapest of those until it no longer changes.
 ///
-///   sweep    Every method is tried with all numbers of elements, an eighth apart, and
+///   sweep    Every method is tried with all numbers of elements, a sixteenth apart, and
 ///            with substeps down from those that may cost as much as the best run.
 ///
 /// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
@@ -76,6 +76,7 @@ class Search {
 
   void coarse();  // with the probe
   void refine();
+  /// After coarse().
   void sweep();
   /// One method for one target, from its cheapest run so far. Runs are not tried if they
   /// would take longer than the best of the method itself, or of all methods.
@@ -144,6 +145,7 @@ class Search {
   std::vector<Trial> runs_;
   std::map<Place, std::optional<std::size_t>> seen_;          // of runs_; none: failed
   std::set<std::tuple<std::size_t, double, Bound>> refined_;  // methods and targets
+  std::vector<std::size_t> order_;                            // methods, promising first
   std::size_t tried_ = 0, passed_over_ = 0;
   bool cut_ = false;
 };

@@ -94,7 +94,10 @@ constexpr Column table_columns[] = {
     {"runs", "runs that the search took", true},
     {"work", "million elements x steps of all of them", true},
     {"passed_over", "cheaper runs whose neighbours miss a target: lucky", true},
-    {"search", "whole, or how far it came with its work", true},
+    {"search",
+     "whole: every method was tried wherever it costs less than the winner; cut: the "
+     "search used up its work before",
+     true},
 };
 
 constexpr std::string_view own_columns[] = {"modes", "jacobian", "solver"};

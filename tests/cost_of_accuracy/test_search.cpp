@@ -218,6 +218,31 @@ TEST(Search, CombFindsWhatBisectionMisses) {
   EXPECT_LE(found->wall_s, 1.1 * least);
 }
 
+// Where errors of space and of time cancel, a band of elements is accurate, and the
+// ladder misses it. More elements take eight times the time, as where a tolerance chooses
+// the steps: the time of a run says little about fewer elements.
+TEST(Search, SweepFindsWhereErrorsCancel) {
+  const auto cost = [](int n, int k) { return 1e-4 * n * k * (n > 24 ? 8 : 1); };
+  Search search(
+      plan({0.001}), 2,
+      [&](std::size_t method, int n, int k) {
+        const bool band = method == 1 && n >= 20 && n <= 24 && k >= 18;
+        const double error =
+            band ? 8e-4 : (method == 0 ? 0.3 : 2.0) / n / n + 0.5 / k / k;
+        return std::optional<Trial>({method, n, k, error, cost(n, k)});
+      },
+      steady, no_end);
+  search.coarse();
+  search.refine();
+  const auto best = [&] { return search.robust(0.001); };
+  ASSERT_NE(best(), nullptr);
+  const double before = best()->wall_s;
+  search.sweep();
+  EXPECT_EQ(best()->method, 1U);
+  EXPECT_LT(best()->wall_s, before / 1.5);
+  EXPECT_LE(best()->wall_s, 1.25 * cost(20, 18));
+}
+
 TEST(Search, FindsNothingWhereNothingIs) {
   Counted counted{{{100, 1, 0, 1, 1}}};  // never below 100/63
   Search search(plan({0.1}), 1, counted.measure(), steady, no_end);

@@ -205,7 +205,7 @@ TEST(ContactGradient, IsRefusedWhereThereIsNone) {
             std::string::npos);
   EXPECT_NE(checked("backward_euler", "tr_bdf2").find("use backward_euler"),
             std::string::npos);
-  EXPECT_NE(checked("\"rigid\"", "\"compliant\"").find("use normal = rigid"),
+  EXPECT_NE(checked("\"rigid\"", "\"compliant\"").find("use normal = \"rigid\""),
             std::string::npos);
   EXPECT_NE(checked("-0.03", "0.01").find("begins inside a body"), std::string::npos);
 }

@@ -267,7 +267,7 @@ TEST(SceneGradient, IsRefusedWhereARunHasNone) {
                 .find("leave out rest = \"inverse\""),
             std::string::npos);
   const std::string body = "[[effects.body]]\nfriction_law = \"exact\"\n";
-  EXPECT_NE(checked(scene_text(body + by)).find("use friction_law = \"regularised\""),
+  EXPECT_NE(checked(scene_text(body + by)).find("friction_law = \"regularised\""),
             std::string::npos)
       << checked(scene_text(body + by));
   const std::string rotors = "[model]\nrotary_inertia = \"off\"\n";
