@@ -30,9 +30,9 @@ constexpr double never_ended_s = 0.05;
 /// ladders are up to `ladder_slack` from what they come to.
 constexpr double coarse_share = 0.6;
 /// As much may be spent, by then, on runs that are cheaper than the best.
-constexpr double sweep_share = 4;
+constexpr double sweep_share = 3;
 /// As much again may be spent on replacing each choice of the winners.
-constexpr double last_share = 5;
+constexpr double last_share = 4;
 
 /// Counts the work of a search. The time until the deadline matters only in an emergency;
 /// each stage leaves some of it to later ones.

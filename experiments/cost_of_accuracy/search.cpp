@@ -63,17 +63,13 @@ std::vector<int> around(int elements) {
 /// shorter steps meet it, longer ones do not.
 constexpr double out_of_reach = 3;
 
-/// Numbers from `first` to `last`, such a part of them apart.
-std::vector<int> apart_by(int part, int first, int last) {
+/// Numbers from `first` to `last`, an eighth apart; so many of these double a number.
+constexpr std::ptrdiff_t eighths_of_double = 6;
+std::vector<int> eighths(int first, int last) {
   std::vector<int> all;
-  for (int n = first; n <= last; n += std::max(1, n / part)) all.push_back(n);
+  for (int n = first; n <= last; n += std::max(1, n / 8)) all.push_back(n);
   return all;
 }
-
-/// Of a sweep: parts by which numbers of elements and substeps differ, and how many of
-/// the latter double them.
-constexpr int elements_part = 16, substeps_part = 8;
-constexpr std::ptrdiff_t parts_of_double = 6;
 
 double largest_ratio(const std::vector<int>& ladder) {
   double ratio = 1;
@@ -372,7 +368,7 @@ void Search::comb(const Trial& best) {
 /// be cheaper than the best so far.
 void Search::sweep() {
   const std::vector<int> elements =
-      apart_by(elements_part, plan_.elements.front(), plan_.elements.back());
+      eighths(plan_.elements.front(), plan_.elements.back());
   for (const std::size_t method : order_) {
     for (const double target : plan_.targets) {
       for (const int n : elements) sweep(method, n, target);
@@ -384,8 +380,7 @@ void Search::sweep(std::size_t method, int elements, double target) {
   const Trial* best = robust(target);
   if (stopped() || best == nullptr) return;
   // The same for any times of runs.
-  const std::vector<int> tried =
-      apart_by(substeps_part, unit(method), most_substeps(method, elements));
+  const std::vector<int> tried = eighths(unit(method), most_substeps(method, elements));
   /// The last that may cost no more than the best, by the run nearest to one with `like`.
   const auto affordable = [&](int like) {
     const double one_s = expected_s(method, elements, like) / like;
@@ -396,13 +391,15 @@ void Search::sweep(std::size_t method, int elements, double target) {
   std::ptrdiff_t at = -1;
   for (auto next = affordable(unit(method)); next > at;
        next = std::min(affordable(tried[static_cast<std::size_t>(at)]),
-                       at + parts_of_double)) {
+                       at + eighths_of_double)) {
     at = next;
-    if (run(method, elements, tried[static_cast<std::size_t>(at)]) == nullptr) return;
+    if (run(method, elements, tried[static_cast<std::size_t>(at)]) == nullptr) break;
   }
   for (; at >= 0; --at) {
     const Trial* found = run(method, elements, tried[static_cast<std::size_t>(at)]);
-    if (stopped() || found == nullptr || found->error > out_of_reach * target) return;
+    if (stopped()) return;
+    // None: it fails, or takes far longer than the best.
+    if (found != nullptr && found->error > out_of_reach * target) return;
   }
 }
 

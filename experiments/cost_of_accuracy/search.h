@@ -55,7 +55,7 @@ double ladder_slack(const SearchPlan& plan, double noise);
 ///            tried, each with the fewest substeps that meet the target, by bisection.
 ///            This is repeated from the cheapest of those until it no longer changes.
 ///
-///   sweep    Every method is tried with all numbers of elements, a sixteenth apart, and
+///   sweep    Every method is tried with all numbers of elements, an eighth apart, and
 ///            with substeps down from those that may cost as much as the best run.
 ///
 /// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
