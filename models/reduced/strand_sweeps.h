@@ -65,12 +65,14 @@ struct ToSweep {
   std::vector<SweptStrand*> strands;       // motion and loads, in the same order
 };
 
-/// Makes sweeps of strands whose unknowns are curvatures or joint angles, two or three
-/// per element. Returns null unless the strands are clamped, have no branches, solve
-/// recursively, and agree in the numbers of elements and of points.
+/// Makes sweeps of one strand with two or three joint angles per element. Returns null
+/// for other unknowns, and unless the strand is clamped, has no branches and solves
+/// recursively.
 std::unique_ptr<StrandSweeps> strand_sweeps(const ToSweep& strand, Unknown unknown,
                                             int modes);
-/// Makes sweeps of up to four strands, one per lane. Returns null as strand_sweeps().
+/// Makes sweeps of up to four strands, one per lane, of curvatures or joint angles.
+/// Returns null as strand_sweeps(), and unless the strands agree in the numbers of
+/// elements and of points.
 std::unique_ptr<StrandSweepsOf<Pack>> sweeps_of_four(const ToSweep& strands,
                                                      Unknown unknown, int modes);
 
