@@ -63,7 +63,7 @@ std::vector<int> around(int elements) {
 /// shorter steps meet it, longer ones do not.
 constexpr double out_of_reach = 3;
 
-/// Numbers from `first` to `last`, an eighth apart; so many of these double a number.
+/// Numbers from `first` to `last`, an eighth apart; six of these steps double a number.
 constexpr std::ptrdiff_t eighths_of_double = 6;
 std::vector<int> eighths(int first, int last) {
   std::vector<int> all;
@@ -363,9 +363,9 @@ void Search::comb(const Trial& best) {
   }
 }
 
-/// Errors of space and of time may cancel, so that the cheapest run lies where neither
-/// fewer elements nor longer steps lead to it: all methods are tried wherever a run would
-/// be cheaper than the best so far.
+/// Errors of space and of time may cancel: the cheapest run may lie where neither fewer
+/// elements nor longer steps lead to it. All methods are tried wherever a run would be
+/// cheaper than the best so far.
 void Search::sweep() {
   const std::vector<int> elements =
       eighths(plan_.elements.front(), plan_.elements.back());

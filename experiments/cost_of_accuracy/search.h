@@ -76,7 +76,7 @@ class Search {
 
   void coarse();  // with the probe
   void refine();
-  /// After coarse().
+  /// Runs the stage after coarse().
   void sweep();
   /// One method for one target, from its cheapest run so far. Runs are not tried if they
   /// would take longer than the best of the method itself, or of all methods.

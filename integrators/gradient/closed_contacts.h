@@ -17,12 +17,11 @@ struct ClosedContact {
 /// The closed contacts of a system with a Complementarity at the solution of a stage.
 /// Between hold() and let_go() their forces are constant.
 ///
-/// The laws are asked for what a contact is: its force tells its multiplier, how it
-/// resists a fast slide its friction, and what depends on velocities rebounds.
+/// What a contact is follows from its law: the multiplier from its force, the friction
+/// from the resistance to a fast slide, a rebound from the dependence on velocities.
 class ClosedContacts {
  public:
-  /// What the laws are about: velocities and forces in the axes of each contact, and its
-  /// coefficient of friction.
+  /// Velocities and forces in the axes of each contact, and its coefficient of friction.
   struct Values {
     std::vector<double> u, f, mu;  // m/s (3 contacts), N (3 contacts), (contacts)
 
@@ -37,7 +36,7 @@ class ClosedContacts {
 
   /// Holds the forces of a stage's solution, which must last until let_go().
   void hold(const WatchedSystem::Motion& end);
-  /// The same, of a step that begins elsewhere: arguments of ContactForm::begin().
+  /// Holds them for a step that begins elsewhere: arguments of ContactForm::begin().
   void hold(const WatchedSystem::Motion& end, In q0, In v0, In x0);
   /// The system computes forces again.
   void let_go();

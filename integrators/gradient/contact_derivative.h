@@ -39,7 +39,7 @@ class ContactDerivative {
   /// Holds the forces of all systems constant, at those of a stage's solution, which must
   /// last until the next call. False: systems of changed parameters have other contacts.
   bool hold(const WatchedSystem::Motion& end);
-  /// What to say then.
+  /// Message of the error then.
   static constexpr std::string_view other_contacts =
       "a small change of a parameter closes a contact or makes it rebound: give another "
       "step, or restitution = 0";

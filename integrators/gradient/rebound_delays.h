@@ -8,7 +8,7 @@
 namespace tress::integrators {
 
 /// Times of rebounds. At a rebound, neither the derivative of the step nor a difference
-/// of runs is the derivative of the motion: states before and after belong together at
+/// of runs is the derivative of the motion. States before and after belong together at
 /// the time of the impact, which depends on the parameters. A delay dt of the impact
 /// moves the state before it by (v-, a-) dt, and that after it by -(v+, a+) dt: the
 /// saltation matrix [Aizerman and Gantmakher 1958].

@@ -35,7 +35,7 @@ struct StrandGradient {
   /// adjoint leaves zeros for points and times that its task does not ask for.
   std::vector<std::vector<std::vector<double>>> by;
   /// Whether an exact contact opens, closes, comes to rest or begins to slide within a
-  /// step of each time: a small change of a parameter may move that across the time.
+  /// step of each time. A small change of a parameter may move that across the time.
   /// Empty: derivatives are those of the adjoint.
   std::vector<bool> near_contact_change;
   std::string unfinished;  // why its run ended after these times; empty: it did not
