@@ -73,7 +73,7 @@ class ReducedSystem : public System,
     scratch_.assign(n, 0.0);
     if (sweeps_) v_factored_.assign(n, 0.0);
     chain_ = kinematics_.is_chain();
-    if (!exact_ && sweeps_ && dynamics_.effect_needs().derivatives) {
+    if (!exact_ && swept && dynamics_.effect_needs().derivatives) {
       by_state_.resize(9 * kinematics_.points());
     }
     if (!exact_) return;
