@@ -20,7 +20,7 @@ std::vector<RunStop> stops_at(std::span<const double> times);
 
 /// A run with a tolerance: its accepted steps, which are cut at the times asked for.
 struct AcceptedSteps {
-  std::vector<RunStop> stops;
+  std::vector<RunStop> stops;               // ends of the steps
   std::vector<std::vector<double>> points;  // points at the times asked for, m
   std::string unfinished;                   // why the run ended; empty: it did not
 };
