@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 namespace tress {
 
 /// Inlines into a kernel all functions that it calls. Not with sanitizers that check
@@ -41,17 +39,13 @@ template <class Work>
 }
 #endif
 
-/// Does work() by instructions that are available, with the same bits. Number: that of
-/// the kernel; work is compiled for AVX-512 if it is wider than a register of AVX2. What
-/// work() calls is inlined; what cannot be must neither take nor return packs, which are
-/// passed differently there (LaneFunctions::longer).
-template <class Number, class Work>
+/// Does work() by instructions that are available, with the same bits. What work() calls
+/// is inlined; what cannot be must neither take nor return packs, which are passed
+/// differently there (LaneFunctions::longer).
+template <class Work>
 void by(Instructions set, const Work& work) {
 #if TRESS_HAS_AVX512
-  constexpr std::size_t avx2_bytes = 32;
-  if constexpr (sizeof(Number) > avx2_bytes) {
-    if (set == Instructions::avx512) return by_avx512(work);
-  }
+  if (set == Instructions::avx512) return by_avx512(work);
 #else
   static_cast<void>(set);
 #endif

@@ -43,7 +43,7 @@ ReferenceStrands::ReferenceStrands(std::size_t strands)
 }
 
 void ReferenceStrands::step() {
-  by<reference::Real>(widest_instructions(), [this] {
+  by(widest_instructions(), [this] {
     for (std::size_t b = 0; b < blocks_; ++b) {
       reference::step(strand_, &state_[b * reference_elements], scratch_.data());
     }

@@ -42,8 +42,7 @@ struct Moving {
 template <class F>
 void by_packs(Instructions instructions, const F& work) {
   if (instructions == Instructions::avx512) {
-    by<PackOf<double, 8>>(instructions,
-                          [&] { work(std::size_t{0}, PackOf<double, 8>{}); });
+    by(instructions, [&] { work(std::size_t{0}, PackOf<double, 8>{}); });
   } else {
     for (std::size_t from = 0; from < eight; from += Pack::lanes) work(from, Pack{});
   }
@@ -257,8 +256,7 @@ void PointGroups::keep_near(const Group& group, double distance,
     }
   };
   if (instructions_ == Instructions::avx512) {
-    by<PackOf<double, 8>>(instructions_,
-                          [&] { keep(load<PackOf<double, 8>>(group.x, 0)); });
+    by(instructions_, [&] { keep(load<PackOf<double, 8>>(group.x, 0)); });
   } else {
     keep(load<Pack>(group.x, 0), load<Pack>(group.x, Pack::lanes));
   }

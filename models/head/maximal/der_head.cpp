@@ -84,7 +84,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
     Real size;
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       size = kernel_.newton(strand.material, elements, clamp, w, q, v, a, correction,
                             scratch.placed.data(), scratch.factors.data());
     });
@@ -94,7 +94,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
     Real size;
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a, correction,
                            scratch.placed.data(), scratch.factors.data(),
                            scratch.now.data());

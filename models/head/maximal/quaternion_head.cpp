@@ -120,7 +120,7 @@ class QuaternionModel
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
     Real size;
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       size =
           kernel_.newton(strand.material, elements, clamp, w, q, v, a,
                          loads(strand, q, v, scratch), correction, scratch.factors.data(),
@@ -132,7 +132,7 @@ class QuaternionModel
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
     Real size;
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a,
                            loads(strand, q, v, scratch), correction,
                            scratch.factors.data(), scratch.forces.data());

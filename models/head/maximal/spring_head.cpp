@@ -119,7 +119,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
               Scratch& scratch) const {
     if constexpr (exact) find_loads(strand, q, v, scratch);
     Real size;
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       const auto solve = [&](auto*... tensions) {
         return kernel_.newton(strand.material, elements, clamp, w, q, v, a, scratch.loads,
                               correction, scratch.placed.data(), scratch.factors.data(),
@@ -138,7 +138,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
              Scratch& scratch) const {
     find_loads(strand, q, v, scratch);
     Real size;
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a, scratch.loads,
                            correction, scratch.placed.data(), scratch.factors.data(),
                            scratch.now.data());
@@ -159,7 +159,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
  private:
   void find_loads(const Strand& strand, std::span<const NearBody> bodies, const V& root,
                   double h, const Real* q, const Real* v, StiffScratch& scratch) const {
-    by<Real>(instructions_, [&] {
+    by(instructions_, [&] {
       scratch.loads =
           scratch.node_loads.find(bodies, units_, h, root, strand.material.length,
                                   strand.material.drag, q, v, Kernel::per_element);

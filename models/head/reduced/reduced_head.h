@@ -116,13 +116,12 @@ class ReducedHead : public Head {
     const double step = h / units_.time;
     auto* const elements = scratch.elements.data();
     ReducedMotion<T> end;
-    by<T>(instructions_,
-          [&] { end = kernel_.move(material, root, step, q, v, elements); });
+    by(instructions_, [&] { end = kernel_.move(material, root, step, q, v, elements); });
     const LoadSums<T>* const* loads = nullptr;
     if (const auto reached = reached_by_effects(block, h, scratch)) {
       loads = scratch.loads.find(*reached, v, elements);
     }
-    by<T>(instructions_, [&] {
+    by(instructions_, [&] {
       kernel_.linearly_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
                                      elements);
     });
@@ -198,7 +197,7 @@ class ReducedHead : public Head {
     const Root& root = roots_[block];
     const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
     LaneEnergies<T> sums;
-    by<T>(instructions_, [&] {
+    by(instructions_, [&] {
       sums = energies_(
           materials_[block], root_of(root, pose), head * root.from, head * root.frame,
           [rest = &rest_[n_ * block]](int i) { return rest[i]; }, &q_[n_ * block],
