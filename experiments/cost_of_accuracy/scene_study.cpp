@@ -26,12 +26,13 @@ constexpr double slow_run = 1.15;
 /// decide.
 constexpr double never_ended_s = 0.05;
 
-/// Fraction of a search's work; the rest refines the best runs found, which on the
-/// ladders are up to `ladder_slack` from what they come to.
+// Stages of a search end when so many times its work is done.
+/// Climbing; the rest of the work refines the best runs, which on the ladders cost up to
+/// `ladder_slack` times what they come to.
 constexpr double coarse_share = 0.6;
-/// As much may be spent, by then, on runs that are cheaper than the best.
+/// The sweep over runs that are cheaper than the best.
 constexpr double sweep_share = 3;
-/// As much again may be spent on replacing each choice of the winners.
+/// Replacing each choice of the winners.
 constexpr double last_share = 4;
 
 /// Counts the work of a search. The time until the deadline matters only in an emergency;

@@ -371,6 +371,7 @@ void Search::sweep() {
       eighths(plan_.elements.front(), plan_.elements.back());
   for (const std::size_t method : order_) {
     for (const double target : plan_.targets) {
+      if (stopped()) return;
       for (const int n : elements) sweep(method, n, target);
     }
   }
@@ -381,7 +382,7 @@ void Search::sweep(std::size_t method, int elements, double target) {
   if (stopped() || best == nullptr) return;
   // The same for any times of runs.
   const std::vector<int> tried = eighths(unit(method), most_substeps(method, elements));
-  /// The last that may cost no more than the best, by the run nearest to one with `like`.
+  // The last that may cost no more than the best, by the run nearest to one with `like`.
   const auto affordable = [&](int like) {
     const double one_s = expected_s(method, elements, like) / like;
     const double most = one_s > 0 ? best->wall_s / one_s : 0;

@@ -54,7 +54,6 @@ double ladder_slack(const SearchPlan& plan, double noise);
 ///   refine   From a method's cheapest run so far, numbers of elements around it are
 ///            tried, each with the fewest substeps that meet the target, by bisection.
 ///            This is repeated from the cheapest of those until it no longer changes.
-///
 ///   sweep    Every method is tried with all numbers of elements, an eighth apart, and
 ///            with substeps down from those that may cost as much as the best run.
 ///
@@ -76,8 +75,7 @@ class Search {
 
   void coarse();  // with the probe
   void refine();
-  /// Runs the stage after coarse().
-  void sweep();
+  void sweep();  // after coarse()
   /// One method for one target, from its cheapest run so far. Runs are not tried if they
   /// would take longer than the best of the method itself, or of all methods.
   enum class Bound { own, all };

@@ -31,8 +31,6 @@ void check_gradient(const Scene& scene) {
             fmt::format("scene {} has no [gradient]", scene.name), "--gradient",
             "add [gradient] by = [\"youngs_modulus_pa\"] to it");
   check_derivatives(scene);
-  const bool names_them = scene.tables != nullptr && scene.tables->gradient;
-  if (!names_them) return;
   const std::string way(scene.tables->gradient->values().word("way"));
   if (gradient_way(way) != GradientWay::adjoint) return;
   const std::string reason = integrators::no_adjoint(*exact_system_of(scene, 0));

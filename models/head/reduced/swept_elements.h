@@ -6,8 +6,7 @@
 
 #include "math/instructions.h"
 #include "math/lanes.h"
-#include "models/head/chain_strand.h"
-#include "models/head/helix_strand.h"
+#include "models/head/reduced_kernel.h"
 #include "models/reduced/strand_sweeps.h"
 
 namespace tress::models {
@@ -361,23 +360,15 @@ inline int swept_points(const ToSweep& of, int modes) {
   return alike ? points : 0;
 }
 
-/// Makes sweeps of strands of helices or chains. Returns null if the strands cannot be
-/// swept or have other unknowns.
-template <class T>
-std::unique_ptr<StrandSweepsOf<T>> sweeps_of(const ToSweep& of, Unknown unknown,
-                                             int modes) {
+/// Makes sweeps of strands of this Kind of element. Returns null if the strands cannot be
+/// swept.
+template <class Kind>
+std::unique_ptr<StrandSweepsOf<typename Kind::Real>> sweeps_of(const ToSweep& of,
+                                                               int modes) {
   const int points = swept_points(of, modes);
-  const auto make = [&]<class Kind>() -> std::unique_ptr<StrandSweepsOf<T>> {
-    if (modes == 3) return std::make_unique<SweptElements<Kind, true>>(of, points);
-    return std::make_unique<SweptElements<Kind, false>>(of, points);
-  };
-  if (points > 0 && unknown == Unknown::curvature) {
-    return make.template operator()<HelixKind<T>>();
-  }
-  if (points > 0 && unknown == Unknown::joint_angle) {
-    return make.template operator()<ChainKind<T>>();
-  }
-  return nullptr;
+  if (points == 0) return nullptr;
+  if (modes == 3) return std::make_unique<SweptElements<Kind, true>>(of, points);
+  return std::make_unique<SweptElements<Kind, false>>(of, points);
 }
 
 }  // namespace tress::models
