@@ -257,7 +257,7 @@ TEST(HeadClasses, RunAsHeadsWithFilesOfTheirOwn) {
             "guard = \"true\"\n" + groom("shape = \"helix\"\n", "tolerance_m = 0.002\n"));
   const Toy::Result result = toy.run("t.toml --as batch --out .");
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, testing::HasSubstr("t: heads of equal elements: strands "));
+  EXPECT_THAT(result.err, testing::HasSubstr("t: batches of equal elements: strands "));
   const auto found = head_classes(read_outline(toy.path("work/t.toml")), 1);
   for (const HeadClass& one : found) {
     const std::string stem = "t." + std::to_string(one.elements);
