@@ -192,7 +192,7 @@ StudyPlan plan_of(const CommandLine& line, const Settings& settings) {
     plan.methods.refreshes = {Refresh::every_step};
     plan.methods.fixed_steps = false;
     // Without torsion mass_spring does not preserve the direction of curls.
-    plan.methods.options = {"modes=bend", "jacobian=elastic", "torsion"};
+    plan.methods.options = {"modes", "jacobian=elastic", "torsion"};
   }
   if (plan.advise) narrow(plan.methods);
   if (!line.elements.empty()) plan.elements = line.elements;
