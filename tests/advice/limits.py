@@ -16,9 +16,9 @@ TIMES = 5  # the duration of the scene
 MOST_STEPS = 2e5  # a limit with this many steps in all runs within a minute
 
 
-# "X: backward_euler (tangent exact): stable up to 4.1 ms, unstable at 1.5 times that ...", or
+# "X: backward_euler (jacobian exact): stable up to 4.1 ms, unstable at 1.5 times that ...", or
 # "..., at 1.5 times that some step has no solution ..."
-LIMIT = re.compile(r": (?P<integrator>\w+) \(tangent (?P<tangent>\w+)\): stable up to (?P<length>[\d.e+-]+) "
+LIMIT = re.compile(r": (?P<integrator>\w+) \(jacobian (?P<jacobian>\w+)\): stable up to (?P<length>[\d.e+-]+) "
                    r"(?P<unit>s|ms|us), (?P<unstable>unstable )?at 1\.5 times")
 
 
