@@ -172,16 +172,32 @@ class Queries(Made):
             {"claim": "w", "key": "exact_contact_survives", "held": True, "value": 1.0, "state": "passed"}]}))
         self.assertEqual(self.say("hard.rising_count", hard_cases=[
             grazing("grazing_contact"), grazing("grazing_exact", outcome="stable"),
-            grazing("grazing_contact", integrator="bdf2"), grazing("grazing_exact", integrator="bdf2", outcome="refused")]),
+            grazing("grazing_contact", integrator="bdf2"), grazing("grazing_exact", integrator="bdf2", outcome="refused",
+                                                                             why="rigid: use tr_bdf2, esdirk43"),
+            grazing("grazing_impulse", integrator="bdf2", outcome="refused", why="rubs: use rk4 or esdirk43"),
+            grazing("cone", model="corde"),
+            grazing("cone_exact", model="corde", outcome="refused", why="motion = 'free' is unknown: use one of: fixed")]),
             "1 of 1")
         self.assertRegex(self.say("hard.rising_table"), r"`grazing_contact` \| rk4 \| 1 ms \| \*\*survives\*\* \| der \|\n"
-                         r".*bdf2 does not support exact contact")
+                         r".*\| not available with bdf2, but with tr_bdf2, esdirk43, rk4 \| der \|\n"
+                         r".*\| refused: motion = 'free' is unknown \| corde \|")
         compared = [run(1e-2, "stable"), run(1e-2, "stable and accurate", case="a"), run(1e-2, "stable", case="b", error_rel="")]
         self.assertRegex(self.say("newest.survived_table", hard_cases=compared, validation=[{"model": "der"}]),
                          r"\| `rk4` \| 10 ms \| 3 \| 2 \| 1 \| 50 % \|")
         # Chains and particles are no strand models.
         self.assertRegex(self.say("newest.survived_table", hard_cases=[*compared, run(1e-2, "stable", model="tinkertoys")]),
                          r"\| `rk4` \| 10 ms \| 3 \|")
+
+    def test_a_limit_without_an_end_of_its_search_is_a_bound(self):
+        row = {"study": "grid", "elements": 20, "damping": "none", "scene": "release", "integrator": "backward_euler",
+               "jacobian": "exact", "modes": "", "dt_max_s": "", "limited_by": "energy"}
+        rows = [{**row, "model": "der", "status": "gave_up", "dt_first_unstable_s": 3.2e-5},
+                {**row, "model": "corde", "status": "gave_up", "dt_first_unstable_s": ""},
+                {**row, "model": "vbd", "status": "ok", "dt_max_s": 0.1, "limited_by": "cap", "dt_first_unstable_s": ""},
+                {**row, "model": "xpbd", "status": "unstable", "dt_first_unstable_s": 1e-6}]
+        said = self.say("stability.models_table", stability_limit=rows)
+        for model, step in (("der", "< 32 µs"), ("corde", "inconclusive"), ("vbd", "≥ 100 ms"), ("xpbd", "none found")):
+            self.assertRegex(said, rf"`{model}` \| not searched \| {step} \|")
 
     def test_a_tie_is_no_win_and_winners_say_how_near_the_edge_they_are(self):
         row = {"target_error_rel": 0.01, "wall_s_per_sim_s": 1, "status": "ok", "model": "der", "elements": 5, "dt_s": 1e-3}

@@ -123,12 +123,24 @@ _WHY_NOT = {
 }
 
 
+def _unavailable(row, exact):
+    """Returns the methods that have an exact law where this one has none, or another reason of
+    the refusals."""
+    methods = {}
+    for one in exact:
+        problem, _, remedy = one["why"].partition(": use ")
+        if "=" in problem:  # an option of the model
+            return f"refused: {problem}"
+        methods |= dict.fromkeys(re.findall(r"\w+", remedy.replace(" or ", ", ")))
+    return f"not available with {row['integrator']}, but with {', '.join(methods)}"
+
+
 def _ending(row, exact):
     """Returns whether an exact law survives, or why the best of them does not."""
     if _rises(exact):
         return "**survives**"
     if not _tried(exact):
-        return f"{row['integrator']} does not support exact contact"
+        return _unavailable(row, exact)
     best = min(_tried(exact), key=lambda one: one["rank"])
     what = re.split(r" at t = |: | = ", best["why"])[0]
     return f"{best['case']}: {_WHY_NOT.get(what, what)}"

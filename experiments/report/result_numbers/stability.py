@@ -9,7 +9,8 @@ def _step(row):
     if row is None:
         return "not searched"
     if row["status"] == "gave_up":
-        return "not found in time"
+        unstable = row["dt_first_unstable_s"]
+        return f"< {duration(unstable)}" if unstable > 0 else "inconclusive"
     if not row["dt_max_s"] > 0:
         return "none found"
     # Nothing unstable was met up to the longest step of the scene.
@@ -67,7 +68,7 @@ def models_table(tables):
 
 
 _USUAL_TOLERANCE = "1e-3"
-_NOT_FOUND = {"gave_up": "not found in time", "unstable": "none found"}
+_NOT_FOUND = {"gave_up": "inconclusive", "unstable": "none found"}
 
 
 def tolerance_table(tables):
