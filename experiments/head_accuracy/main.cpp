@@ -20,7 +20,7 @@ namespace {
 
 constexpr Parameter own_settings[] = {
     {.name = "scenes",
-     .help = "scene files of grooms that run as heads, as in "
+     .help = "scene files of grooms that run as batches, as in "
              "scenes/a.toml,scenes/b.toml; left "
              "out where grooms are given",
      .text = true,

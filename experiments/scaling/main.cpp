@@ -154,7 +154,7 @@ std::vector<Case> cases(const CommandLine& line) {
   }
   if (device != DeviceChoice::cpu) {
     throw InputError("a device steps batches only, and these are single strands",
-                     line.place("device"), "give --scene head.toml, or --device cpu");
+                     line.place("device"), "give --scene groom.toml, or --device cpu");
   }
   const double chosen = settings.experiment().number("row_s");
   const double time_s = chosen > 0 ? chosen : line.quick ? 0.02 : 1;

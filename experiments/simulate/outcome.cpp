@@ -108,7 +108,7 @@ constexpr Column columns_of_outcome[] = {
     {"build_s", "time to make the strands of a batch", true},
     {"step_s", "time to step the strands of a batch", true},
     {"read_s", "time to read and compress the frames and energies of a batch", true},
-    {"write_s", "time to write frames and states of a head", true},
+    {"write_s", "time to write frames and states of a batch", true},
     {"wall_s", "wall time of the run, output included", true},
 };
 

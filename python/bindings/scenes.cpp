@@ -1,4 +1,4 @@
-// Scenes as values, and their runs frame by frame: strands one by one, or one head of
+// Scenes as values, and their runs frame by frame: strands one by one, or one batch of
 // hair.
 #include <pybind11/stl.h>
 
@@ -105,10 +105,10 @@ class StrandsRun {
   Readout readout_;
 };
 
-/// HeadRun in Python, with the guard that simulate has.
-class HeadOfHair {
+/// BatchRun in Python, with the guard that simulate has.
+class BatchRun {
  public:
-  HeadOfHair(ScenePtr scene, SceneOutline outline, int precision, int threads)
+  BatchRun(ScenePtr scene, SceneOutline outline, int precision, int threads)
       : scene_(std::move(scene)), outline_(std::move(outline)) {
     refuse_if(precision != 64 && precision != 32,
               "precision = " + std::to_string(precision) + " is not available",
@@ -151,7 +151,7 @@ class HeadOfHair {
     }
     return by_points(x_);
   }
-  std::vector<std::size_t> lost() const {
+  std::vector<std::size_t> failed() const {
     std::vector<std::size_t> all;
     for (std::size_t k = 0; k < strands(); ++k) {
       if (run_->head().lost(k)) all.push_back(k);
@@ -289,23 +289,23 @@ void add_scenes(py::module_& m) {
         const Energies e = r.world().energies();
         return py::make_tuple(e.kinetic, e.elastic, e.effects);
       });
-  py::class_<HeadOfHair>(m, "HeadRun")
+  py::class_<BatchRun>(m, "BatchRun")
       .def(py::init([](const std::string& text, const std::string& file, int precision,
                        int threads) {
         // As a file is: an outline, since all strands may be too many to be held.
         SceneOutline outline = parse_outline(text, file);
         auto scene = std::make_shared<Scene>(outline.scene);
-        return std::make_unique<HeadOfHair>(std::move(scene), std::move(outline),
-                                            precision, threads);
+        return std::make_unique<BatchRun>(std::move(scene), std::move(outline), precision,
+                                          threads);
       }))
-      .def("advance", &HeadOfHair::advance)
-      .def_property_readonly("time", &HeadOfHair::time)
-      .def("positions", &HeadOfHair::positions)
-      .def("lost", &HeadOfHair::lost)
-      .def("energy", &HeadOfHair::energy)
-      .def("radii", [](const HeadOfHair& h) { return copy(h.radii()); })
-      .def_property_readonly("strands", &HeadOfHair::strands)
-      .def_property_readonly("points", &HeadOfHair::points);
+      .def("advance", &BatchRun::advance)
+      .def_property_readonly("time", &BatchRun::time)
+      .def("positions", &BatchRun::positions)
+      .def("failed", &BatchRun::failed)
+      .def("energy", &BatchRun::energy)
+      .def("radii", [](const BatchRun& h) { return copy(h.radii()); })
+      .def_property_readonly("strands", &BatchRun::strands)
+      .def_property_readonly("points", &BatchRun::points);
 }
 
 }  // namespace tress::python

@@ -95,35 +95,52 @@ class Running(unittest.TestCase):
                 self.assertEqual(frames.positions.shape[1], frames.strand.size)
                 self.assertEqual(frames.radii.size, frames.strand.size)
 
-    def test_heads(self):
+    def test_batches(self):
         scene = tress.Scene.read(SCENES / "head_moving_vertical.toml")
-        head = scene.changed({"duration_s": 0.02, "integrator.id": "linearly_implicit_euler"})
+        batch = scene.changed({"duration_s": 0.02, "integrator.id": "linearly_implicit_euler"})
         try:
-            frames = head.run(kind="head")
+            frames = batch.run(kind="batch")
         except tress.InputError as error:
-            self.fail(f"not a head: {error}")
+            self.fail(f"not a batch: {error}")
         self.assertEqual(frames.positions.shape[1], frames.strand.size)
-        self.assertEqual(frames.lost, [])
+        self.assertEqual(frames.failed, [])
         with self.assertRaises(tress.InputError):
-            tress.Scene.read(SCENES / "bead_on_wire.toml").run(kind="head")
+            tress.Scene.read(SCENES / "bead_on_wire.toml").run(kind="batch")
 
-    def test_precision_of_a_head(self):
+    def test_former_names_are_refused_with_the_present_ones(self):
+        scene = tress.Scene.read(SCENES / "head_moving_vertical.toml").changed({"duration_s": 0.02})
+        for run in (scene.run, scene.start):
+            with self.assertRaisesRegex(tress.InputError, "'head'.*it is called 'batch' now"):
+                run(kind="head")
+            with self.assertRaisesRegex(tress.InputError, r"'x' \(kind\): use one of: .*strands"):
+                run(kind="x")
+        batch = scene.start(kind="batch")
+        for holder in (batch, batch.gather([batch.frame()])):
+            self.assertEqual(holder.failed, [])
+            with self.assertRaisesRegex(AttributeError, "'lost'; it is called 'failed' now"):
+                holder.lost
+            self.assertFalse(hasattr(holder, "nothing"))
+        with self.assertRaisesRegex(tress.InputError, "'HeadRun'.*it is called 'BatchRun' now"):
+            from tress import HeadRun  # noqa: F401
+        self.assertFalse(hasattr(tress, "nothing"))
+
+    def test_precision_of_a_batch(self):
         scene = tress.Scene.read(SCENES / "head_moving_vertical.toml")
-        head = scene.changed({"duration_s": 0.02, "integrator.id": "linearly_implicit_euler"})
+        batch = scene.changed({"duration_s": 0.02, "integrator.id": "linearly_implicit_euler"})
         ends = []
         for precision in (64, 32):
-            run = tress.HeadRun(head, precision=precision)
+            run = tress.BatchRun(batch, precision=precision)
             run.advance(0.02)
             ends.append(run.positions)
         # Rounding of single precision, 6e-8 of places of some 0.1 m, in few steps.
         self.assertGreater(np.abs(ends[1] - ends[0]).max(), 0)
         np.testing.assert_allclose(ends[1], ends[0], atol=1e-5)
         with self.assertRaisesRegex(tress.InputError, "'bits'.*it is called 'precision' now"):
-            tress.HeadRun(head, bits=32)
+            tress.BatchRun(batch, bits=32)
         with self.assertRaisesRegex(tress.InputError, "did you mean 'precision'"):
-            tress.HeadRun(head, precison=32)
+            tress.BatchRun(batch, precison=32)
         with self.assertRaisesRegex(tress.InputError, r"\(precision\): give 64 or 32"):
-            tress.HeadRun(head, precision=16)
+            tress.BatchRun(batch, precision=16)
 
     def test_failure_keeps_frames(self):
         scene = tress.Scene.read(SCENES / "cantilever.toml").changed(

@@ -4,7 +4,7 @@ from .errors import InputError, ProgramError, SolveError
 from ._core import load_plugin, scene_defaults, scene_schema, version as __version__
 from .fits import Fit, fit
 from .gradients import Gradient, LinearizedStep
-from .runs import Frames, HeadRun, StrandsRun
+from .runs import BatchRun, Frames, StrandsRun
 from .scenes import Scene
 from .systems import (
     Integrator,
@@ -20,10 +20,10 @@ from .systems import (
 from .tables import Table, experiment, programs_folder, read_table, unit_of
 
 __all__ = [
+    "BatchRun",
     "Fit",
     "Frames",
     "Gradient",
-    "HeadRun",
     "InputError",
     "Integrator",
     "LinearizedStep",
@@ -49,3 +49,10 @@ __all__ = [
     "scene_schema",
     "unit_of",
 ]
+
+
+def __getattr__(name):
+    """Refuses a former name with the present one, also in `from tress import ...`."""
+    if name == "HeadRun":
+        raise InputError("'HeadRun' does not exist (tress): it is called 'BatchRun' now")
+    raise AttributeError(f"module 'tress' has no attribute '{name}'")

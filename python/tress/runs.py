@@ -8,6 +8,15 @@ from . import _core
 from .errors import InputError
 
 
+def _refuse_former(value, name):
+    """Raises AttributeError, with the present name where `name` is a former one. Called for
+    names that `value` does not have."""
+    kind = type(value).__name__
+    now = "failed" if name == "lost" else None
+    hint = f"; it is called '{now}' now" if now else ""
+    raise AttributeError(f"'{kind}' has no attribute '{name}'{hint}", name=name, obj=value)
+
+
 @dataclass
 class Frames:
     """Frames of a run. F frames, P points, strand after strand from root to tip."""
@@ -17,7 +26,7 @@ class Frames:
     strand: np.ndarray  # (P) the strand of each point
     before: np.ndarray  # (P) the point that it is attached to, -1: none
     radii: np.ndarray  # (P) m, of a circle of the section's area; nan: a mechanism
-    velocities: np.ndarray = None  # (F, P, 3) m/s; None: of a head, which keeps none
+    velocities: np.ndarray = None  # (F, P, 3) m/s; None: of a batch, which keeps none
     series: dict = field(default_factory=dict)  # {column: (F)}, units in the names
     # {name: (F, Q)}: curvature, speed, and the load of each effect, N/m; Q = P, but for
     # trees, whose branches begin with the point that they are attached to (``lines``).
@@ -26,7 +35,10 @@ class Frames:
     lines: np.ndarray = None  # points of each line of the channels
     # Of each frame (contacts, 6): place, m, and force on the strand, N.
     contacts: list = field(default_factory=list)
-    lost: list = field(default_factory=list)  # strands of a head without a solution
+    failed: list = field(default_factory=list)  # strands of a batch without a solution
+
+    def __getattr__(self, name):
+        return _refuse_former(self, name)
 
     def of_strand(self, k):
         """(F, points, 3) m: the points of one strand."""
@@ -90,8 +102,9 @@ class StrandsRun:
         )
 
 
-class HeadRun:
-    """A run of all strands of a scene side by side. InputError says why a scene is none.
+class BatchRun:
+    """A run of all strands of a scene as one batch. InputError gives the reason where a scene
+    cannot run as one.
 
     threads: number of threads; precision: floating-point precision, 64 or 32 bits."""
 
@@ -99,12 +112,16 @@ class HeadRun:
         known = ("threads", "precision")
         for name in unknown:
             remedy = _core.suggestion(name, known, f"use one of: {', '.join(known)}")
-            raise InputError(f"unknown argument '{name}' (HeadRun): {remedy}")
-        self._core = _core.HeadRun(scene._text, scene.file, precision, threads)
+            raise InputError(f"unknown argument '{name}' (BatchRun): {remedy}")
+        self._core = _core.BatchRun(scene._text, scene.file, precision, threads)
 
     def advance(self, t):
-        """To t (s) in equal steps of at most the scene's, or as its tolerance asks."""
+        """Runs to t (s) in equal steps of at most dt_s of the scene, or in those that its
+        error control chooses."""
         self._core.advance(t)
+
+    def __getattr__(self, name):
+        return _refuse_former(self, name)
 
     @property
     def time(self):
@@ -121,9 +138,9 @@ class HeadRun:
         return self._core.energy()
 
     @property
-    def lost(self):
-        """Strands that have no solution, or do what physics rules out."""
-        return self._core.lost()
+    def failed(self):
+        """Strands without a solution, or in a state that physics rules out."""
+        return self._core.failed()
 
     def frame(self):
         return {"t": self.time, "positions": self.positions, "energies": self.energies}
@@ -144,5 +161,5 @@ class HeadRun:
             before=before,
             radii=core.radii(),
             series={"t_s": times, **dict(zip(names, energies.T))},
-            lost=self.lost,
+            failed=self.failed,
         )

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from . import _core, gradients
 from .errors import InputError, SolveError
-from .runs import HeadRun, StrandsRun
+from .runs import BatchRun, StrandsRun
 from .systems import System
 from .toml import text_of
 
-# As many strands run as one head, where the scene can be one; as `simulate --as auto`.
+# From this number of strands on, a scene that can be a batch runs as one; as `simulate --as
+# auto`.
 _MANY = 1000
 
 
@@ -162,31 +163,32 @@ class Scene:
         return gradients.linearized_step(self, t, dt, by, strand)
 
     def start(self, threads=1, kind="strands"):
-        """The run at t = 0, for loops of your own: StrandsRun, or HeadRun of a head."""
-        if kind == "head":
-            return HeadRun(self, threads)
-        return StrandsRun(self, threads)
+        """The run at t = 0, for loops of your own: StrandsRun, or BatchRun of a batch.
+
+        kind: "strands" or "batch".
+        """
+        _check_kind(kind, ("strands", "batch"))
+        return (BatchRun if kind == "batch" else StrandsRun)(self, threads)
 
     def run(self, threads=1, kind="auto", progress=None, every=1):
         """Runs the scene to its end: Frames.
 
-        kind: "strands" one by one; "head": side by side, up to a million; "auto": a head,
-            where the scene can be one and has 1000 strands.
+        kind: "strands" runs them one by one; "batch" all together, up to a million; "auto" as
+            a batch, where the scene can be one and has at least 1000 strands.
         progress: True for a line on standard error, or a function of (time, duration), s.
         every: keep each frame, each second one ...
 
         A step without a solution or an impossible state raises SolveError, whose ``frames``
-        are those before. Ctrl-C raises KeyboardInterrupt after the present frame, of a head
+        are those before. Ctrl-C raises KeyboardInterrupt after the present frame, of a batch
         after the present step.
         """
-        if kind not in ("auto", "strands", "head"):
-            raise InputError(f"unknown kind '{kind}' (kind): one of auto, strands, head")
+        _check_kind(kind, ("auto", "strands", "batch"))
         run = None
-        if kind == "head" or (kind == "auto" and self.strands >= _MANY):
+        if kind == "batch" or (kind == "auto" and self.strands >= _MANY):
             try:
-                run = HeadRun(self, threads)
+                run = BatchRun(self, threads)
             except InputError:
-                if kind == "head":
+                if kind == "batch":
                     raise
         run = run or StrandsRun(self, threads)
         times = self.times()
@@ -207,6 +209,13 @@ class Scene:
             failure.frames = all_frames
             raise failure
         return all_frames
+
+
+def _check_kind(kind, known):
+    """Raises InputError if a kind of run is not known; of a former one with the present one."""
+    if kind not in known:
+        remedy = _core.suggestion(kind, known, f"use one of: {', '.join(known)}")
+        raise InputError(f"unknown kind '{kind}' (kind): {remedy}")
 
 
 def _progress(progress):

@@ -11,7 +11,7 @@ ChosenDevice choose_device(HeadRun& run, DeviceChoice choice, const std::string&
   if (choice == DeviceChoice::cpu) return {};
   try {
     if (run.ranks().size() > 1) {
-      throw InputError("ranks share a head on processors only", place,
+      throw InputError("ranks share a batch on processors only", place,
                        "leave out mpirun, or give --device cpu");
     }
     return {.name = run.move_to_device()};
