@@ -18,7 +18,7 @@
 namespace tress::models {
 
 /// Place of errors of batches.
-inline constexpr const char* place_of_head = "head of hair";
+inline constexpr const char* place_of_head = "batch of strands";
 
 /// Throws InputError unless these numbers make sense.
 inline void check_for_head(const LaneOptions& options) {
@@ -84,13 +84,19 @@ Result on_pack(const HeadPack& pack, Made made) {
   if (pack.number == HeadNumber::float64) {
     if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>(set);
     if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>(set);
+#ifndef TRESS_NARROW_PACKS
     if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>(set);
+#endif
   } else if constexpr (short_numbers) {
     if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>(set);
+#ifndef TRESS_NARROW_PACKS
     if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>(set);
+#endif
   }
-  throw InputError(std::to_string(pack.lanes) + " lanes", place_of_head,
-                   "use 1, 4 or 8 of 64 bits, 8 or 16 of 32 bits");
+  throw InputError(
+      std::to_string(pack.lanes) + " lanes", place_of_head,
+      "use 1 or 4 of 64 bits, 8 of 32 bits; built with TRESS_WIDE_PACKS also 8 "
+      "of 64 bits, 16 of 32 bits");
 }
 
 }  // namespace tress::models

@@ -281,13 +281,15 @@ void ReducedLoads<Kind>::put(std::size_t i, int lane) {
 
 template class ReducedLoads<HelixKind<PackOf<double, 1>>>;
 template class ReducedLoads<HelixKind<PackOf<double, 4>>>;
-template class ReducedLoads<HelixKind<PackOf<double, 8>>>;
 template class ReducedLoads<HelixKind<PackOf<float, 8>>>;
-template class ReducedLoads<HelixKind<PackOf<float, 16>>>;
 template class ReducedLoads<ChainKind<PackOf<double, 1>>>;
 template class ReducedLoads<ChainKind<PackOf<double, 4>>>;
-template class ReducedLoads<ChainKind<PackOf<double, 8>>>;
 template class ReducedLoads<ChainKind<PackOf<float, 8>>>;
+#ifndef TRESS_NARROW_PACKS
+template class ReducedLoads<HelixKind<PackOf<double, 8>>>;
+template class ReducedLoads<HelixKind<PackOf<float, 16>>>;
+template class ReducedLoads<ChainKind<PackOf<double, 8>>>;
 template class ReducedLoads<ChainKind<PackOf<float, 16>>>;
+#endif
 
 }  // namespace tress::models

@@ -37,13 +37,15 @@ TRESS_FLATTEN void ReducedPlaces<Kind>::write(std::size_t strands, std::span<dou
 
 template struct ReducedPlaces<HelixKind<PackOf<double, 1>>>;
 template struct ReducedPlaces<HelixKind<PackOf<double, 4>>>;
-template struct ReducedPlaces<HelixKind<PackOf<double, 8>>>;
 template struct ReducedPlaces<HelixKind<PackOf<float, 8>>>;
-template struct ReducedPlaces<HelixKind<PackOf<float, 16>>>;
 template struct ReducedPlaces<ChainKind<PackOf<double, 1>>>;
 template struct ReducedPlaces<ChainKind<PackOf<double, 4>>>;
-template struct ReducedPlaces<ChainKind<PackOf<double, 8>>>;
 template struct ReducedPlaces<ChainKind<PackOf<float, 8>>>;
+#ifndef TRESS_NARROW_PACKS
+template struct ReducedPlaces<HelixKind<PackOf<double, 8>>>;
+template struct ReducedPlaces<HelixKind<PackOf<float, 16>>>;
+template struct ReducedPlaces<ChainKind<PackOf<double, 8>>>;
 template struct ReducedPlaces<ChainKind<PackOf<float, 16>>>;
+#endif
 
 }  // namespace tress::models

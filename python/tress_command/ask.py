@@ -6,10 +6,10 @@ import subprocess
 
 from .command import Command
 from .counting import Worst, must
-from .messages import BAD_INPUT, say
+from .messages import BAD_INPUT, Stopwatch, say
 from .scene_folder import scene_folder
 from .scripts import ANSWERS
-from .tree import PROGRAMS, Stopwatch, build_programs
+from .tree import PROGRAMS, build_programs
 
 ASKED = ("stability_limit", "hard_cases", "effect_audit", "cost_of_accuracy")
 
@@ -34,8 +34,8 @@ def _run(words, machine):
             return BAD_INPUT
         watch.say(program)
     must(*ANSWERS, folder, stdout=subprocess.DEVNULL)
-    say(f"the answers: {os.getcwd()}/{folder}/answers.html; tables and the advised scene lie "
-        "beside it")
+    say(f"the answers: {os.getcwd()}/{folder}/answers.html; tables and the advised scene are "
+        "next to it")
     return worst.code
 
 

@@ -1,6 +1,7 @@
 """Lines that commands print for their user, and how commands end."""
 
 import sys
+import time
 
 DONE, INTERNAL_ERROR, BAD_INPUT, ROWS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -22,6 +23,16 @@ def say(text):
 def echo(line):
     """Prints a line of a program's log on stderr, as it is."""
     print(line, file=sys.stderr, flush=True)
+
+
+class Stopwatch:
+    """Prints how long a part took."""
+
+    def __init__(self):
+        self.began = time.monotonic()
+
+    def say(self, what):
+        say(f"{what}: {int(time.monotonic() - self.began)} s")
 
 
 def refuse(text):

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from . import sundials
 from .command import Command, no_words
-from .messages import INTERNAL_ERROR, INTERRUPTED, Ended, echo, refuse, say
+from .messages import INTERNAL_ERROR, INTERRUPTED, Ended, Stopwatch, echo, refuse, say
 from .processes import quietly, read, run
 
+BUILD_LIST = "cmake/build_packages.txt"
 LIST = "cmake/packages.txt"
+EVERYTHING = (BUILD_LIST, LIST)
 OPTIONAL = "# optional"
 NODE_MAJOR = 18
 OLDER_CONFIGURATION = ("-o", "DPkg::Lock::Timeout=600", "-o", "Dpkg::Options::=--force-confold")
@@ -59,8 +61,8 @@ class Machine:
     def missing_of(self, *lists):
         """Returns the packages of these lists that are not installed."""
         if not shutil.which("dpkg-query"):
-            refuse("setup needs Debian's apt; elsewhere install what cmake/packages.txt names, "
-                   "then: cmake --preset release")
+            refuse("setup needs Debian's apt; elsewhere install what cmake/build_packages.txt "
+                   "and cmake/packages.txt name, then: cmake --preset release")
         wanted = {name for file in lists for name in names_in(file)}
         if _has_node():
             wanted.discard("nodejs")
@@ -68,13 +70,13 @@ class Machine:
             wanted.discard("npm")
         return sorted(wanted - _installed(sorted(wanted)))
 
-    def missing(self, *lists):
-        """Returns the packages that are missing of cmake/packages.txt and of these lists."""
+    def missing(self, *lists, base=EVERYTHING):
+        """Returns the packages that are missing of `base` and of these lists."""
         # Debian's own SUNDIALS, once the source build has failed.
         spare = () if sundials.root() != "" else ("cmake/sundials_packages.txt",)
-        return self.missing_of(LIST, *lists, *spare)
+        return self.missing_of(*base, *lists, *spare)
 
-    def missing_optional(self, file=LIST):
+    def missing_optional(self, file):
         """Returns the packages that a list calls optional and that are not installed."""
         names = names_in(file, optional=True)
         there = _installed(names)
@@ -113,8 +115,9 @@ class Machine:
             say(str(end))
             return False
 
-    def setup(self, *lists):
-        """Installs all packages of cmake/packages.txt and of these lists, and SUNDIALS."""
+    def setup(self, *lists, base=EVERYTHING):
+        """Installs all packages of `base` and of these lists, and SUNDIALS. Prints the time of
+        each of the two."""
         folder = cache()
         with (folder / "lock").open("w") as lock:
             try:
@@ -122,14 +125,17 @@ class Machine:
             except BlockingIOError:
                 say("another setup is running; waiting for it")
                 fcntl.flock(lock, fcntl.LOCK_EX)
-            if packages := self.missing(*lists):
+            watch = Stopwatch()
+            if packages := self.missing(*lists, base=base):
                 self.install(packages)
-            say(f"packages: all of {', '.join((LIST, *lists))} are installed")
-            optional = self.missing_optional()
+            optional = [name for file in base for name in self.missing_optional(file)]
             if not self.tries(optional):
                 say(f"goes on without {' '.join(optional)}")
+            watch.say(f"packages of {', '.join((*base, *lists))}")
             if not sundials.root():
+                watch = Stopwatch()
                 self._build_sundials(folder / "sundials.log")
+                watch.say("SUNDIALS")
             say(sundials.in_use())
 
     def _build_sundials(self, log):
@@ -140,13 +146,13 @@ class Machine:
             raise Ended(INTERRUPTED)
         if code != 0:
             say(f"WARNING: SUNDIALS could not be built from source; log: {log}")
-            if packages := self.missing():
+            if packages := self.missing(base=(BUILD_LIST,)):
                 self.install(packages)
 
-    def ensure(self, *lists):
+    def ensure(self, *lists, base=EVERYTHING):
         """Runs the setup if something is missing."""
-        if self.missing(*lists) or (found := sundials.root()) is None:
-            self.setup(*lists)
+        if self.missing(*lists, base=base) or (found := sundials.root()) is None:
+            self.setup(*lists, base=base)
         elif not found:
             say(sundials.in_use())
 
@@ -169,9 +175,9 @@ def _setup(words, machine):
 
 COMMAND = Command(
     "setup", "",
-    "installs what is missing: the packages of cmake/packages.txt by apt, and SUNDIALS in "
-    "Release into ~/.cache/tress (TRESS_CACHE names another folder). Every other command does "
-    "this first if something is missing.",
+    "installs what is missing: the packages of cmake/build_packages.txt and cmake/packages.txt "
+    "by apt, and SUNDIALS in Release into ~/.cache/tress (TRESS_CACHE names another folder). "
+    "Other commands do this first if something is missing; simulate needs no tests and tools.",
     _setup,
     example="./tress setup",
     time="minutes in a new Debian 12: the packages, then SUNDIALS in about a minute. A second if all "

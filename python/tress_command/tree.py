@@ -2,27 +2,18 @@
 
 import os
 import re
-import time
 from pathlib import Path
 
 from . import sundials
-from .messages import INTERNAL_ERROR, Ended, echo, say
+from .messages import INTERNAL_ERROR, Ended, Stopwatch, echo, say
+from .packages import BUILD_LIST
 from .processes import quietly
 
 RELEASE = "release"
+FIRST = "first"  # compiles in a fraction of the time; its programs are slower
 PROGRAMS = "build/release/experiments"
 COMPLAINT = re.compile("FAILED:|error:|CMake Error")
 AFTER, MOST = 8, 60  # lines shown of a log
-
-
-class Stopwatch:
-    """Prints how long a part took."""
-
-    def __init__(self):
-        self.began = time.monotonic()
-
-    def say(self, what):
-        say(f"{what}: {int(time.monotonic() - self.began)} s")
 
 
 def names_in(file):
@@ -76,7 +67,21 @@ def build(preset, *targets):
 
 def build_programs(machine, *names):
     """Builds programs of the experiments, all or those named, and prints how long that took."""
-    watch = Stopwatch()
     machine.ensure()
+    watch = Stopwatch()
     build(RELEASE, *(names or ("experiments",)))
     watch.say("build")
+
+
+def first_program(machine, name):
+    """Builds a program where that takes the least time: in build/release if it is there, else
+    in build/first, with the packages of builds alone. Returns its path."""
+    if os.path.exists(f"{PROGRAMS}/{name}"):
+        build_programs(machine, name)
+        return f"{PROGRAMS}/{name}"
+    machine.ensure(base=(BUILD_LIST,))
+    watch = Stopwatch()
+    say(f"a first build, which is quick to compile; ./tress build {name} makes the fast program")
+    build(FIRST, name)
+    watch.say("build")
+    return f"build/{FIRST}/experiments/{name}"

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from stand_ins import House  # noqa: E402
+from stand_ins import House, write_program  # noqa: E402
 from tress_command.counting import severity  # noqa: E402
 
 # Of an experiment: what follows is not done with --check.
@@ -193,6 +193,32 @@ class Scenes(House):
         self.assertFalse(left.exists())
         self.study("simulate", "exit 3")
         self.ends(3, "build: ", self.tress("simulate", self.scene("a/s.toml")))
+
+    def in_a_new_clone(self):
+        """Only build/first has the program then. What cmake is asked goes into the file `asked`."""
+        (self.studies / "simulate").unlink()
+        write_program(self.house / "build/first/experiments/simulate", 'echo "first $*"')
+        self.stand_in("cmake", f"echo \"$*\" >>'{self.work}/asked'")
+
+    def test_a_new_clone_builds_what_compiles_soonest(self):
+        self.in_a_new_clone()
+        out = self.ends(0, "build: [0-9]+ s", self.tress("simulate", self.scene("a/s.toml")))
+        self.assertIn(f"first {self.own}/a/s.toml --out results/simulate/s-", out)
+        self.assertRegex(out, r"building build/first .*\n(.*\n)*.*simulation: [0-9]+ s\n.*page: [0-9]+ s\n")
+        self.assertRegex((self.work / "asked").read_text(),
+                         r"^--preset first .*\n--build --preset first --target simulate\n$")
+        self.assertEqual(self.tress("simulate", "--print-defaults").stdout, "first --print-defaults\n")
+        (self.work / "asked").unlink()
+        self.study("simulate", 'echo "full $*"')  # ./tress build simulate
+        self.ends(0, "full ", self.tress("simulate", self.scene("a/s.toml")))
+        self.assertNotIn("first", (self.work / "asked").read_text())
+
+    def test_a_new_clone_needs_no_packages_of_tests_and_tools(self):
+        self.in_a_new_clone()
+        self.stand_in("dpkg-query", "exit 1")
+        done = self.tress("--no-install", "simulate", self.scene("a/s.toml"))
+        self.refused(r"packages are missing: .*\bg\+\+.*\blibhdf5-dev\b", done)
+        self.assertNotRegex(done.stderr, "chromium|gtest|clang|pandas")
 
     def test_refusals(self):
         scene = self.scene("a/s.toml")

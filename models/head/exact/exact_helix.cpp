@@ -5,8 +5,10 @@ namespace tress::models {
 
 template class ExactKernel<HelixKind<PackOf<double, 1>>>;
 template class ExactKernel<HelixKind<PackOf<double, 4>>>;
-template class ExactKernel<HelixKind<PackOf<double, 8>>>;
 template class ExactKernel<HelixKind<PackOf<float, 8>>>;
+#ifndef TRESS_NARROW_PACKS
+template class ExactKernel<HelixKind<PackOf<double, 8>>>;
 template class ExactKernel<HelixKind<PackOf<float, 16>>>;
+#endif
 
 }  // namespace tress::models
