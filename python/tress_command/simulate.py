@@ -40,7 +40,7 @@ COMMAND = Command(
     "simulate", "SCENE.toml [OPTIONS]\n--print-defaults",
     "simulates one scene and writes its time series and a page with its motion. They are in "
     "results/simulate/<scene>-<checksum of its path>/. Builds the program first: in a new clone "
-    "a slower one in build/first, which compiles in a fraction of the time.",
+    "a slower one in build/first, which compiles sooner.",
     _run,
     example="./tress simulate scenes/cantilever.toml --error-bars",
     time="seconds for most shipped scenes; the first build takes about 30 processor minutes.",

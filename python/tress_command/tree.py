@@ -10,7 +10,7 @@ from .packages import BUILD_LIST
 from .processes import quietly
 
 RELEASE = "release"
-FIRST = "first"  # compiles in a fraction of the time; its programs are slower
+FIRST = "first"  # compiles sooner; its programs are slower
 PROGRAMS = "build/release/experiments"
 COMPLAINT = re.compile("FAILED:|error:|CMake Error")
 AFTER, MOST = 8, 60  # lines shown of a log
