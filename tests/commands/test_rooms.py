@@ -1,5 +1,7 @@
-"""test_rooms.py REPOSITORY: dependencies between folders run one way, and no folder is full."""
+"""test_rooms.py REPOSITORY: dependencies between folders run one way, no folder is full, and
+JavaScript is where it must be."""
 import re
+import subprocess
 import sys
 from collections import Counter, defaultdict
 from pathlib import Path, PurePosixPath
@@ -18,6 +20,18 @@ MAY_SEE = {
 # Below experiments/: everything else is a study, which sees no other study.
 SHARED = ("experiments/run", "experiments/problems", "experiments/numerics")
 MOST_FILES = 40  # in one folder
+# JavaScript besides the report and its player, and the npm package that each file needs: Debian
+# 12 has MuJoCo 2 alone, and none of the others in any language.
+REPORT = ("experiments/report/", "tests/report/")
+BY_NPM = {
+    "experiments/other_simulators/jolt.mjs": "jolt-physics",
+    "experiments/other_simulators/mujoco_3.mjs": "@mujoco/mujoco",
+    "experiments/other_simulators/strand_in_node.mjs": "that of the two before",
+    "tests/readers/read_gltf.mjs": "gltf-validator, three, @gltf-transform/core",
+    "tests/readers/read_in_node.mjs": "those of the readers",
+    "tests/readers/read_usd.mjs": "tinyusdz, three",
+}
+MOST_LINES_BY_NPM = 377  # may only fall
 FEWEST_INCLUDES = 1000  # in a whole repository
 
 
@@ -69,6 +83,22 @@ def cycles(below):
     return found
 
 
+def javascript(root):
+    """Returns complaints about JavaScript that could be Python."""
+    listed = subprocess.run(["git", "-C", root, "ls-files", "*.js", "*.mjs", "*.cjs", "*.ts"],
+                            capture_output=True, text=True, check=False)
+    if listed.returncode:  # a copy of the sources without its history
+        return []
+    files = [file for file in listed.stdout.split("\n") if file and not file.startswith(REPORT)]
+    lines = sum(len((root / file).read_text(encoding="utf-8").splitlines()) for file in files)
+    found = [f"{file} is JavaScript without a package of npm: write it in Python"
+             for file in files if file not in BY_NPM]
+    found += [f"{file} is listed and does not exist" for file in BY_NPM if file not in files]
+    if lines > MOST_LINES_BY_NPM:
+        found.append(f"{lines} lines of JavaScript besides the report, more than {MOST_LINES_BY_NPM}")
+    return found
+
+
 def main(repository):
     root = Path(repository)
     complaints, below, count, lines = [], defaultdict(dict), Counter(), 0
@@ -80,7 +110,7 @@ def main(repository):
             complaints += check_include(file, target)
             if folder_of(target) != folder_of(file):
                 below[folder_of(file)][folder_of(target)] = f"{file} includes {target}"
-    complaints += cycles(below)
+    complaints += cycles(below) + javascript(root)
     complaints += [f"{folder} has {files} files, more than {MOST_FILES}"
                    for folder, files in count.items() if files > MOST_FILES]
     if lines < FEWEST_INCLUDES:
