@@ -36,6 +36,11 @@ constexpr Parameter settings_of_rows[] = {
      .help = "values and standard errors of parameters of `by` from before the records: "
              "NAME:VALUE:SIGMA, separated by ','",
      .text = true},
+    {.name = "profile",
+     .help =
+         "on: intervals of parameters of `by` also by their profiles, which are right "
+         "where linear ones are not; some 20 runs for each end",
+     .choices = "off|on"},
     {.name = "signal",
      .help = "amplitude_m is the tip's displacement from the root, up to a constant, or "
              "half the difference of successive turning points, midway between them",
@@ -102,7 +107,7 @@ class Cases {
       one.run_rows = [fit](const Row& row, const Deadline&) { return fit.rows(row); };
       return std::move(all_);
     }
-    for (const std::string_view key : {"by", "bounds", "priors"}) {
+    for (const std::string_view key : {"by", "bounds", "priors", "profile"}) {
       refuse_if(settings_.chosen(key), fmt::format("'{}' is of records of points", key),
                 line_.place(fmt::format("set:{}", key)),
                 "give data with the columns time_s, x_m, y_m, z_m");

@@ -79,6 +79,7 @@ PointFit point_fit(const CommandLine& line, const Settings& settings) {
   set_parameters(line, own.word("by"), all.scenes.front(), all.asked);
   all.asked.bounds = parse_bounds(all.bounds, line.place("set:bounds"));
   all.asked.priors = parse_priors(all.priors, line.place("set:priors"));
+  all.asked.profile = own.word("profile") == "on";
   all.asked.confidence = own.number("confidence");
   check_fit(all.task());
   return all;
@@ -112,6 +113,7 @@ Row PointFit::identity() const {
       .set("signal", "points")
       .set("fit", fmt::format("{}", fmt::join(asked.by, ",")));
   row.set("bounds", bounds).set("priors", priors);
+  row.set("profile", asked.profile ? "on" : "off");
   row.set("model", first.model->id).set("integrator", first.integrator);
   row.set("elements", first.strands.empty() ? 0 : first.strands.front().segments.size());
   row.set("confidence", asked.confidence);
@@ -129,6 +131,7 @@ std::vector<Row> PointFit::rows(const Row& identity) const {
     row.set("records", records.size()).set("points", points);
     row.set("parameter", one.name).set("unit", one.unit).set("start", one.start);
     row.set("value", one.value).set("low", one.low).set("high", one.high);
+    row.set("profile_low", one.profile_low).set("profile_high", one.profile_high);
     row.set("step_shift", one.step_shift).set("elements_shift", one.elements_shift);
     if (k < fit.singular.size()) row.set("singular_value", fit.singular[k]);
     row.set("residual_rms_m", fit.rms).set("reduced_chi2", fit.reduced_chi2);
@@ -149,6 +152,14 @@ std::vector<std::string> point_answer(const std::vector<Row>& rows) {
     if (row.has("low")) {
       text += fmt::format(" ({:.4g} to {:.4g} at {:.3g} %)", row.number("low"),
                           row.number("high"), 1e2 * row.number("confidence"));
+    }
+    if (row.text("profile") == "on" && row.has("low")) {
+      const auto end = [&](std::string_view key) {
+        return row.has(key) ? fmt::format("{:.4g}", row.number(key))
+                            : std::string("open");
+      };
+      text += fmt::format("; by its profile {} to {}", end("profile_low"),
+                          end("profile_high"));
     }
     if (row.has("step_shift")) {
       text += fmt::format(

@@ -179,6 +179,8 @@ py::dict as_dict(const SceneFit& fit, const std::vector<PointRecord>& records) {
       py::arg("values") = numbers(fit, &FittedParameter::value),
       py::arg("low") = numbers(fit, &FittedParameter::low),
       py::arg("high") = numbers(fit, &FittedParameter::high),
+      py::arg("profile_low") = numbers(fit, &FittedParameter::profile_low),
+      py::arg("profile_high") = numbers(fit, &FittedParameter::profile_high),
       py::arg("step_shift") = numbers(fit, &FittedParameter::step_shift),
       py::arg("elements_shift") = numbers(fit, &FittedParameter::elements_shift),
       py::arg("statuses") = of_each(fit, [](const auto& one) { return one.status; }),
@@ -194,7 +196,7 @@ py::dict as_dict(const SceneFit& fit, const std::vector<PointRecord>& records) {
 
 py::dict fit(const Scenes& scenes, const Texts& texts, const Names& by,
              const Pairs& bounds, const Pairs& priors, double confidence, bool shifts,
-             const py::object& progress) {
+             bool profile, const py::object& progress) {
   refuse_if(scenes.empty() || (scenes.size() > 1 && scenes.size() != texts.size()),
             std::to_string(scenes.size()) + " scenes for " +
                 std::to_string(texts.size()) + " records",
@@ -215,6 +217,7 @@ py::dict fit(const Scenes& scenes, const Texts& texts, const Names& by,
     task.priors.push_back({name, two.first, two.second});
   task.confidence = confidence;
   task.shifts = shifts;
+  task.profile = profile;
   task.place = "by";
   task.progress = [&](int evaluations, double rms) {
     const py::gil_scoped_acquire lock;

@@ -22,6 +22,9 @@ class Fit:
     values: np.ndarray  # (K)
     low: np.ndarray  # (K) lower ends of the intervals; nan: not determined
     high: np.ndarray  # (K)
+    # (K) intervals by profiles; nan: not asked for, or no end
+    profile_low: np.ndarray
+    profile_high: np.ndarray
     # (K) changes with half the step and with twice the elements, in half intervals; nan
     # where they were not asked for
     step_shift: np.ndarray
@@ -79,7 +82,7 @@ def _list(one_or_more, single):
 
 
 def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shifts=True,
-        progress=None):
+        profile=False, progress=None):
     """Fits parameters of a scene to points of its strands: Fit.
 
     scene: a Scene, whose values the fit starts from; a list with one for each record.
@@ -92,6 +95,8 @@ def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shift
     confidence: of the intervals.
     shifts: runs again with half the step and with twice the elements, for ``step_shift``,
         ``elements_shift`` and the statuses time_error and space_error.
+    profile: also finds ``profile_low`` and ``profile_high``, where the sum of squares, with
+        the other values fitted again, rises as much as the confidence level asks for.
     progress: function of (evaluations, rms in m), called after each run.
 
     Least squares by Gauss-Newton steps within a trust region, with the exact derivatives of
@@ -105,4 +110,4 @@ def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shift
         {name: tuple(map(float, two)) for name, two in (given or {}).items()}
         for given in (bounds, priors)
     ]
-    return Fit(**_core.fit(scenes, texts, names, *pairs, confidence, shifts, progress))
+    return Fit(**_core.fit(scenes, texts, names, *pairs, confidence, shifts, profile, progress))

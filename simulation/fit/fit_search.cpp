@@ -196,6 +196,21 @@ bool FitSearch::hold_at_bounds() {
   return held;
 }
 
+void FitSearch::go_to(Place place) {
+  held_ = std::move(place.held);
+  free_ = std::move(place.free);
+  x_ = std::move(place.x);
+  seen_.reset();
+}
+
+void FitSearch::hold(std::size_t k, double u) {
+  const auto at = std::ranges::find(free_, k) - free_.begin();
+  held_[k] = u;
+  free_.erase(free_.begin() + at);
+  x_.erase(x_.begin() + at);
+  seen_.reset();
+}
+
 std::string FitSearch::run() {
   std::string failed;
   do {

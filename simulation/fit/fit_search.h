@@ -27,13 +27,26 @@ class FitSearch {
   /// Returns why the search did not converge; empty: it did.
   std::string run();
 
+  /// Where a search is.
+  struct Place {
+    std::vector<std::optional<double>> held;  // u of parameters that are held
+    std::vector<std::size_t> free;            // the others
+    std::vector<double> x;                    // of these
+  };
+  /// Returns where the search is.
+  Place place() const { return {held_, free_, x_}; }
+  /// Moves the search there.
+  void go_to(Place place);
+  /// Holds free parameter k at u: run() then searches for the others from where they are.
+  void hold(std::size_t k, double u);
+
   /// Returns the runs of the records.
   const RecordRuns& runs() const { return runs_; }
   /// Returns the variables of all parameters, in order.
   const std::vector<FitVariable>& variables() const { return variables_; }
   /// Parameters that are not held at a bound, in order.
   const std::vector<std::size_t>& free() const { return free_; }
-  /// Returns whether parameter k is held at a bound.
+  /// Returns whether parameter k is held: after run() alone, at a bound.
   bool held(std::size_t k) const { return held_[k].has_value(); }
   /// Unknowns of all parameters where the search is.
   std::vector<double> u() const { return u_of(x_); }
@@ -71,7 +84,7 @@ class FitSearch {
   RecordRuns runs_;
   std::vector<FitVariable> variables_;
   std::vector<Prior> priors_;
-  std::vector<std::optional<double>> held_;  // u of parameters at a bound
+  std::vector<std::optional<double>> held_;  // u of parameters that are held
   std::vector<std::size_t> free_;            // the others
   std::vector<double> x_;                    // of free_
   std::vector<double> seen_x_, simulated_, by_;

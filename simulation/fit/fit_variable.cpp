@@ -108,6 +108,10 @@ double FitVariable::dp_du(double u) const {
   return logarithmic_ ? std::exp(u) : measure_;
 }
 
+double FitVariable::within(double u) const {
+  return reach_ > 0 ? std::clamp(u, middle_ - reach_, middle_ + reach_) : u;
+}
+
 bool FitVariable::at_bound(double x) const {
   return reach_ > 0 && std::abs(std::sin(x)) > 1 - near_bound;
 }

@@ -51,6 +51,8 @@ class FitVariable {
   double p(double u) const;
   /// Returns the derivative of the parameter by u, in its unit.
   double dp_du(double u) const;
+  /// Returns the u within the bounds that is nearest to u.
+  double within(double u) const;
   /// Whether x is at one of the bounds.
   bool at_bound(double x) const;
 

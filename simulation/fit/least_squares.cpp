@@ -98,6 +98,31 @@ void add_covariance(LeastSquares& fit, const gsl_matrix& jacobian) {
   }
 }
 
+/// Position, residuals and derivatives where the iteration is.
+LeastSquares state_of(gsl_multifit_nlinear_workspace& workspace) {
+  LeastSquares fit;
+  const gsl_vector& x = *gsl_multifit_nlinear_position(&workspace);
+  const gsl_vector& r = *gsl_multifit_nlinear_residual(&workspace);
+  const gsl_matrix& jacobian = *gsl_multifit_nlinear_jac(&workspace);
+  for (std::size_t j = 0; j < x.size; ++j) fit.x.push_back(gsl_vector_get(&x, j));
+  for (std::size_t i = 0; i < r.size; ++i) {
+    fit.residual.push_back(gsl_vector_get(&r, i));
+    for (std::size_t j = 0; j < x.size; ++j) {
+      fit.jacobian.push_back(gsl_matrix_get(&jacobian, i, j));
+    }
+  }
+  add_covariance(fit, jacobian);
+  return fit;
+}
+
+std::vector<double> last_step(const gsl_multifit_nlinear_workspace& workspace) {
+  std::vector<double> step;
+  for (std::size_t j = 0; j < workspace.dx->size; ++j) {
+    step.push_back(gsl_vector_get(workspace.dx, j));
+  }
+  return step;
+}
+
 LeastSquares minimum(const ResidualAt& residual, const DerivativeAt& derivative, In start,
                      std::size_t n, double tolerance,
                      const gsl_multifit_nlinear_trs& method) {
@@ -121,42 +146,26 @@ LeastSquares minimum(const ResidualAt& residual, const DerivativeAt& derivative,
   const Workspace workspace(
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n, p));
   const gsl_vector_const_view from = gsl_vector_const_view_array(start.data(), p);
+  const auto within = [&](double dx) { return std::abs(dx) <= tolerance; };
   int code = gsl_multifit_nlinear_init(&from.vector, &function, workspace.get());
-  if (code == GSL_SUCCESS) {
-    int why = 0;
-    double largest = 1;
-    for (const double x : start) largest = std::max(largest, std::abs(x));
-    // GSL's tolerance is relative to x; its unscaled tests of the gradient and of the sum
-    // are disabled.
-    code = gsl_multifit_nlinear_driver(most_iterations, tolerance / largest, 0, 0,
-                                       nullptr, nullptr, &why, workspace.get());
+  LeastSquares fit;
+  for (int k = 0; code == GSL_SUCCESS && k <= most_iterations; ++k) {
+    fit = state_of(*workspace);
+    // The derivatives there give the step that is left, without another run.
+    const bool there = fit.covariance.empty()
+                           ? k > 0 && std::ranges::all_of(last_step(*workspace), within)
+                           : std::ranges::all_of(fit.step(fit.residual), within);
+    if (there) return fit;
+    code = k < most_iterations ? gsl_multifit_nlinear_iterate(workspace.get())
+                               : static_cast<int>(GSL_EMAXITER);
   }
   if (problem.thrown) std::rethrow_exception(problem.thrown);
-
-  LeastSquares fit;
   if (code == GSL_EFAILED) {
+    fit = {};
     fit.failure = "no residuals or derivatives at a trial value";
-    return fit;
+  } else if (!fit.covariance.empty()) {
+    fit.failure = std::string("not converged: ") + gsl_strerror(code);
   }
-  const gsl_vector& x = *gsl_multifit_nlinear_position(workspace.get());
-  const gsl_vector& r = *gsl_multifit_nlinear_residual(workspace.get());
-  const gsl_matrix& jacobian = *gsl_multifit_nlinear_jac(workspace.get());
-  for (std::size_t j = 0; j < p; ++j) fit.x.push_back(gsl_vector_get(&x, j));
-  for (std::size_t i = 0; i < n; ++i) {
-    fit.residual.push_back(gsl_vector_get(&r, i));
-    for (std::size_t j = 0; j < p; ++j) {
-      fit.jacobian.push_back(gsl_matrix_get(&jacobian, i, j));
-    }
-  }
-  add_covariance(fit, jacobian);
-  if (fit.covariance.empty()) return fit;
-  const std::vector<double> left = fit.step(fit.residual);
-  const bool there =
-      std::ranges::all_of(left, [&](double dx) { return std::abs(dx) <= tolerance; });
-  if (there) return fit;
-  fit.failure = "not converged: ";
-  fit.failure +=
-      code == GSL_SUCCESS ? "the last step was still too long" : gsl_strerror(code);
   return fit;
 }
 

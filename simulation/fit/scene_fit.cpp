@@ -10,6 +10,7 @@
 
 #include "simulation/fit/fit_search.h"
 #include "simulation/fit/fit_words.h"
+#include "simulation/fit/profile.h"
 
 namespace tress::simulation {
 namespace {
@@ -37,6 +38,7 @@ class Fit {
   void add_intervals(SceneFit& fit, const LinearizedFit& found);
   void add_shifts(SceneFit& fit, const LinearizedFit& here, const MatrixXd& determined,
                   const VectorXd& half);
+  void add_profiles(SceneFit& fit, const VectorXd& half, double least, double deviation);
   VectorXd shifts(const LinearizedFit& here, const MatrixXd& determined, Finer finer);
   void judge(SceneFit& fit) const;
 
@@ -70,6 +72,21 @@ void Fit::add_shifts(SceneFit& fit, const LinearizedFit& here, const MatrixXd& d
   };
   add(Finer::half_step, &FittedParameter::step_shift);
   add(Finer::twice_the_elements, &FittedParameter::elements_shift);
+}
+
+/// Of all parameters that have an interval.
+void Fit::add_profiles(SceneFit& fit, const VectorXd& half, double least,
+                       double deviation) {
+  const std::vector<std::size_t> free = free_;  // the search moves
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    FittedParameter& one = fit.parameters[free[i]];
+    if (std::isnan(one.low)) continue;
+    const auto [low, high] = profile_interval(
+        search_, {free[i], half[static_cast<Eigen::Index>(i)], least, deviation});
+    const FitVariable& variable = search_.variables()[free[i]];
+    one.profile_low = variable.p(low);
+    one.profile_high = variable.p(high);
+  }
 }
 
 void Fit::describe(SceneFit& fit) {
@@ -151,6 +168,7 @@ void Fit::add_intervals(SceneFit& fit, const LinearizedFit& found) {
   if (task_.shifts && determined > 0) {
     add_shifts(fit, found, v.leftCols(determined), half);
   }
+  if (task_.profile) add_profiles(fit, half, found.r.squaredNorm(), deviation);
 }
 
 /// The status of each parameter that has none yet, and that of the fit: the first.

@@ -26,6 +26,8 @@ struct FitTask {
   double confidence = 0.95;             // of the intervals
   /// Runs again with half the step and with twice the elements.
   bool shifts = true;
+  /// Also finds intervals by profiles: each takes some 20 runs.
+  bool profile = false;
   std::string place = "fit";  // of `by`, in messages
   /// Called after each evaluation with the number of evaluations and the root mean
   /// square of measured less fitted (m).
@@ -40,6 +42,9 @@ struct FittedParameter {
   std::string name = {}, unit = {};  // name and unit of the parameter
   double start = 0, value = 0;       // value of the scene and fitted value, in the unit
   double low = not_there, high = not_there;  // interval; NaN: none
+  /// Interval by the profile, where it was asked for; NaN: no end within ten of the
+  /// others.
+  double profile_low = not_there, profile_high = not_there;
   /// Changes with half the step and with twice the elements, over half the interval.
   double step_shift = not_there, elements_shift = not_there;
   std::string status = "ok", reason = {};  // status and its reason in words
@@ -82,6 +87,8 @@ struct SceneFit {
 /// are u +- k sqrt(C_jj) in the unknowns u of FitVariable, with C = (J^T J)^-1. Where
 /// sigma_m is given it is known and k the normal quantile. Otherwise the variance is
 /// estimated from the residuals, and k is Student's quantile.
+/// Intervals by profiles end where the least sum of squares has risen by k^2 times the
+/// variance (profile_interval()).
 ///
 /// Combinations that no record determines keep their start: a weak prior of 100 in every
 /// u is part of the search, and of no statistics. Shifts are one Gauss-Newton step from

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 #include <string>
 #include <vector>
@@ -146,6 +147,117 @@ TEST(SceneFit, IntervalsHoldTheTruthOfRecordsOfTheSameModel) {
       EXPECT_NEAR(held[k] / static_cast<double>(records), part, allowed)
           << four[k] << ", sigma " << sigma;
     }
+  }
+}
+
+/// A strand in free flight, pulled along itself. Points move by v t + F t^2/(2 m), affine
+/// in the force F and the speed v.
+Scene pulled(double force) {
+  return parse_scene(
+      "title = \"pulled\"\nduration_s = 1\n[integrator]\nid = \"tr_bdf2\"\ndt_s = 0.05\n"
+      "[strand]\nelements = 2\n[root]\nmotion = \"free\"\nvelocity_m_s = [0.1, 0, 0]\n"
+      "[effects.tether]\nat = 0\npull_n = " +
+          number_text(force) + "\ntarget_m = [1e6, 0, 0]\nt_on_s = -1\n",
+      "pulled.toml");
+}
+
+// The sum of squares is a parabola in F: its least value over v rises by k^2 at F +- k
+// sqrt(C_FF). The unknown of the fit is ln F. Its linear interval, exp(+- k sqrt(C_FF)/F)
+// times F, is that of another parabola. Ends are found to a thousandth of half the
+// interval.
+TEST(SceneFit, ProfilesAreExactWhereLinearIntervalsAreNot) {
+  const std::vector<std::string> by{"tether.pull_n", "root.velocity_m_s.x"};
+  constexpr double force = 2.5e-8, sigma = 2e-3;
+  const Scene scene = pulled(force);
+  PointRecord record = with_noise(record_of(scene, 10, sigma, by), sigma, 3);
+  // Derivatives of x by F and v, from the runs themselves: affine, so exact.
+  GradientTask task;
+  task.parameters = gradient_parameters(scene, by, "test");
+  for (std::size_t k = 0; k < record.observations.size(); k += 3) {
+    task.times.push_back(record.observations[k].t);
+  }
+  const StrandGradient run = strand_gradient(scene, 0, task);
+  double ff = 0, fv = 0, vv = 0;
+  for (std::size_t k = 0; k < task.times.size(); ++k) {
+    const std::size_t x = run.points[k].size() - 3;
+    const double f = run.by[0][k][x], v = run.by[1][k][x];
+    EXPECT_NEAR(v, task.times[k], 1e-9);
+    ff += f * f, fv += f * v, vv += v * v;
+  }
+  const double of_covariance = std::sqrt(vv / (ff * vv - fv * fv));
+  for (const bool known : {true, false}) {
+    if (!known) record.sigma.clear();
+    const SceneFit found = fit_scenes({.records = {{&scene, &record}},
+                                       .by = by,
+                                       .bounds = {},
+                                       .priors = {},
+                                       .shifts = false,
+                                       .profile = true});
+    const FittedParameter& one = found.parameters[0];
+    // Quantiles of the normal distribution, and of Student's with 28 degrees.
+    const double half =
+        known ? 1.959964 * sigma * of_covariance
+              : 2.048407 * of_covariance * found.rms * std::sqrt(30.0 / found.degrees);
+    EXPECT_EQ(found.degrees, 28);
+    EXPECT_GT(half, 0.2 * one.value);  // markedly asymmetric in ln F
+    EXPECT_NEAR(one.profile_low, one.value - half, 2e-3 * half);
+    EXPECT_NEAR(one.profile_high, one.value + half, 2e-3 * half);
+    EXPECT_NEAR(one.low, one.value * std::exp(-half / one.value), 2e-3 * half);
+    EXPECT_NEAR(one.high, one.value * std::exp(half / one.value), 2e-3 * half);
+    // The speed has no logarithm: both intervals are the same.
+    const FittedParameter& speed = found.parameters[1];
+    EXPECT_NEAR(speed.profile_low, speed.low, 2e-3 * (speed.value - speed.low));
+    EXPECT_NEAR(speed.profile_high, speed.high, 2e-3 * (speed.high - speed.value));
+  }
+}
+
+// A bound ends a profile; no force at all is within the noise, where ln F has no end.
+TEST(SceneFit, ProfilesEndAtBoundsAndMayBeOpen) {
+  const std::vector<std::string> by{"tether.pull_n"};
+  constexpr double force = 1.8e-8, sigma = 2e-2;
+  const Scene scene = pulled(force);
+  const PointRecord record = record_of(scene, 10, sigma, by);
+  FitTask task{.records = {{&scene, &record}},
+               .by = by,
+               .bounds = {},
+               .priors = {},
+               .shifts = false,
+               .profile = true};
+  const SceneFit open = fit_scenes(task);
+  ASSERT_FALSE(std::isnan(open.parameters[0].low)) << open.reason;
+  EXPECT_TRUE(std::isnan(open.parameters[0].profile_low));
+  EXPECT_GT(open.parameters[0].profile_high, force);
+  task.bounds = {{by[0], 0.9 * force, 1.2 * force}};
+  const SceneFit bounded = fit_scenes(task);
+  EXPECT_NEAR(bounded.parameters[0].profile_low, 0.9 * force, 1e-9 * force);
+  EXPECT_NEAR(bounded.parameters[0].profile_high, 1.2 * force, 1e-9 * force);
+}
+
+// 75 numbers, from values that are off by factors of 1.5 and 2, with 10 elements and 25
+// steps: at most 12 runs with their derivatives, and 0.2 s of one processor. A short test
+// counts the runs alone: time is another's affair on a busy machine.
+TEST(SceneFit, FourParametersOf75NumbersTakeAFifthOfASecond) {
+  const Curl truth{.elements = 10};
+  const PointRecord record = with_noise(record_of(truth.scene(), 25, noise), noise, 1);
+  Curl start = truth;
+  start.modulus *= 1.5, start.friction *= 2, start.drag /= 2;
+  const Scene scene = start.scene();
+  double best = 1e9;  // s
+  for (int k = 0; k < 3; ++k) {
+    const std::clock_t began = std::clock();
+    const SceneFit found = fit_scenes({.records = {{&scene, &record}},
+                                       .by = four,
+                                       .bounds = {},
+                                       .priors = {},
+                                       .shifts = false});
+    best = std::min(best, static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
+    EXPECT_EQ(found.status, "ok") << found.reason;
+    EXPECT_LE(found.evaluations, 12);
+  }
+  RecordProperty("seconds", std::to_string(best));
+  const bool timed = std::getenv("TRESS_FIT_RECORDS") != nullptr;
+  if (timed) {
+    EXPECT_LT(best, 0.2);
   }
 }
 
