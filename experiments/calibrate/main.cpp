@@ -11,6 +11,8 @@
 #include "experiments/calibrate/point_fit.h"
 #include "experiments/run/advised.h"
 #include "experiments/run/experiment.h"
+#include "experiments/run/settings.h"
+#include "simulation/files/files.h"
 
 namespace tress::experiments::calibrate {
 namespace {
@@ -89,10 +91,19 @@ bool finding(const Row& row) {
           row.status() == "space_error");
 }
 
+/// Writes measured and fitted coordinates next to the table, for pictures.
+void write_points(const CommandLine& line, const std::vector<Row>& rows) {
+  if (line.out == "-") return;
+  const PointFit fit = point_fit(line, Settings(line, calibrate_settings()));
+  const std::string csv = fit.points(rows);
+  if (!csv.empty()) replace_file(beside(line.out, "_points.csv"), csv);
+}
+
 /// The fitted values with their intervals.
 void answer(const CommandLine& line, const std::vector<Row>& rows) {
   if (!rows.empty() && rows.front().text("signal") == "points") {
     print_answer(line, point_answer(rows));
+    write_points(line, rows);
     return;
   }
   std::vector<std::string> lines;

@@ -9,6 +9,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/parse.h"
+#include "simulation/fit/record_runs.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/write_scene.h"
 
@@ -142,6 +143,30 @@ std::vector<Row> PointFit::rows(const Row& identity) const {
     all.push_back(std::move(row));
   }
   return all;
+}
+
+std::string PointFit::points(const std::vector<Row>& rows) const {
+  const FitTask fit = task();
+  const RecordRuns runs(fit);
+  std::vector<double> values, fitted(runs.count()), by(runs.count() * rows.size());
+  for (const Row& row : rows) values.push_back(row.number("value"));
+  if (!runs.run(values, RecordRuns::Finer::no, fitted, by).empty()) return {};
+  std::string csv = csv_line(std::vector<std::string>{"record", "strand", "point",
+                                                      "time_s", "component", "measured_m",
+                                                      "sigma_m", "fitted_m"});
+  std::size_t k = 0;
+  for (const PointRecord& record : records) {
+    for (std::size_t i = 0; i < record.observations.size(); ++i, ++k) {
+      const Observation& one = record.observations[i];
+      csv += csv_line(std::vector<std::string>{
+          record.file, std::to_string(one.strand),
+          one.point ? std::to_string(*one.point) : "tip", fmt::format("{:.9g}", one.t),
+          std::string(1, "xyz"[one.component]), fmt::format("{:.9g}", one.value),
+          record.sigma.empty() ? "" : fmt::format("{:.4g}", record.sigma[i]),
+          fmt::format("{:.9g}", fitted[k])});
+    }
+  }
+  return csv;
 }
 
 std::vector<std::string> point_answer(const std::vector<Row>& rows) {

@@ -22,6 +22,9 @@ struct PointFit {
   Row identity() const;
   /// A row for each fitted parameter.
   std::vector<Row> rows(const Row& identity) const;
+  /// Measured and fitted coordinates as a CSV, for the fitted values of its rows. Empty:
+  /// a run fails there.
+  std::string points(const std::vector<Row>& rows) const;
 };
 
 /// Whether these files are records of points: the header of the first decides.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "simulation/files/csv.h"
@@ -34,6 +35,18 @@ TEST(CalibratePoints, FindsStiffnessFrictionAndDragOfTheShippedRecord) {
     EXPECT_GT(row.number("high"), truth[k]) << row.text("parameter");
     EXPECT_TRUE(row.has("singular_value"));
   }
+  // Next to it, what pictures are drawn from: as far apart as the table tells, but for
+  // the digits of both.
+  const CsvTable points = parse_csv(calibrate.read("fit_points.csv"), "fit_points.csv");
+  ASSERT_EQ(points.rows.size(), 75u);
+  double squares = 0;
+  for (const Row& row : points.rows) {
+    EXPECT_EQ(row.text("point"), "tip");
+    EXPECT_EQ(row.number("sigma_m"), 5e-4);
+    squares += std::pow(row.number("measured_m") - row.number("fitted_m"), 2);
+  }
+  const double rms = table.rows[0].number("residual_rms_m");
+  EXPECT_NEAR(std::sqrt(squares / 75), rms, 1e-4 * rms);
 }
 
 TEST(CalibratePoints, RefusesWithPlaceAndRemedyBeforeAnyRun) {

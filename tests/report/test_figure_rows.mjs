@@ -17,6 +17,7 @@ import {
 import { drift_findings } from '../../experiments/report/src/findings/drift.mjs';
 import { control_findings } from '../../experiments/report/src/findings/tolerance.mjs';
 import { hard_cases, hard_findings } from '../../experiments/report/figures/hard_cases.mjs';
+import { calibrate_points } from '../../experiments/report/figures/calibrate_points.mjs';
 import { divided_heads } from '../../experiments/report/figures/divided_heads.mjs';
 import { damping } from '../../experiments/report/figures/damping.mjs';
 import { hard_rows, judged, not_compared } from '../../experiments/report/src/hard.mjs';
@@ -239,4 +240,40 @@ test('Cheapest_NamesItsField', () => {
     work_findings({ work_precision: integrators.map((integrator) => ({ ...row, integrator })) })[0];
   assert.match(say('rk4'), /\(the only integrator run\): error 0.01 with rk4/);
   assert.match(say('rk4', 'bdf2'), /\(of 2 integrators\)/);
+});
+
+test('CalibratePoints_DrawsOfEachRecordThePointThatMovesMost', () => {
+  const path = (record, point, component, measured) =>
+    measured.map((measured_m, k) => ({
+      record,
+      strand: 0,
+      point,
+      time_s: 0.1 * k,
+      component,
+      measured_m,
+      fitted_m: measured_m + 1e-3,
+    }));
+  const tables = {
+    calibrate_points: [
+      ...path('a/one.csv', '3', 'x', [0.1, 0.11]),
+      ...path('a/one.csv', 'tip', 'x', [0.2, 0.24]),
+      ...path('a/one.csv', 'tip', 'z', [0, 0]),
+      ...path('two.csv', '5', 'y', [1, 2]),
+    ],
+  };
+  const rows = calibrate_points.rows(tables);
+  assert.deepEqual(
+    rows.map((row) => `${row.name} ${row.point_name} ${row.component}`),
+    ['x', 'x', 'z', 'z']
+      .map((component) => `one.csv strand 0, point tip ${component}`)
+      .concat(['y', 'y'].map((component) => `two.csv strand 0, point 5 ${component}`)),
+  );
+  // From the mean of 0.22 m; the fitted point is 1 mm off.
+  assert.ok(Math.abs(rows[0].measured_mm + 20) < 1e-9 && Math.abs(rows[0].fitted_mm + 19) < 1e-9);
+  assert.match(calibrate_points.headline(tables), /2 records are within 1 mm/);
+  const { concat } = calibrate_points.spec(tables, { width: 1000, theme: paper_theme });
+  assert.deepEqual(concat.map(({ title }) => title), [
+    'one.csv: strand 0, point tip',
+    'two.csv: strand 0, point 5',
+  ]);
 });

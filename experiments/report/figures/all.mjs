@@ -1,4 +1,5 @@
 // The figures in reading order.
+import { calibrate_points } from './calibrate_points.mjs';
 import { cost_by_model } from './cost_by_model.mjs';
 import { cost_choices } from './cost_choices.mjs';
 import { cost_of_accuracy } from './cost_of_accuracy.mjs';
@@ -56,6 +57,7 @@ export const figures = [
   force_transport,
   damping,
   cost_of_gradient,
+  calibrate_points,
   divided_heads,
   block_descent,
   cosserat_map,

@@ -88,6 +88,7 @@ const measurements = [
   },
   { figure: 'damping', findings: () => [], tables: ['damping'] },
   { figure: 'cost_of_gradient', findings: () => [], tables: ['cost_of_gradient'] },
+  { figure: 'calibrate_points', findings: () => [], tables: ['calibrate_points'] },
   { figure: 'divided_heads', findings: () => [], tables: ['divided_heads'] },
   { figure: 'block_descent', findings: descent_findings, tables: ['block_descent'] },
   { figure: 'cosserat_map', findings: map_findings, tables: [] },
@@ -233,6 +234,13 @@ const nav_html = (sections, of) =>
     .map(({ id, title }) => `<a href="#${id}">${escape_html(title)}</a>`)
     .join('')}<a href="#made">How this was made</a></nav>`;
 
+// A table that is optional, absent and no cause of a warning has no section.
+const shown = (sections, { tables, warnings }) =>
+  sections.filter(({ figure }) => {
+    const { table } = figures.find(({ id }) => id === figure);
+    return table in tables || !known_tables[table].optional || warnings.of(table) !== undefined;
+  });
+
 function question_html({ heading, intro, sections }, contents) {
   const checked = sections
     .flatMap((section) => section.tables)
@@ -266,7 +274,7 @@ function header_html({ tables, objects, warnings }) {
 </dl>
 <p class="note">Every sentence with a number on this page is computed from the tables below.</p>
 ${mixed === '' ? '' : `<p class="note" id="mixed-commits">${escape_html(mixed)}</p>`}
-${nav_html(measurements, 'Measurements')}`;
+${nav_html(shown(measurements, { tables, warnings }), 'Measurements')}`;
 }
 
 const tab_html = (name, text, selected) =>
@@ -316,7 +324,7 @@ function measured_html(contents) {
     header_html(contents),
     '<noscript><p class="missing">Scripts are off: the text stands, figures lie next to this file ' +
       'as SVG, tables as CSV.</p></noscript>',
-    ...measurements.map((section) => section_html(section, contents)),
+    ...shown(measurements, contents).map((section) => section_html(section, contents)),
     extra.length > 0
       ? '<section id="other"><h2>Other tables</h2>' +
         `${extra.map((name) => table_html(name, name, tables[name].rows.length)).join('\n')}</section>`

@@ -291,6 +291,14 @@ export const known_tables = {
     command: './tress run',
     program: 'cost_of_gradient',
   },
+  calibrate_points: {
+    title: 'Measured and fitted points',
+    required: ['record', 'strand', 'point', 'time_s', 'component', 'measured_m', 'fitted_m'],
+    numeric: ['strand', 'time_s', 'measured_m', 'sigma_m', 'fitted_m'],
+    command: 'calibrate --scene scene.toml --set data=record.csv --out results/calibrate.csv',
+    program: 'calibrate',
+    optional: true,
+  },
   divided_heads: {
     title: 'A head that processes divide',
     required: ['kind', 'effects', 'strands', 'ranks', 'cost_per_step_s', 'status'],
