@@ -1,7 +1,8 @@
-// One strand of 10 elements, one step: its System with an integrator, and a batch of one
-// strand in one SIMD lane, as multiples of the reference kernel. Both call the same
-// kernel, so neither may be slower than the other by much. Exact Jacobians of reduced
-// models are the exception: a System computes them by code of its own.
+// A step of one strand of a scene, a curl that swings with its root in air: its System
+// with an integrator, and a batch of one strand in one SIMD lane, as multiples of the
+// reference kernel. Neither may be slower than the other by much. Where they have code of
+// their own, the ratio depends on the number of elements and on drag, so strands have
+// some and few.
 #include <fmt/format.h>
 
 #include <ctime>
@@ -10,22 +11,22 @@
 #include <memory>
 #include <stdexcept>
 
-#include "contract/constants.h"
 #include "experiments/benchmarks/fixture.h"
 #include "experiments/benchmarks/reference_strands.h"
 #include "integrators/catalogue.h"
-#include "models/catalogue.h"
-#include "models/effects/gravity.h"
 #include "models/reduced/reduced_strand.h"
 #include "simulation/head/make_head.h"
+#include "simulation/scene/scene.h"
 
 namespace tress::experiments::benchmarks {
 namespace {
 
 using models::Head;
 using simulation::HeadMethod;
+using simulation::Scene;
 
-constexpr int steps = 4000, rounds = 8;
+constexpr int steps = 1000, rounds = 8;
+constexpr int element_counts[] = {3, 10, 20};
 
 struct Model {
   std::string_view id;
@@ -53,11 +54,42 @@ constexpr Method methods[] = {
     {"linearly_implicit_euler", HeadMethod::linearly_implicit_euler, false},
     {"linearly_implicit_midpoint", HeadMethod::linearly_implicit_midpoint, true}};
 
-const Vec gravity{0, 0, -earth_gravity};
+/// The curl winds by 4.4 rad, so that three elements can have it.
+Scene curl_scene(const Model& model, const Method& method, int elements) {
+  return simulation::parse_scene(
+      fmt::format(R"(title = "curl that swings with its root"
+duration_s = 1
+[model]
+id = "{}"
+jacobian = "{}"
+[integrator]
+id = "{}"
+dt_s = 5e-4
+[material]
+internal_friction_kg_m3_s = 1e-10
+[strand]
+length_m = 0.1
+elements = {}
+shape = "helix"
+curl_radius_m = 0.02
+curl_pitch_m = 0.03
+[root]
+motion = "swing"
+amplitude_m = 0.005
+frequency_hz = 3
+[effects.gravity]
+[effects.linear_drag]
+drag_kg_m_s = 5e-5
+)",
+                  model.id, method.exact ? "exact" : model.approximate, method.id,
+                  elements),
+      "curl.toml");
+}
 
 /// Steps of one kind, and the least processor time of one (s).
 struct Timed {
   std::string name;
+  int elements;
   std::function<void()> go;  // `steps` steps
   double most = 0;           // over the one before; 0: is not compared
   double least = std::numeric_limits<double>::infinity();
@@ -75,53 +107,55 @@ std::function<void()> reference_steps() {
   };
 }
 
-std::function<void()> batch_steps(const Model& model, const Method& method) {
+std::function<void()> batch_steps(const Scene& scene, const Model& model,
+                                  const Method& method) {
+  const models::Strand& strand = scene.strands.front();
+  const models::Segment& first = strand.segments.front();
   simulation::HeadOptions options;
   options.method = method.of_batch;
-  options.elements = reference_elements;
-  options.longest = reference_length;
-  options.gravity = gravity;
-  options.points =
-      models::quadrature_points(curl(0) * reference_length / reference_elements);
+  options.elements = static_cast<int>(strand.segments.size());
+  options.longest = strand.length();
+  options.gravity = {};
+  options.motion = scene.head;
+  options.effects = simulation::make_effects(scene);
+  options.points = models::quadrature_points(first.length * norm(first.natural));
   const std::shared_ptr<Head> batch =
       model.batch(options, {models::HeadNumber::float64, 1});
-  batch->add(reference_hair(0));
+  batch->add(strand);
   return [batch, scratch = std::shared_ptr<Head::Scratch>(batch->scratch()),
-          t = 0.0]() mutable {
-    for (int s = 0; s < steps; ++s, t += reference_step) {
-      batch->step(0, t, reference_step, *scratch);
-    }
+          h = scene.options.step, taken = 0]() mutable {
+    for (int s = 0; s < steps; ++s) batch->step(0, taken++ * h, h, *scratch);
+    if (batch->lost(0)) throw std::runtime_error("a strand of a batch is lost");
   };
 }
 
-std::function<void()> system_steps(const Model& model, const Method& method) {
-  const models::ModelEntry& entry = models::find_model(model.id);
-  Parameters parameters(entry.parameters, "benchmark");
-  if (!method.exact) parameters.set("jacobian", model.approximate);
-  const std::shared_ptr<System> system = entry.on_strand(
-      reference_hair(0), parameters, {std::make_shared<models::Gravity>(gravity)});
-  Options options;
-  options.step = reference_step;
+std::function<void()> system_steps(const Scene& scene) {
+  const std::shared_ptr<System> system = scene.model->on_strand(
+      scene.strands.front(), scene.model_options, simulation::make_effects(scene));
   const std::shared_ptr<Integrator> integrator =
-      integrators::make_integrator(method.id, *system, options);
+      integrators::make_integrator(scene.integrator, *system, scene.options);
   const State start = initial_state(*system);
   const auto expect_ok = [](Status s) {
     if (s != Status::ok) throw std::runtime_error("a strand has no next step");
   };
   expect_ok(integrator->start(0, start.q, start.v));
-  return [system, integrator, expect_ok, t = 0.0]() mutable {
-    t += steps * reference_step;
-    expect_ok(integrator->advance(t));
+  return [system, integrator, expect_ok, h = scene.options.step, taken = 0]() mutable {
+    taken += steps;
+    expect_ok(integrator->advance(taken * h));
   };
 }
 
 std::vector<Timed> all_steps() {
-  std::vector<Timed> all{{"reference", reference_steps()}};
+  std::vector<Timed> all{{"reference", reference_elements, reference_steps()}};
   for (const Model& model : strand_models) {
     for (const Method& method : methods) {
-      const std::string name = fmt::format("{}, {}", model.id, method.id);
-      all.push_back({name + ", batch", batch_steps(model, method)});
-      all.push_back({name + ", System", system_steps(model, method), model.most});
+      for (const int elements : element_counts) {
+        const std::string name =
+            fmt::format("{}, {}, {} elements", model.id, method.id, elements);
+        const Scene scene = curl_scene(model, method, elements);
+        all.push_back({name + ", batch", elements, batch_steps(scene, model, method)});
+        all.push_back({name + ", System", elements, system_steps(scene), model.most});
+      }
     }
   }
   return all;
@@ -131,7 +165,7 @@ void register_all() {
   for (const Timed& one : all_steps()) {
     benchmark::RegisterBenchmark(one.name.c_str(), [one](benchmark::State& state) {
       for ([[maybe_unused]] auto _ : state) one.go();
-      count_per_element(state, steps * reference_elements);
+      count_per_element(state, steps * one.elements);
     });
   }
 }
@@ -145,9 +179,12 @@ bool costs_met() {
       one.least = std::min(one.least, processor_s() - start);
     }
   }
+  const auto of_element = [](const Timed& one) {
+    return one.least / (steps * one.elements);
+  };
   for (const Timed& one : all) {
     fmt::print("{}: {:.0f} ns per element, {:.2f} times the reference\n", one.name,
-               1e9 * one.least / (steps * reference_elements), one.least / all[0].least);
+               1e9 * of_element(one), of_element(one) / of_element(all[0]));
   }
   bool met = true;
   for (std::size_t k = 1; k < all.size(); ++k) {
