@@ -97,6 +97,8 @@ RULES = (
     Rule("docs/python.md", "PYTHONPATH=", left_out="its own test", by="python/tests/test_examples.py"),
     Rule("docs/python.md", "/usr/bin/python3 -m venv", left_out="for the next line"),
     Rule("docs/python.md", "my_environment", left_out="compiles for minutes"),
+    Rule("docs/start/fit.md", f"{experiment('calibrate')} --scene experiments/calibrate/data/buckling_0.toml",
+         left_out="takes a minute", by="tests/fit/test_calibrate_points.cpp"),
     Rule("experiments/calibrate/data/README.md", f"{experiment('calibrate')} --set data=measured.csv", exits=(3,),
          why="a record of another hair, which it says"),
     Rule("experiments/cost_of_accuracy/README.md", f"{experiment('cost_of_accuracy')} --advise",

@@ -256,6 +256,7 @@ test('CalibratePoints_DrawsOfEachRecordThePointThatMovesMost', () => {
   const tables = {
     calibrate_points: [
       ...path('a/one.csv', '3', 'x', [0.1, 0.11]),
+      ...path('a/one.csv', '3', 'y', [9, 9]), // far from x, and at rest
       ...path('a/one.csv', 'tip', 'x', [0.2, 0.24]),
       ...path('a/one.csv', 'tip', 'z', [0, 0]),
       ...path('two.csv', '5', 'y', [1, 2]),

@@ -9,17 +9,23 @@ const usable = ({ calibrate_points = [] }) =>
 
 const mean = (list) => list.reduce((sum, x) => sum + x, 0) / list.length;
 
-const spread = (rows) => {
-  const middle = mean(rows.map((row) => row.measured_m));
-  return Math.hypot(...rows.map((row) => row.measured_m - middle));
-};
+const paths_of = (rows) => [...group_by(rows, (row) => row.component).values()];
+
+// How far a point moves: its coordinates, each from its own mean.
+const travel = (rows) =>
+  Math.hypot(
+    ...paths_of(rows).flatMap((path) => {
+      const middle = mean(path.map((row) => row.measured_m));
+      return path.map((row) => row.measured_m - middle);
+    }),
+  );
 
 // Of each record: the point that moves most, with its coordinates from their means.
 function drawn(tables) {
   return [...group_by(usable(tables), (row) => row.record).values()].flatMap((record) => {
     const points = [...group_by(record, (row) => `strand ${row.strand}, point ${row.point}`)];
-    const [point, rows] = minimum_by(points, ([, of_point]) => -spread(of_point));
-    return [...group_by(rows, (row) => row.component).values()].flatMap((path) => {
+    const [point, rows] = minimum_by(points, ([, of_point]) => -travel(of_point));
+    return paths_of(rows).flatMap((path) => {
       const middle = mean(path.map((row) => row.measured_m));
       return path.map((row) => ({
         ...row,
