@@ -43,7 +43,8 @@ COMMAND = Command(
     "a slower one in build/first, which compiles sooner.",
     _run,
     example="./tress simulate scenes/cantilever.toml --error-bars",
-    time="seconds for most shipped scenes; the first build takes about 30 processor minutes.",
+    time="seconds for most shipped scenes; a first build takes about a quarter of an hour of "
+         "processor time.",
     options=(("--print-defaults", "prints a complete scene of one hair instead"),
              ("--help", "this text; OPTIONS are those of the program, without --out")),
     program=(PROGRAM,))
