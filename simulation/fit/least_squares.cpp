@@ -115,6 +115,20 @@ LeastSquares state_of(gsl_multifit_nlinear_workspace& workspace) {
   return fit;
 }
 
+/// Takes the Gauss-Newton step that is left, which leaves its square. It changes
+/// residuals in proportion.
+void take_step(LeastSquares& fit) {
+  if (fit.covariance.empty()) return;
+  const std::vector<double> left = fit.step(fit.residual);
+  const std::size_t p = left.size();
+  for (std::size_t j = 0; j < p; ++j) fit.x[j] += left[j];
+  for (std::size_t i = 0; i < fit.residual.size(); ++i) {
+    for (std::size_t j = 0; j < p; ++j) {
+      fit.residual[i] += fit.jacobian[i * p + j] * left[j];
+    }
+  }
+}
+
 std::vector<double> last_step(const gsl_multifit_nlinear_workspace& workspace) {
   std::vector<double> step;
   for (std::size_t j = 0; j < workspace.dx->size; ++j) {
@@ -155,7 +169,10 @@ LeastSquares minimum(const ResidualAt& residual, const DerivativeAt& derivative,
     const bool there = fit.covariance.empty()
                            ? k > 0 && std::ranges::all_of(last_step(*workspace), within)
                            : std::ranges::all_of(fit.step(fit.residual), within);
-    if (there) return fit;
+    if (there) {
+      take_step(fit);
+      return fit;
+    }
     code = k < most_iterations ? gsl_multifit_nlinear_iterate(workspace.get())
                                : static_cast<int>(GSL_EMAXITER);
   }
