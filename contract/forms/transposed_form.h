@@ -1,19 +1,35 @@
 #pragma once
 
+#include <vector>
+
 #include "contract/system.h"
 
 namespace tress {
 
-/// Products with the transposed derivatives of the residual, an optional form of systems
-/// whose residual and Jacobian are recursions and not matrices. Gradients backward in
-/// time need them (integrators/gradient).
+/// Solutions with the transposed Jacobian, an optional form of systems that eliminate
+/// along a strand. Gradients backward in time need them (integrators/gradient).
+///
+/// The residual of such a system is a function of constants c (stiffnesses, natural
+/// strains, frictions, masses) less the loads of effects. Parameters that change nothing
+/// else cost nothing more than the products with dr/dc and with the loads, however many
+/// there are. These products are power for the velocities v = mu.
 class TransposedForm {
  public:
   virtual ~TransposedForm() = default;
-  /// Prepares pull() at a state. False: not available.
-  virtual bool place_transposed(double t, In q, In v, In a) noexcept = 0;
-  /// Computes (dr/dq)^T mu, (dr/dv)^T mu.
-  virtual void pull(In mu, Out by_q, Out by_v) noexcept = 0;
+  /// Factors S(w) at a state. False: not available there.
+  virtual bool factor_transposed(double t, In q, In v, In a, Weights w) noexcept = 0;
+  /// Solves S^T mu = b and computes (dr/dq)^T mu, (dr/dv)^T mu; (n) each.
+  virtual Status solve_transposed(In b, Out mu, Out by_q, Out by_v) noexcept = 0;
+
+  /// Returns the constants c. Empty: unknown, and the calls below are not available.
+  virtual std::vector<double> constants() const = 0;
+  /// Prepares the calls below at a state where mu is known; solve_transposed() does, too.
+  virtual void place_transposed(double t, In q, In v, In a, In mu) noexcept = 0;
+  /// by += (dr/dc)^T mu, of fixed loads.
+  virtual void add_by_constants(InOut by) noexcept = 0;
+  /// Returns the power of the loads that the effects of `other` have at this state, W.
+  /// NaN: `other` is another kind of system.
+  virtual double power_of_loads(System& other) noexcept = 0;
 };
 
 /// Null if the system has none.

@@ -270,6 +270,8 @@ Status AdjointRun::back(const Operation& operation) {
     }
     std::ranges::copy(inside_[s][operation.first], x_[s].begin());
     status = equations.solve(x_[s]);
+    if (status != Status::ok) break;
+    parameters_.pull_constants(motion_, equations.products(), s, x_[s]);
     std::ranges::fill(q_hat_, 0.0);
     std::ranges::fill(v_hat_, 0.0);
     equations.pull(x_[s], q_hat_, v_hat_);

@@ -4,26 +4,39 @@
 #include <cmath>
 
 #include "contract/forms/material_points.h"
+#include "contract/forms/transposed_form.h"
 #include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {
 
-std::vector<std::vector<double>> natural_directions(
-    System& system, std::span<const RunParameter> parameters) {
-  std::vector<std::vector<double>> all;
+using Constants = std::vector<std::optional<ConstantsDerivative>>;
+
+Constants constants_derivatives(System& system,
+                                std::span<const RunParameter> parameters) {
+  Constants all;
   for (const RunParameter& parameter : parameters) {
-    all.push_back(natural_direction(system, parameter));
+    all.push_back(constants_derivative(system, parameter));
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> natural_directions(
+    System& system, std::span<const RunParameter> parameters, const Constants& known) {
+  std::vector<std::vector<double>> all(parameters.size());
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (!known[k]) all[k] = natural_direction(system, parameters[k]);
   }
   return all;
 }
 
 std::vector<VariedSystem> others(System& system, std::span<const RunParameter> parameters,
+                                 const Constants& known,
                                  const std::vector<std::vector<double>>& natural_by) {
   std::vector<VariedSystem> all;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    if (!natural_by[k].empty()) continue;
+    if (known[k] || !natural_by[k].empty()) continue;
     all.push_back(varied_system(system, parameters[k], VariedMemory::of_run));
   }
   return all;
@@ -126,13 +139,16 @@ Status PulledNatural::pull(const WatchedSystem::Motion& at,
 PulledParameters::PulledParameters(System& system,
                                    std::span<const RunParameter> parameters,
                                    const Options& options)
-    : natural_by_(natural_directions(system, parameters)),
-      varied_(others(system, parameters, natural_by_)),
+    : system_(system),
+      constants_by_(constants_derivatives(system, parameters)),
+      natural_by_(natural_directions(system, parameters, constants_by_)),
+      varied_(others(system, parameters, constants_by_, natural_by_)),
       stages_(system, varied_, options, false, nullptr),
       r_(size(stages_.dynamics().n())),
       c_(size(stages_.dynamics().m())) {
   for (std::size_t k = 0; k < natural_by_.size(); ++k) {
-    if (natural_by_[k].empty()) index_.push_back(k);
+    any_constants_ = any_constants_ || constants_by_[k];
+    if (!constants_by_[k] && natural_by_[k].empty()) index_.push_back(k);
   }
   system.reset();
   const std::vector<double> memory = system.memory();
@@ -146,7 +162,7 @@ PulledParameters::PulledParameters(System& system,
   if (stages_.dynamics().m() > 0) {
     starts_.emplace(system, varied_, acceleration_options(options), false, nullptr);
   }
-  if (varied_.size() < natural_by_.size()) {
+  if (std::ranges::any_of(natural_by_, [](const auto& by) { return !by.empty(); })) {
     natural_.emplace(system, stages_.dynamics());
   }
 }
@@ -154,6 +170,30 @@ PulledParameters::PulledParameters(System& system,
 void PulledParameters::begin(std::size_t numbers) {
   by_.assign(numbers, std::vector<double>(varied_.size()));
   n_hat_.assign(numbers, std::vector<double>(natural_ ? natural_->count() : 0));
+  const std::size_t constants =
+      any_constants_ ? transposed_form(system_)->constants().size() : 0;
+  c_hat_.assign(numbers, std::vector<double>(constants));
+  by_loads_.assign(numbers, std::vector<double>(count()));
+}
+
+void PulledParameters::pull_constants(const WatchedSystem::Motion& at, bool placed,
+                                      std::size_t number, In x) noexcept {
+  if (!any_constants_) return;
+  TransposedForm& form = *transposed_form(system_);
+  if (!placed) form.place_transposed(at.t, at.q, at.v, at.a, x);
+  form.add_by_constants(c_hat_[number]);
+  std::optional<double> own;
+  for (std::size_t k = 0; k < count(); ++k) {
+    if (!constants_by_[k]) continue;
+    const VariedSystem& loads = constants_by_[k]->loads;
+    for (std::size_t i = 0; i < loads.systems.size(); ++i) {
+      by_loads_[number][k] +=
+          loads.stencil.weight[i] * form.power_of_loads(*loads.systems[i]);
+    }
+    if (loads.systems.empty() || loads.stencil.base == 0) continue;
+    if (!own) own = form.power_of_loads(system_);
+    by_loads_[number][k] += loads.stencil.base * *own;
+  }
 }
 
 void PulledParameters::recall(In memory) {
@@ -169,6 +209,7 @@ void PulledParameters::recall(In memory) {
 
 Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
                               std::span<const std::vector<double>> x) noexcept {
+  if (varied_.empty() && !natural_) return Status::ok;
   Linearized& linearized = starts && starts_ ? *starts_ : stages_;
   Status status = linearized.move(at);
   for (std::size_t k = 0; k < varied_.size() && status == Status::ok; ++k) {
@@ -215,6 +256,9 @@ void PulledParameters::write(Out by) const {
     const Out row = by.subspan(s * count(), count());
     for (std::size_t k = 0; k < index_.size(); ++k) row[index_[k]] = by_[s][k];
     for (std::size_t k = 0; k < count(); ++k) {
+      if (constants_by_[k]) {
+        row[k] = by_loads_[s][k] - product(constants_by_[k]->by, c_hat_[s]);
+      }
       if (!natural_by_[k].empty()) row[k] = product(natural_by_[k], n_hat_[s]);
     }
   }

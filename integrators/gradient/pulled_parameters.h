@@ -45,8 +45,10 @@ class PulledNatural {
 };
 
 /// p_hat -= R_s^T x for the parameters s of a run, with x = (mu, nu) of
-/// TransposedEquations. A parameter costs the residuals of its stencil. Those that change
-/// natural strains alone are together as expensive as a few.
+/// TransposedEquations. Those that act through constants of the system alone
+/// (TransposedForm) cost one product together, and loads of effects their own evaluation.
+/// Natural strains of other systems are together as expensive as a few residuals. Any
+/// other parameter costs the residuals of its stencil.
 class PulledParameters {
  public:
   /// `system` must outlive it.
@@ -60,8 +62,12 @@ class PulledParameters {
   /// The systems remember what the run did, relative to what each began with: reference
   /// frames at the start depend on parameters.
   void recall(In memory);
-  /// Adds the part of a stage with x (n + m) for each number. `starts`: the stage is an
-  /// acceleration, in which constraints are g'' = 0.
+  /// Adds the part of the constants for one number. `placed`: the system has just solved
+  /// for x with its TransposedForm at this state.
+  void pull_constants(const WatchedSystem::Motion& at, bool placed, std::size_t number,
+                      In x) noexcept;
+  /// Adds the other part of a stage with x (n + m) for each number. `starts`: the stage
+  /// is an acceleration, in which constraints are g'' = 0.
   Status pull(const WatchedSystem::Motion& at, bool starts,
               std::span<const std::vector<double>> x) noexcept;
   /// Adds the part of the start: q_hat and v_hat, (n) for each number.
@@ -73,7 +79,9 @@ class PulledParameters {
   void write(Out by) const;
 
  private:
-  std::vector<std::vector<double>> natural_by_;  // empty: by a stencil
+  System& system_;
+  std::vector<std::optional<ConstantsDerivative>> constants_by_;  // where it is all
+  std::vector<std::vector<double>> natural_by_;  // empty: by constants or a stencil
   std::vector<VariedSystem> varied_;
   std::vector<std::size_t> index_;  // of varied_
   /// Memory at the start of each system of varied_, less that of the run's system.
@@ -83,6 +91,9 @@ class PulledParameters {
   std::optional<PulledNatural> natural_;
   std::vector<std::vector<double>> by_;     // [number][parameter], of varied_
   std::vector<std::vector<double>> n_hat_;  // [number]
+  bool any_constants_ = false;
+  std::vector<std::vector<double>> c_hat_;     // [number], of constants
+  std::vector<std::vector<double>> by_loads_;  // [number][parameter]
   std::vector<double> r_, c_;
 };
 

@@ -1,7 +1,6 @@
 #include "integrators/gradient/transposed_equations.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "linear/sparse_pattern.h"
 #include "linear/vector_ops.h"
@@ -34,14 +33,16 @@ TransposedEquations::TransposedEquations(System& system, const Options& options,
     : dynamics_(system, options),
       derivative_(dynamics_, sparse && dynamics_.m() > 0, nullptr),
       sparse_(sparse && dynamics_.m() == 0 ? system.sparse_form() : nullptr),
-      transposed_(dynamics_.m() == 0 && sparse_ == nullptr ? transposed_form(system)
-                                                           : nullptr),
+      transposed_(dynamics_.m() == 0 ? transposed_form(system) : nullptr),
       n_(size(dynamics_.n())),
       m_(size(dynamics_.m())),
       pattern_(sparse_ != nullptr ? sparse_->pattern() : full_pattern(n_ + m_, n_)),
       matrix_(static_cast<int>(n_ + m_), static_cast<int>(n_ + m_)),
       of_r_(matrix_.add_block(pattern_, 0, 0, true)),
       of_lambda_(0),
+      right_(n_),
+      product_q_(n_),
+      product_v_(n_),
       none_(n_),
       unit_(n_) {
   if (m_ > 0) {
@@ -58,8 +59,8 @@ TransposedEquations::TransposedEquations(System& system, const Options& options,
 
 Status TransposedEquations::move(const WatchedSystem::Motion& state, Weights w) noexcept {
   products_ = transposed_ != nullptr &&
-              transposed_->place_transposed(state.t, state.q, state.v, state.a);
-  if (products_) return by_products(state, w);
+              transposed_->factor_transposed(state.t, state.q, state.v, state.a, w);
+  if (products_) return Status::ok;
   Status s = sparse_ != nullptr ? by_matrices(state) : by_columns(state);
   if (s != Status::ok) return s;
   for (std::size_t p = 0; p < combined_.size(); ++p) {
@@ -73,20 +74,6 @@ Status TransposedEquations::move(const WatchedSystem::Motion& state, Weights w) 
     matrix_.add(of_lambda_, -1, gradient_);
   }
   return solver_->factor(matrix_.values());
-}
-
-Status TransposedEquations::by_products(const WatchedSystem::Motion& at,
-                                        Weights w) noexcept {
-  inverse_.assign(n_ * n_, 0.0);
-  product_q_.resize(n_);
-  product_v_.resize(n_);
-  Status s = dynamics_.linearize(at.t, at.q, at.v, at.a, at.lambda, w);
-  for (std::size_t j = 0; j < n_ && s == Status::ok; ++j) {
-    const auto column = Out(inverse_).subspan(j * n_, n_);
-    column[j] = 1;
-    s = dynamics_.solve(column, {});
-  }
-  return s;
 }
 
 Status TransposedEquations::by_matrices(const WatchedSystem::Motion& at) noexcept {
@@ -115,12 +102,8 @@ Status TransposedEquations::by_columns(const WatchedSystem::Motion& at) noexcept
 
 Status TransposedEquations::solve(InOut x) noexcept {
   if (products_) {
-    std::ranges::copy(x, product_q_.begin());
-    for (std::size_t j = 0; j < n_; ++j) {
-      x[j] = std::inner_product(product_q_.begin(), product_q_.end(), &inverse_[j * n_],
-                                0.0);
-    }
-    return Status::ok;
+    std::ranges::copy(x, right_.begin());
+    return transposed_->solve_transposed(right_, x, product_q_, product_v_);
   }
   std::ranges::fill(x.subspan(n_), 0.0);
   return solver_->solve(x);
@@ -128,7 +111,6 @@ Status TransposedEquations::solve(InOut x) noexcept {
 
 void TransposedEquations::pull(In x, InOut q_hat, InOut v_hat) noexcept {
   if (products_) {
-    transposed_->pull(x, product_q_, product_v_);
     add(q_hat, -1, product_q_);
     add(v_hat, -1, product_v_);
     return;

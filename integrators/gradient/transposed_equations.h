@@ -20,10 +20,9 @@ namespace tress::integrators {
 ///     [        ]   [  ] = [ ],    q_hat -= R_q^T (mu, nu),  v_hat -= R_v^T (mu, nu)
 ///                  [nu]   [0]
 ///
-/// The derivatives are the matrices of SparseForm where the system has one and no
-/// constraints. With TransposedForm they are its products, and S^-T has the solutions of
-/// n unit vectors as its rows. Else they are columns by central differences, O(n)
-/// residuals.
+/// With TransposedForm the system solves and multiplies. Else the derivatives are the
+/// matrices of SparseForm where the system has one and no constraints, or columns by
+/// central differences, O(n) residuals.
 class TransposedEquations {
  public:
   /// `sparse`: as ResidualDerivative. `system` must outlive this.
@@ -41,11 +40,13 @@ class TransposedEquations {
   Status move(const WatchedSystem::Motion& state, Weights w) noexcept;
   /// Solves for x = (mu, nu), (n + m), from b in the first n numbers.
   Status solve(InOut x) noexcept;
-  /// Subtracts R_q^T x from q_hat and R_v^T x from v_hat, x = (mu, nu).
+  /// Returns whether solve() prepares the products of the system's TransposedForm.
+  bool products() const { return products_; }
+  /// Subtracts R_q^T x from q_hat and R_v^T x from v_hat, x = (mu, nu) of the last
+  /// solve().
   void pull(In x, InOut q_hat, InOut v_hat) noexcept;
 
  private:
-  Status by_products(const WatchedSystem::Motion& state, Weights w) noexcept;
   Status by_columns(const WatchedSystem::Motion& state) noexcept;
   Status by_matrices(const WatchedSystem::Motion& state) noexcept;
 
@@ -61,8 +62,7 @@ class TransposedEquations {
   BlockMatrix matrix_;                     // transposed
   int of_r_, of_lambda_;
   std::unique_ptr<LinearSolver> solver_;
-  std::vector<double> inverse_;  // (n x n) S^-1, column by column
-  std::vector<double> product_q_, product_v_;
+  std::vector<double> right_, product_q_, product_v_;  // (n), of products_
   std::vector<double> combined_, gradient_, none_, unit_;
 };
 

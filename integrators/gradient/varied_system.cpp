@@ -3,87 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contract/forms/constraint_form.h"
-#include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
+#include "integrators/gradient/probe.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
 namespace {
-
-/// A state away from the initial one, by parts of the typical sizes that differ from
-/// coordinate to coordinate.
-struct Probe {
-  explicit Probe(System& system)
-      : q(static_cast<std::size_t>(system.layout().coordinates)),
-        v(q),
-        a(q),
-        q_typ(q),
-        v_typ(q) {
-    system.initial_state(q, v);
-    system.scale(q_typ, v_typ);
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      const double part = 0.02 * std::sin(1 + 2.7 * static_cast<double>(i));
-      q[i] += part * q_typ[i];
-      v[i] += 5 * part * v_typ[i];
-      a[i] = 7 * part * v_typ[i] * v_typ[i] / q_typ[i];
-    }
-  }
-  std::vector<double> q, v, a, q_typ, v_typ;
-
-  /// All that may depend on a parameter: the start, then residuals, points and
-  /// constraints. NaN where a residual is not finite.
-  std::vector<std::vector<double>> of(System& system) const {
-    std::vector<std::vector<double>> all(2, std::vector<double>(q.size()));
-    system.initial_state(all[0], all[1]);
-    MaterialPoints* points = system.material_points();
-    for (const double t : probed_times) {
-      std::vector<double> r(q.size());
-      if (system.residual(t, q, v, a, r) != Status::ok) r.assign(q.size(), std::nan(""));
-      all.push_back(std::move(r));
-      if (points != nullptr) {
-        all.emplace_back(3 * static_cast<std::size_t>(points->count()));
-        points->positions(t, q, all.back());
-      }
-      if (ConstraintForm* constraints = system.constraint_form()) {
-        std::vector<double> g(static_cast<std::size_t>(system.layout().constraints)),
-            gt(static_cast<std::size_t>(constraints->pattern().nonzeros()));
-        if (constraints->value(t, q, g) != Status::ok ||
-            constraints->gradient(t, q, gt) != Status::ok) {
-          g.assign(g.size(), std::nan(""));
-        }
-        all.push_back(std::move(g));
-        all.push_back(std::move(gt));
-      }
-    }
-    return all;
-  }
-};
-
-/// The points at a state, at several times.
-std::vector<double> points_at(System& system, In q) {
-  MaterialPoints& points = *system.material_points();
-  std::vector<double> all;
-  for (const double t : probed_times) {
-    std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
-    points.positions(t, q, x);
-    all.insert(all.end(), x.begin(), x.end());
-  }
-  return all;
-}
-
-/// Whether f(1/2) is the mean of f(0) and f(1), entry by entry, up to rounding.
-bool affine(const std::vector<double>& at_0, const std::vector<double>& at_half,
-            const std::vector<double>& at_1) {
-  constexpr double rounding = 1e-12;  // a sum of some thousand terms
-  double size = 0, bend = 0;
-  for (std::size_t i = 0; i < at_0.size(); ++i) {
-    size = std::max({size, std::abs(at_0[i]), std::abs(at_1[i])});
-    const double away = std::abs(at_half[i] - (at_0[i] + at_1[i]) / 2);
-    if (!(away <= bend)) bend = away;  // NaN, too
-  }
-  return bend <= rounding * size;
-}
 
 bool same(const std::vector<double>& x, const std::vector<double>& y) {
   constexpr double rounding = 1e-14;

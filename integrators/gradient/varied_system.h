@@ -70,6 +70,19 @@ enum class VariedMemory { own, of_run };
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory = VariedMemory::own);
 
+/// Derivatives by a parameter that acts through the constants of a system and the loads
+/// of effects alone (TransposedForm).
+struct ConstantsDerivative {
+  std::vector<double> by;  // of the constants
+  VariedSystem loads;      // whose effects have the loads; no systems: loads stay
+};
+
+/// The derivative of the constants by a parameter that changes nothing else but loads:
+/// measured at three states, for random velocities. Empty: it changes other things, or
+/// the system has no constants.
+std::optional<ConstantsDerivative> constants_derivative(System& system,
+                                                        const RunParameter& parameter);
+
 /// The derivative of the natural strains by a parameter that changes nothing else,
 /// measured as above. Empty: it changes other things, or the system has no
 /// NaturalStrains.

@@ -16,7 +16,8 @@ namespace tress::models {
 /// assembled: from the same derivatives by rotations of edges.
 class DerElasticity final : public Elasticity,
                             private NaturalStrains,
-                            private StrandElimination {
+                            private StrandElimination,
+                            private TransposedElimination {
  public:
   /// An edge at rest.
   struct EdgeData {
@@ -62,6 +63,14 @@ class DerElasticity final : public Elasticity,
 
   bool factor(const Placement& p, Weights w, const Others& others) noexcept override;
   void solve(In b, Out x) noexcept override;
+  TransposedElimination* transposed() override {
+    return jacobian_ == Jacobian::exact ? this : nullptr;
+  }
+  void solve_transposed(In b, Out x) noexcept override;
+  void add_by_rates(InOut f) noexcept override;
+  void place_transposed(const Placement& p, In x) noexcept override;
+  std::vector<double> constants() const override;
+  void add_by_constants(InOut by) noexcept override;
 
   /// An edge at a placement, and the joint before it.
   struct Edge : DerExactPlaced<double> {
@@ -71,6 +80,11 @@ class DerElasticity final : public Elasticity,
     double twist = 0;
     DerForces<double, true>::ByLengthening by_lengthening;
     double sigma = 0;  // of solve()
+    // Of the solution of solve_transposed().
+    Vec relative;            // rotation, less that of the edge before
+    double lengthening = 0;  // lengthening
+    /// Change of the strain.
+    Vec strain_change() const;
   };
   using Edges = std::vector<Edge>;
   /// Edges, and where they were computed.
@@ -120,6 +134,7 @@ class DerElasticity final : public Elasticity,
   double substitute(std::vector<typename Elimination::Factor>& factors, double sign,
                     InOut x) noexcept;
   void correct(double most, InOut x) noexcept;
+  double substitute_transposed(double sign, InOut x) noexcept;
 
   std::vector<EdgeData> edges_at_start_, edge_data_;
   std::vector<Replaced> replaced_;

@@ -15,6 +15,7 @@
 #include "contract/forms/moving_history.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/forms/stress_form.h"
+#include "contract/forms/transposed_form.h"
 #include "contract/jacobian_choice.h"
 #include "contract/pattern.h"
 #include "linear/kkt.h"
@@ -70,6 +71,7 @@ struct MaximalStrand {
 /// points are nodes and the elasticity has a StrainForm, the system has a ComplianceForm.
 class MaximalSystem final : public System,
                             public NaturalStrains,
+                            public TransposedForm,
                             private SparseForm,
                             private ExplicitForm,
                             private ComplianceForm,
@@ -110,6 +112,13 @@ class MaximalSystem final : public System,
     const NaturalStrains* strains = strand_.elasticity->natural_strains();
     return strains == nullptr ? std::vector<double>{} : strains->natural();
   }
+  bool factor_transposed(double t, In q, In v, In a, Weights w) noexcept override;
+  Status solve_transposed(In b, Out mu, Out by_q, Out by_v) noexcept override;
+  std::vector<double> constants() const override;
+  void place_transposed(double t, In q, In v, In a, In mu) noexcept override;
+  void add_by_constants(InOut by) noexcept override;
+  double power_of_loads(System& other) noexcept override;
+
   void set_natural(In values) override {
     strand_.elasticity->natural_strains()->set_natural(values);
   }
@@ -180,6 +189,9 @@ class MaximalSystem final : public System,
   Pattern pattern_;
   StrandElimination* elimination_ = nullptr;  // null: S is assembled
   bool eliminated_ = false;                   // by the last linearize()
+  // Of factor_transposed().
+  Weights eliminated_weights_;
+  std::vector<double> a_transposed_, mu_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<Coupling> contacts_;
   std::unique_ptr<CoupledSolver> coupled_solver_;  // if effects have couplings

@@ -10,6 +10,23 @@
 
 namespace tress::models {
 
+/// Solutions with the transposed matrix of a StrandElimination.
+class TransposedElimination {
+ public:
+  virtual ~TransposedElimination() = default;
+  /// Solves S^T x = b with the last factors; b and x must be different.
+  virtual void solve_transposed(In b, Out x) noexcept = 0;
+  /// f += D^T x with the x of the last solution and D the derivatives of the
+  /// elasticity's forces by rates; over all coordinates z.
+  virtual void add_by_rates(InOut f) noexcept = 0;
+  /// Prepares the calls here as a solution x would, at a placement.
+  virtual void place_transposed(const Placement& p, In x) noexcept = 0;
+  /// Returns the constants of the elasticity, as TransposedForm::constants().
+  virtual std::vector<double> constants() const = 0;
+  /// by += products of that x with the derivatives of forces by constants.
+  virtual void add_by_constants(InOut by) noexcept = 0;
+};
+
 /// S of a clamped strand by elimination from the tip to the root, O(nodes), where joints
 /// couple neighbouring edges only and all other terms belong to single coordinates.
 class StrandElimination {
@@ -26,6 +43,8 @@ class StrandElimination {
   virtual bool factor(const Placement& p, Weights w, const Others& others) noexcept = 0;
   /// Solves for the coordinates that are not prescribed; b and x may be the same.
   virtual void solve(In b, Out x) noexcept = 0;
+  /// Null if there are no solutions with the transposed matrix.
+  virtual TransposedElimination* transposed() { return nullptr; }
 };
 
 /// Notes whether a pivot is lost to rounding. Elimination without exchange of rows

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <utility>
+
 #include "models/reduced/inverse_dynamics.h"
 #include "models/reduced/mass_tangent.h"
 #include "models/reduced/point_matrix.h"
@@ -111,6 +114,78 @@ class ExactTangent {
     }
   }
 
+  /// What the transposed product finds at a segment (TransposedProduct).
+  using Rows = Eigen::Matrix<double, Shape::rows, 1>;
+  using State = Eigen::Matrix<double, Shape::states, 1>;
+  /// Writes (dr/dv)^T mu and (dr/da)^T mu of the unknowns of segment i: the products with
+  /// their columns of segment() for the weights {0, 1, 0} and {1, 0, 0}. `velocities`: of
+  /// all blocks of points for v = mu, in the components of the start; writes those of the
+  /// segment.
+  void pull_rates(std::size_t i, const EffectBlocks& effects, const Rows& rows,
+                  const State& by_state, Out by_v, Out by_a,
+                  std::span<Vec3<Pack>> velocities) const {
+    const auto& segment = kinematics_.segments()[i];
+    const auto& g = kinematics_.geometry(i);
+    const auto& m = kinematics_.motion(i);
+    const FrameMotion& from = kinematics_.start(i);
+    auto [force, moment] = vectors(rows, 0);
+    if (segment.mounted) {
+      force = segment.mount.back(force);
+      moment = segment.mount.back(moment);
+    }
+    const auto bent = rate_slopes(g.kernel, m);
+    std::array<Pack, dofs> of_v{}, of_a{};
+    const Vec3<Pack> omega(from.omega);
+    for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+      const auto& block = kinematics_.block_geometry(b);
+      Vec3<Pack>& u = velocities[b];
+      u = Vec3<Pack>(force) + cross(Vec3<Pack>(moment), block.position);
+      for (std::size_t k = 0; k < dofs; ++k) {
+        u = u + Pack(rows[size + static_cast<int>(k)]) * block.slope[k];
+      }
+      const Vec3<Pack> momentum = kinematics_.blocks()[b].mass * u;
+      const Vec3<Pack> turned = cross(momentum, omega);  // u . (omega x slope)
+      Vec3<Pack> held{Pack(0), Pack(0), Pack(0)};
+      if (!effects.velocity.empty()) {
+        held = PointMatrix(&effects.velocity[9 * K::first_point(b)], from.frame).back(u);
+      }
+      for (std::size_t k = 0; k < dofs; ++k) {
+        of_a[k] += dot(momentum, block.slope[k]);
+        of_v[k] += Pack(2) * (dot(turned, block.slope[k]) +
+                              dot(momentum, bent[k].at(block.at))) -
+                   dot(held, block.slope[k]);
+      }
+    }
+    const auto [of_velocity, of_spin] = vectors(by_state, size);
+    const auto [of_second, of_second_spin] = vectors(by_state, 2 * size);
+    const Vec v = g.rotation * of_velocity, spin = g.rotation * of_spin,
+              a = g.rotation * of_second, alpha = g.rotation * of_second_spin;
+    const Weights only_vel{0, 1, 0};
+    for (int k = 0; k < dofs; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const Strain e = K::unit(k);
+      const Vec &slope = g.slope[at], &turn = g.turn[at];
+      const double mu = rows[size + k];
+      by_a[at] = sum(of_a[at]) + dot(slope, a) + dot(turn, alpha);
+      by_v[at] = sum(of_v[at]) + mu * dot(e, restoring(segment, only_vel)) +
+                 dot(slope, v) + dot(turn, spin) +
+                 2.0 * dot(cross(from.omega, slope) + bent[at].at(g.tip), a) +
+                 dot(g.kernel.dW(e, m.rate).at(g.tip) + g.kernel.dW(m.rate, e).at(g.tip) +
+                         cross(from.omega, turn),
+                     alpha);
+      if constexpr (Kernel::functions == 2) by_a[at] += mu * dot(e, segment.inertia);
+    }
+  }
+
+  /// Returns the translation and the rotation that begin at entry `from`.
+  template <class Column>
+  static std::pair<Vec, Vec> vectors(const Column& column, int from) {
+    double all[2][3] = {};
+    for (int k = 0; k < t; ++k) all[0][S::translation[k]] = column[from + k];
+    for (int k = 0; k < S::rotations; ++k) all[1][S::rotation[k]] = column[from + t + k];
+    return {{all[0][0], all[0][1], all[0][2]}, {all[1][0], all[1][1], all[1][2]}};
+  }
+
  private:
   using K = Kinematics<Kernel, modes>;
   using Strain = typename Kernel::Strain;
@@ -150,6 +225,19 @@ class ExactTangent {
 
   /// Variation of a fixed omega in the components of a frame that turns by `axis`.
   static Vec in_plane(const Vec& omega, const Vec& axis) { return cross(omega, axis); }
+
+  /// Returns dP'/dq_k of all unknowns.
+  static auto rate_slopes(const Kernel& kernel, const typename K::SegmentMotion& m) {
+    if constexpr (Kernel::functions == 2) {
+      return Derivatives(kernel, m).velocity;
+    } else {
+      std::array<typename Derivatives::Second, dofs> all;
+      for (std::size_t k = 0; k < dofs; ++k) {
+        all[k] = kernel.second(m.rate, K::unit(static_cast<int>(k)));
+      }
+      return all;
+    }
+  }
 
   void points(std::size_t i, Weights w, const EffectBlocks& effects,
               const Derivatives& derivatives, SegmentTangent<Shape>& tangent) const {

@@ -58,7 +58,8 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
     return Base::finite(x);
   }
   /// The base's is that of the full inertia.
-  bool place_transposed(double, In, In, In) noexcept override { return false; }
+  bool factor_transposed(double, In, In, In, Weights) noexcept override { return false; }
+  std::vector<double> constants() const override { return {}; }
 
  private:
   Status acceleration(double t, In q, In v, Out a) noexcept override {

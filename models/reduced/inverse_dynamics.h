@@ -72,9 +72,10 @@ class InverseDynamics {
   /// Whether some effect is not uniform.
   bool loaded() const { return !loading_.empty(); }
   /// Returns the loads of such effects on the points as placed (3 numbers each, N).
-  tress::In find_loads(double t) {
+  tress::In find_loads(double t) { return find_loads(t, points(needs_)); }
+  /// Returns the loads of these effects on other points.
+  tress::In find_loads(double t, const Points& p) {
     std::fill(load_.begin(), load_.end(), 0.0);
-    const Points p = points(needs_);
     for (const Effect* effect : loading_) effect->add_load(t, p, load_);
     return load_;
   }
@@ -152,6 +153,12 @@ class InverseDynamics {
   /// Returns all effects on the strand.
   const Effects& effects() const { return effects_; }
 
+  /// Returns I d/dt((omega . t) t), t = e0 of the frame.
+  static Vec3<Real> rotor_moment(const Real& inertia, const FrameMotionOf<Real>& m) {
+    const Vec3<Real>& w = m.omega;
+    return inertia * Vec3<Real>{m.alpha.x, w.x * w.z, -1.0 * (w.x * w.y)};
+  }
+
  private:
   using Vec = Vec3<Real>;
   using Frame = FrameOf<Real>;
@@ -160,12 +167,6 @@ class InverseDynamics {
   struct Force {
     Vec3<Pack> total, load;
   };
-
-  /// I d/dt((omega . t) t), t = e0 of the frame.
-  static Vec rotor_moment(const Real& inertia, const FrameMotion& m) {
-    const Vec& w = m.omega;
-    return inertia * Vec{m.alpha.x, w.x * w.z, -1.0 * (w.x * w.y)};
-  }
 
   template <class Accept>
   void derivatives(double t, double pos, double vel, InOut blocks, Accept accept) const {

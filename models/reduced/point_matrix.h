@@ -29,6 +29,11 @@ struct PointMatrix {
     return x.x * column[0] + x.y * column[1] + x.z * column[2];
   }
 
+  /// Returns the products of the transposed matrices with the vector x of each point.
+  Vec3<Pack> back(const Vec3<Pack>& x) const {
+    return {dot(column[0], x), dot(column[1], x), dot(column[2], x)};
+  }
+
   Vec3<Pack> column[3];  // columns of the four matrices
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "contract/forms/contact_form.h"
@@ -194,21 +195,121 @@ class ReducedSystem : public System,
   }
   bool strains_are_coordinates() const override { return !kinematics_.free(); }
 
-  bool place_transposed(double t, In q, In v, In a) noexcept override {
+  // Of gradients alone. Cold and out of line: else the compiler inlines, and rounds, what
+  // runs without gradients call in another way.
+  [[gnu::cold, gnu::noinline]] bool factor_transposed(double t, In q, In v, In a,
+                                                      Weights w) noexcept override {
     if (!exact_ || coupled_solver_) return false;
-    if (by_q_.parent.empty()) {
-      by_q_ = empty_tangent<Exact>(kinematics_);
-      by_v_ = by_q_;
+    if (!transposed_solver_) {
+      transposed_solver_ = make_tree_solver<Exact>(TreeMethod::recursive, full_);
+      product_a_.resize(zero_.size());
     }
-    dynamics_.residual(t, q, v, a, scratch_);
-    const auto effects = effect_blocks(t);
-    fill_tangent({0, 0, 1}, effects, v, a, by_q_);
-    fill_tangent({0, 1, 0}, effects, v, a, by_v_);
-    return true;
+    transposed_weights_ = w;
+    const bool of_mass = w.pos == 0;  // S is M
+    if (of_mass && ReducedSystem::linearize(t, q, v, a, w) != Status::ok) return false;
+    take_transposed_tangent(t, q, v, a, of_mass ? Weights{0, 0, 1} : w);
+    return of_mass || transposed_solver_->factor(full_) == Status::ok;
   }
-  void pull(In mu, Out by_q, Out by_v) noexcept override {
-    transposed_.compute(by_q_, mu, by_q);
-    transposed_.compute(by_v_, mu, by_v);
+  /// by_q follows from the product with S, or is that with dr/dq itself where S is M.
+  [[gnu::cold, gnu::noinline]] Status solve_transposed(In b, Out mu, Out by_q,
+                                                       Out by_v) noexcept override {
+    const Weights w = transposed_weights_;
+    if (w.pos != 0) {
+      transposed_solver_->solve_transposed(b, mu);
+    } else if (const Status s = ReducedSystem::solve(b, mu); s != Status::ok) {
+      return s;
+    }
+    transposed_.compute(full_, mu, by_q);
+    pull_rates(mu, by_v, product_a_);
+    for (std::size_t k = 0; k < by_q.size() && w.pos != 0; ++k) {
+      by_q[k] = (by_q[k] - w.vel * by_v[k] - w.acc * product_a_[k]) / w.pos;
+    }
+    return finite(mu);
+  }
+  std::vector<double> constants() const override {
+    if (!exact_ || coupled_solver_) return {};
+    std::vector<double> all = of_segments(&Segment::stiffness);
+    const auto append = [&all](const std::vector<double>& more) {
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    append(of_segments(&Segment::friction));
+    append(of_segments(&Segment::rest));
+    if constexpr (Kernel::functions == 2) append(of_segments(&Segment::inertia));
+    for (const Segment& segment : kinematics_.segments()) all.push_back(segment.rotor);
+    all.push_back(kinematics_.root_rotor());
+    for (const PointBlock& block : kinematics_.blocks()) {
+      for (int lane = 0; lane < Pack::lanes; ++lane) all.push_back(block.mass[lane]);
+    }
+    return all;
+  }
+  [[gnu::cold, gnu::noinline]] void place_transposed(double t, In q, In v, In a,
+                                                     In mu) noexcept override {
+    product_a_.resize(zero_.size());
+    take_transposed_tangent(t, q, v, a, {0, 0, 1});
+    transposed_.compute(full_, mu, scratch_);
+    pull_rates(mu, scratch_, product_a_);
+  }
+  [[gnu::cold, gnu::noinline]] void add_by_constants(InOut by) noexcept override {
+    const auto& segments = kinematics_.segments();
+    const std::size_t count = segments.size();
+    const auto part = [&by](std::size_t length) {
+      const InOut first = by.first(length);
+      by = by.subspan(length);
+      return first;
+    };
+    const InOut stiffness = part(dofs * count), friction = part(dofs * count),
+                rest = part(dofs * count),
+                inertia = part(Kernel::functions == 2 ? dofs * count : 0),
+                rotor = part(count), root_rotor = part(1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& m = kinematics_.motion(i);
+      const auto strain = K::components(q_transposed_, i) - segments[i].rest;
+      for (int k = 0; k < dofs; ++k) {
+        const auto e = K::unit(k);
+        const std::size_t at = dofs * i + static_cast<std::size_t>(k);
+        const double mu = transposed_.rows(i)[Exact::wrench + k];
+        stiffness[at] += mu * dot(e, strain);
+        friction[at] += mu * dot(e, m.rate);
+        rest[at] -= mu * dot(e, segments[i].stiffness);
+        if constexpr (Kernel::functions == 2) inertia[at] += mu * dot(e, m.acceleration);
+      }
+      const Vec turn = exact_tangent_.vectors(transposed_.by_tip(i), 0).second;
+      rotor[i] += dot(turn, dynamics_.rotor_moment(1, m.tip));
+    }
+    if (kinematics_.free()) {
+      const Vec turn = exact_tangent_.vectors(transposed_.by_root(), 0).second;
+      root_rotor[0] += dot(turn, dynamics_.rotor_moment(1, kinematics_.root()));
+    }
+    for (std::size_t b = 0; b < u_.size(); ++b) {
+      const Pack power = dot(dynamics_.force(b) + dynamics_.load(b), u_[b]);
+      const Pack& mass = kinematics_.blocks()[b].mass;
+      for (int lane = 0; lane < Pack::lanes; ++lane) {
+        if (mass[lane] > 0) {
+          by[K::first_point(b) + static_cast<std::size_t>(lane)] +=
+              power[lane] / mass[lane];
+        }
+      }
+    }
+  }
+  [[gnu::cold, gnu::noinline]] double power_of_loads(System& other) noexcept override {
+    auto* const of = dynamic_cast<ReducedSystem*>(&other);
+    if (of == nullptr || of->kinematics_.points() != kinematics_.points()) {
+      return std::nan("");
+    }
+    if (!of->dynamics_.loaded()) return 0;
+    const Needs wanted = of->dynamics_.effect_needs();
+    if (!loads_placed_) {
+      dynamics_.place(wanted | Needs{.position = true, .velocity = true});
+      for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+        const auto& segment = kinematics_.segments()[i];
+        for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+          scatter3(kinematics_.world(i, u_[b]), &u_world_[3 * K::first_point(b)], 3);
+        }
+      }
+      loads_placed_ = true;
+    }
+    const In loads = of->dynamics_.find_loads(t_transposed_, dynamics_.points(wanted));
+    return std::inner_product(loads.begin(), loads.end(), u_world_.begin(), 0.0);
   }
 
  protected:
@@ -292,6 +393,40 @@ class ReducedSystem : public System,
       exact_tangent_.segment(i, w, effects, to.segments[i]);
     }
     if (to.free_root) exact_tangent_.root(w, v.last(6), a.last(6), to.root);
+  }
+
+  void take_transposed_tangent(double t, In q, In v, In a, Weights w) {
+    dynamics_.residual(t, q, v, a, scratch_);
+    fill_tangent(w, effect_blocks(t), v, a, full_);
+    t_transposed_ = t;
+    q_transposed_.assign(q.begin(), q.end());
+    v_transposed_.assign(v.begin(), v.end());
+    a_transposed_.assign(a.begin(), a.end());
+    u_.resize(kinematics_.blocks().size());
+    u_world_.resize(3 * kinematics_.points());
+  }
+
+  /// (dr/dv)^T mu and (dr/da)^T mu after the product with full_; u_.
+  void pull_rates(In mu, Out by_v, Out by_a) {
+    loads_placed_ = false;
+    const typename ExactTangent<Kernel, modes>::EffectBlocks effects{
+        by_position_, by_velocity_, by_direction_};
+    const std::size_t segments = kinematics_.segments().size();
+    for (std::size_t i = 0; i < segments; ++i) {
+      exact_tangent_.pull_rates(i, effects, transposed_.rows(i), transposed_.by_state(i),
+                                by_v.subspan(dofs * i, dofs),
+                                by_a.subspan(dofs * i, dofs), u_);
+    }
+    if (!kinematics_.free()) return;
+    const std::size_t root = dofs * segments;
+    RootTangent<Exact> tangent;
+    const auto pull = [&](Weights w, Out to) {
+      exact_tangent_.root(w, In(v_transposed_).last(6), In(a_transposed_).last(6),
+                          tangent);
+      transposed_.compute_root(tangent, mu.subspan(root), to.subspan(root));
+    };
+    pull({0, 1, 0}, by_v);
+    pull({1, 0, 0}, by_a);
   }
 
   /// Strands that touch themselves need a solver for all unknowns at once.
@@ -487,12 +622,17 @@ class ReducedSystem : public System,
   ExactTangent<Kernel, modes> exact_tangent_;
   StiffTangent<Kernel, modes> mass_, acceleration_;
   TreeTangent<Exact> full_;
-  TreeTangent<Exact> by_q_, by_v_;  // of pull(); made on first use
   TransposedProduct<Exact> transposed_;
   std::unique_ptr<TreeSolver<Mass>> mass_solver_, acceleration_solver_;
   std::unique_ptr<TreeSolver<Exact>> full_solver_, coupled_solver_;
+  std::unique_ptr<TreeSolver<Exact>> transposed_solver_;  // made on first use
+  double t_transposed_ = 0;
+  std::vector<double> q_transposed_, v_transposed_, a_transposed_, product_a_;
+  std::vector<Vec3<Pack>> u_;    // of points for v = mu, in components of the starts
+  std::vector<double> u_world_;  // likewise, of power_of_loads()
+  bool loads_placed_ = false;    // u_world_ and points are those of u_
   bool full_in_use_ = false, swept_ = false;
-  Weights weights_;
+  Weights weights_, transposed_weights_;
   Status factored_ = Status::retry;
   std::vector<double> zero_, scratch_, by_position_, by_velocity_, by_direction_,
       by_state_, v_factored_;

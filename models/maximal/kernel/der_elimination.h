@@ -248,6 +248,27 @@ struct DerExactElimination {
     f_x = f_x - by * f.x_sigma - f.to_x * f.own;
     f_omega = Vec{} - f.to_turn * f.own;
   }
+
+  /// reduce() for the transposed matrix.
+  static void reduce_transposed(const Placed& e, Factor& f, const Vec& force,
+                                const Vec& moment, const T& tension, Vec& f_x,
+                                Vec& f_omega) {
+    f_x = f_x + force;
+    const T f1 = e.length * dot(e.frame.e1, f_x), f2 = e.length * dot(e.frame.e2, f_x);
+    f.own_sigma = dot(e.frame.e0, f_x) + tension;
+    const T by = f.by * f.own_sigma;
+    f.own = f_omega + moment + Vec{T(0), -f2, f1} - by * f.sigma_omega;
+    f_x = f_x - by * f.sigma_x - f.of_x.back(f.own);
+    f_omega = f.of_turn.back(f.own);
+  }
+  /// der_change() for the transposed matrix.
+  static DerChange<T> change_transposed(const Placed& e, const Factor& f, bool first,
+                                        const Vec& x, const Vec& before) {
+    Vec own = f.own - f.to_x.back(x);
+    if (!first) own = own - f.to_turn.back(e.turn.back(before));
+    own = f.pivot.back(own);
+    return {own, f.by * (f.own_sigma - dot(f.x_sigma, x) - dot(f.omega_sigma, own))};
+  }
 };
 
 }  // namespace tress::models

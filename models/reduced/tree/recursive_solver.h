@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
+#include "models/reduced/tree/transposed_tangent.h"
 #include "models/reduced/tree/tree_solver.h"
 
 namespace tress::models {
@@ -79,6 +82,17 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     return Status::ok;
   }
 
+  bool solve_transposed(In b, Out x) noexcept override {
+    if constexpr (transposes) {
+      if (growth_ > most_growth) {
+        refine_transposed(b, x);
+      } else {
+        sweep_transposed(b, x);
+      }
+    }
+    return transposes;
+  }
+
   bool respond(std::span<const Load> loads, Out blocks) noexcept override {
     if constexpr (Shape::symmetric && method == TreeMethod::recursive) {
       return respond_of_chain(loads, blocks);
@@ -91,6 +105,8 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   // A loss of up to two digits is accepted: of exact Jacobians it occurs in a third to
   // two thirds of the states of hard cases, and does not affect Newton's iteration.
   static constexpr bool refines = !Shape::symmetric || method == TreeMethod::recursive;
+  static constexpr bool transposes =
+      method == TreeMethod::recursive && std::is_same_v<Real, double>;
   static constexpr double most_growth = 100, most_of_one_sweep = 1e6;
   static constexpr int states = Shape::states, wrench = Shape::wrench, n = Shape::dofs;
   using Articulated = Eigen::Matrix<Real, wrench, states>;
@@ -151,6 +167,63 @@ class RecursiveSolver final : public TreeSolver<Shape> {
       subtract_product(e.z, s, part<n, 1>(moved, states, 0));
       for (int k = 0; k < n; ++k) x[at(i, k)] = moved[states + k];
       multiply<1, false>(tangent.segments[i].transfer, moved, hanging_[i].state);
+    }
+  }
+
+  /// The steps of sweep() transposed, in reverse order: loads become states, and states
+  /// loads.
+  void sweep_transposed(In b, Out x) noexcept {
+    const TreeTangent<Shape>& tangent = *tangent_;
+    for (Hanging& hanging : hanging_) hanging.state.setZero();
+    State at_start = State::Zero();
+    for (std::size_t i = hanging_.size(); i-- > 0;) {
+      Eliminated& e = eliminated_[i];
+      Eigen::Matrix<Real, Shape::columns, 1> moved;
+      moved.noalias() = tangent.segments[i].transfer.transpose() * hanging_[i].state;
+      for (int k = 0; k < n; ++k) e.u[k] = b[at(i, k)] + moved[states + k];
+      const int parent = tangent.parent[i];
+      State& onto =
+          parent < 0 ? at_start : hanging_[static_cast<std::size_t>(parent)].state;
+      onto += moved.template head<states>();
+      onto.noalias() -= e.z.transpose() * e.u;
+    }
+    Wrench at_root = Wrench::Zero();
+    if (tangent.free_root) {
+      const std::size_t first = Shape::dofs * hanging_.size();
+      const Eigen::Matrix<double, 6, 1> right =
+          Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) +
+          tangent.root.transfer.transpose() * at_start;
+      Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
+      y = root_.transpose().solve(right);
+      at_root.noalias() -= tangent.root.lift.transpose() * y;
+    }
+    for (std::size_t i = 0; i < hanging_.size(); ++i) {
+      const int parent = tangent.parent[i];
+      const Wrench& onto =
+          parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load;
+      const Eliminated& e = eliminated_[i];
+      Eigen::Matrix<Real, Shape::rows, 1> rows;
+      rows.template head<wrench>() = onto;
+      Dofs rest;
+      rest.noalias() = e.inverse.transpose() * e.u;
+      rest.noalias() += e.response.transpose() * onto;
+      rows.template tail<n>() = -rest;
+      for (int k = 0; k < n; ++k) x[at(i, k)] = rest[k];
+      hanging_[i].load.noalias() = tangent.segments[i].lift.transpose() * rows;
+    }
+  }
+
+  /// refine() for S^T.
+  void refine_transposed(In b, Out x) noexcept {
+    for (auto* values : {&b_, &left_, &correction_}) values->resize(b.size());
+    std::ranges::copy(b, b_.begin());
+    sweep_transposed(b_, x);
+    for (const double most : {most_growth, most_of_one_sweep}) {
+      if (growth_ <= most) return;
+      product_.compute(*tangent_, x, left_);
+      for (std::size_t k = 0; k < left_.size(); ++k) left_[k] = b_[k] - left_[k];
+      sweep_transposed(left_, correction_);
+      for (std::size_t k = 0; k < correction_.size(); ++k) x[k] += correction_[k];
     }
   }
 
@@ -389,6 +462,10 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Eigen::Matrix<Real, states, 3>> reached_;  // scratch of respond()
   double growth_ = 0;  // largest product of a pivot's inverse and the terms that it sums
   std::vector<Real> b_, left_, correction_;  // scratch of refine()
+  /// For refine_transposed().
+  [[no_unique_address]] std::conditional_t<transposes, TransposedProduct<Shape>,
+                                           std::monostate>
+      product_;
 };
 
 }  // namespace tress::models

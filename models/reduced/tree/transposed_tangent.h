@@ -9,7 +9,9 @@ namespace tress::models {
 
 /// x = S^T mu for the S of a TreeTangent without couplings: the sweeps of its product in
 /// reverse. Wrenches hang on the starts of segments in S, states are passed to their
-/// tips; transposed, it is the other way round. O(segments).
+/// tips; transposed, it is the other way round. O(segments). What the sweeps leave at the
+/// segments and the root does not depend on the weights of S: the columns of unknowns
+/// for other weights give the products with these.
 template <class Shape>
 class TransposedProduct {
  public:
@@ -18,48 +20,63 @@ class TransposedProduct {
     const std::size_t root = Shape::dofs * tangent.segments.size();
     by_tip_.resize(tangent.segments.size());
     by_state_.assign(tangent.segments.size(), State::Zero());
-    Wrench of_root = Wrench::Zero();
-    State at_root = State::Zero();
-    Eigen::Matrix<double, 6, 1> mu_root = Eigen::Matrix<double, 6, 1>::Zero();
+    of_root_.setZero();
+    at_root_.setZero();
     if (tangent.free_root) {
-      mu_root = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&mu[root]);
-      of_root.noalias() = tangent.root.lift.transpose() * mu_root;
+      of_root_.noalias() =
+          tangent.root.lift.transpose() * Eigen::Map<const OfRoot>(&mu[root]);
     }
+    rows_.resize(by_tip_.size());
     for (std::size_t i = 0; i < by_tip_.size(); ++i) {
-      by_tip_[i].noalias() =
-          tangent.segments[i].lift.transpose() * rows(tangent, i, of_root, mu);
+      rows_[i] = rows(tangent, i, mu);
+      by_tip_[i].noalias() = tangent.segments[i].lift.transpose() * rows_[i];
     }
     for (std::size_t i = by_tip_.size(); i-- > 0;) {
       const SegmentTangent<Shape>& segment = tangent.segments[i];
       by_state_[i].noalias() += segment.tip.transpose() * by_tip_[i];
       Eigen::Matrix<double, Shape::columns, 1> all;
-      all.noalias() = segment.local.transpose() * rows(tangent, i, of_root, mu);
+      all.noalias() = segment.local.transpose() * rows_[i];
       all.noalias() += segment.transfer.transpose() * by_state_[i];
       for (int k = 0; k < Shape::dofs; ++k) {
         x[Shape::dofs * i + static_cast<std::size_t>(k)] = all[Shape::states + k];
       }
       const int parent = tangent.parent[i];
-      State& start = parent < 0 ? at_root : by_state_[static_cast<std::size_t>(parent)];
+      State& start = parent < 0 ? at_root_ : by_state_[static_cast<std::size_t>(parent)];
       start += all.template head<Shape::states>();
     }
     if (!tangent.free_root) return;
-    Eigen::Map<Eigen::Matrix<double, 6, 1>> x_root(&x[root]);
-    x_root.noalias() = tangent.root.local.transpose() * mu_root;
-    x_root.noalias() += tangent.root.transfer.transpose() * at_root;
+    compute_root(tangent.root, mu.subspan(root), x.subspan(root));
+  }
+  /// Writes the product of the root's unknowns with a matrix for other weights, after
+  /// compute().
+  void compute_root(const RootTangent<Shape>& root, In mu, Out x) const {
+    Eigen::Map<OfRoot> to(x.data());
+    to.noalias() = root.local.transpose() * Eigen::Map<const OfRoot>(mu.data());
+    to.noalias() += root.transfer.transpose() * at_root_;
   }
 
- private:
+  /// State of a tip, and a segment's wrench and equations.
   using State = Eigen::Matrix<double, Shape::states, 1>;
   using Wrench = Eigen::Matrix<double, Shape::wrench, 1>;
   using Rows = Eigen::Matrix<double, Shape::rows, 1>;
+  /// Returns what compute() found for the state of the tip of segment i.
+  const State& by_state(std::size_t i) const { return by_state_[i]; }
+  /// Returns what compute() found for the wrench on the tip of segment i.
+  const Wrench& by_tip(std::size_t i) const { return by_tip_[i]; }
+  /// Returns what compute() found for the wrench on the root.
+  const Wrench& by_root() const { return of_root_; }
+  /// Returns what compute() found for the rows [w; r] of segment i.
+  const Rows& rows(std::size_t i) const { return rows_[i]; }
+
+ private:
+  using OfRoot = Eigen::Matrix<double, 6, 1>;
 
   /// Derivatives by the wrench at a segment's start and by its own equations.
-  Rows rows(const TreeTangent<Shape>& tangent, std::size_t i, const Wrench& of_root,
-            In mu) const {
+  Rows rows(const TreeTangent<Shape>& tangent, std::size_t i, In mu) const {
     Rows all;
     const int parent = tangent.parent[i];
     all.template head<Shape::wrench>() =
-        parent < 0 ? of_root : by_tip_[static_cast<std::size_t>(parent)];
+        parent < 0 ? of_root_ : by_tip_[static_cast<std::size_t>(parent)];
     for (int k = 0; k < Shape::dofs; ++k) {
       all[Shape::wrench + k] = mu[Shape::dofs * i + static_cast<std::size_t>(k)];
     }
@@ -68,6 +85,9 @@ class TransposedProduct {
 
   std::vector<Wrench> by_tip_;   // of each segment: by the wrench on its tip
   std::vector<State> by_state_;  // of each segment: by the state of its tip
+  std::vector<Rows> rows_;       // of each segment
+  State at_root_;                // by the state of the root
+  Wrench of_root_;               // by the wrench on the root
 };
 
 }  // namespace tress::models

@@ -32,6 +32,9 @@ class TreeSolver {
   virtual Status factor(const TreeTangent<Shape>& tangent) noexcept = 0;
   /// Solves S x = b with the last factors. b and x may be the same.
   virtual Status solve(In b, Out x) noexcept = 0;
+  /// Solves S^T x = b with the last factors. Returns false where the solver does not;
+  /// `recursive` does.
+  virtual bool solve_transposed(In /*b*/, Out /*x*/) noexcept { return false; }
 
   /// Loads on the tip of a segment (-1: on the root).
   struct Load {
