@@ -9,6 +9,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/run/message.h"
+#include "simulation/errors/halved_step.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/gradient/scene_gradient.h"
@@ -38,6 +39,7 @@ const char* status_at(const StrandGradient& strand, std::size_t frame) {
 std::string table_of(const Scene& scene, const SceneGradient& gradient,
                      const SceneGradient& finer) {
   const GradientOf of = gradient_of(scene.tables->gradient->values().word("of"));
+  const double over_change = error_over_change(scene);
   std::string text = csv_line(
       std::vector<std::string>{"strand", "point", "time_s", "component", "by", "unit",
                                "derivative", "relative", "time_error", "status"});
@@ -61,7 +63,9 @@ std::string table_of(const Scene& scene, const SceneGradient& gradient,
               std::to_string(k), std::to_string(i / 3),
               fmt::format("{:.9g}", scene.time_of(f)), std::string(1, "xyz"[i % 3]),
               by.name, "m/(" + by.unit + ")", fmt::format("{:.9g}", derivative), relative,
-              fmt::format("{:.3g}", std::abs(derivative - other.by[j][f][i])), status});
+              fmt::format("{:.3g}",
+                          over_change * std::abs(derivative - other.by[j][f][i])),
+              status});
         }
       }
     }
@@ -73,7 +77,8 @@ double size_of_tip(const std::vector<double>& x) {
   return std::hypot(x[x.size() - 3], x[x.size() - 2], x[x.size() - 1]);
 }
 
-/// "1 % of youngs_modulus_pa moves it by 0.12 mm", of the last tip.
+/// "1 % of youngs_modulus_pa moves it by 0.12 mm" and its estimated error, of the last
+/// tip.
 void tell_parameter(const Scene& scene, const SceneGradient& gradient,
                     const SceneGradient& finer, std::size_t j) {
   const SceneParameter& by = gradient.parameters[j];
@@ -88,10 +93,10 @@ void tell_parameter(const Scene& scene, const SceneGradient& gradient,
   const std::string of =
       by.value != 0 ? "1 % of " + by.name : fmt::format("1 {} of {}", by.unit, by.name);
   tell(
-      "simulate: {}: gradient: {} moves the tip by {:.3g} mm at {:g} s; half the step "
-      "changes that by {:.2g} %\n",
+      "simulate: {}: gradient: {} moves the tip by {:.3g} mm at {:g} s; estimated error "
+      "in time {:.2g} %\n",
       scene.name, of, mm * change * size, scene.time_of(f),
-      size > 0 ? size_of_tip(apart) / size / percent : 0.0);
+      size > 0 ? error_over_change(scene) * size_of_tip(apart) / size / percent : 0.0);
 }
 
 void warn_of_contact(const Scene& scene, const SceneGradient& gradient) {

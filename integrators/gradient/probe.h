@@ -13,7 +13,11 @@ namespace tress::integrators {
 /// A state away from the initial one, by parts of the typical sizes that differ from
 /// coordinate to coordinate.
 struct Probe {
-  explicit Probe(System& system)
+  using Values = std::vector<std::vector<double>>;
+  static constexpr double near_start = 0.02;
+
+  /// `reach`: largest part of a typical size.
+  explicit Probe(System& system, double reach = near_start)
       : q(static_cast<std::size_t>(system.layout().coordinates)),
         v(q),
         a(q),
@@ -22,7 +26,7 @@ struct Probe {
     system.initial_state(q, v);
     system.scale(q_typ, v_typ);
     for (std::size_t i = 0; i < q.size(); ++i) {
-      const double part = 0.02 * std::sin(1 + 2.7 * static_cast<double>(i));
+      const double part = reach * std::sin(1 + 2.7 * static_cast<double>(i));
       q[i] += part * q_typ[i];
       v[i] += 5 * part * v_typ[i];
       a[i] = 7 * part * v_typ[i] * v_typ[i] / q_typ[i];
@@ -32,11 +36,11 @@ struct Probe {
 
   /// All that may depend on a parameter: the start, then residuals, points and
   /// constraints. NaN where a residual is not finite.
-  std::vector<std::vector<double>> of(System& system) const {
-    std::vector<std::vector<double>> all(2, std::vector<double>(q.size()));
+  Values of(System& system, In times = probed_times) const {
+    Values all(2, std::vector<double>(q.size()));
     system.initial_state(all[0], all[1]);
     MaterialPoints* points = system.material_points();
-    for (const double t : probed_times) {
+    for (const double t : times) {
       std::vector<double> r(q.size());
       if (system.residual(t, q, v, a, r) != Status::ok) r.assign(q.size(), std::nan(""));
       all.push_back(std::move(r));
@@ -59,13 +63,14 @@ struct Probe {
   }
 };
 
-/// The points at a state, at several times.
+/// The points at a state, at several times; empty of a system that has none.
 inline std::vector<double> points_at(System& system, In q) {
-  MaterialPoints& points = *system.material_points();
+  MaterialPoints* const points = system.material_points();
   std::vector<double> all;
+  if (points == nullptr) return all;
   for (const double t : probed_times) {
-    std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
-    points.positions(t, q, x);
+    std::vector<double> x(3 * static_cast<std::size_t>(points->count()));
+    points->positions(t, q, x);
     all.insert(all.end(), x.begin(), x.end());
   }
   return all;

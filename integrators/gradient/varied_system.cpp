@@ -10,6 +10,16 @@
 namespace tress::integrators {
 namespace {
 
+using Values = Probe::Values;
+constexpr double far_away = 0.3;  // reach of a probe
+
+bool all_affine(const Values& at_0, const Values& at_half, const Values& at_1) {
+  for (std::size_t i = 0; i < at_0.size(); ++i) {
+    if (!affine(at_0[i], at_half[i], at_1[i])) return false;
+  }
+  return true;
+}
+
 bool same(const std::vector<double>& x, const std::vector<double>& y) {
   constexpr double rounding = 1e-14;
   double size = 0, apart = 0;
@@ -82,6 +92,21 @@ std::optional<SimpleDerivative> simple_derivative(System& at_0, System& far,
   return holds ? std::optional(simple) : std::nullopt;
 }
 
+/// At the states of varied_system(), of systems at s = 0, 1/8 and 1/4.
+bool is_affine(System& system, System& middle, System& far) {
+  const Probe start(system);
+  const Values here = start.of(system), there = start.of(far);
+  // A parameter that does not act at these states, of what is not touched yet, may be
+  // anything.
+  if (here == there || !same(points_at(far, start.q), points_at(system, start.q))) {
+    return false;
+  }
+  if (!all_affine(here, start.of(middle), there)) return false;
+  const Probe away(system, far_away);
+  const In once(&probed_times[2], 1);
+  return all_affine(away.of(system, once), away.of(middle, once), away.of(far, once));
+}
+
 }  // namespace
 
 std::vector<double> natural_direction(System& system, const RunParameter& parameter) {
@@ -120,25 +145,15 @@ std::vector<double> natural_direction(System& system, const RunParameter& parame
 
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory) {
-  VariedSystem varied{central_stencil, {}, {}};
-  if (system.history() == nullptr || memory == VariedMemory::of_run) {
-    const Probe probe(system);
+  VariedSystem varied{
+      central_differences(parameter.places.value_or(central_distance)), {}, {}};
+  const bool own_history = system.history() != nullptr && memory == VariedMemory::own;
+  if (!parameter.places && !own_history) {
     auto far = parameter(affine_stencil.at[0]);
-    const auto middle = parameter(affine_stencil.at[0] / 2);
-    const auto at_0 = probe.of(system), at_half = probe.of(*middle),
-               at_1 = probe.of(*far);
-    // A parameter that does not act at these states, of what is not touched yet, may be
-    // anything.
-    bool all_affine =
-        at_0 != at_1 && (system.contact_form() == nullptr ||
-                         points_at(system, probe.q) == points_at(*far, probe.q));
-    for (std::size_t i = 0; i < at_0.size(); ++i) {
-      all_affine = all_affine && affine(at_0[i], at_half[i], at_1[i]);
-    }
-    if (all_affine) {
+    if (is_affine(system, *parameter(affine_stencil.at[0] / 2), *far)) {
       varied.stencil = affine_stencil;
       if (system.layout().constraints == 0) {
-        varied.simple = simple_derivative(system, *far, probe);
+        varied.simple = simple_derivative(system, *far, Probe(system));
       }
       varied.systems.push_back(std::move(far));
       return varied;

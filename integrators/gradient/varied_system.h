@@ -12,33 +12,34 @@ namespace tress::integrators {
 
 /// A parameter of a system as a number s, which is 0 in the system itself. Returns the
 /// system at s, |s| <= 1/4, whose linearize() is that of its residual.
-using RunParameter = std::function<std::unique_ptr<System>(double s)>;
+struct RunParameter : std::function<std::unique_ptr<System>(double s)> {
+  using function::function;
+  /// Distance of its central differences in s where it places points, bodies or targets,
+  /// whose forces may begin and end at any place. Empty: it is of another kind.
+  std::optional<double> places = {};
+};
 
 /// f'(0) = base f(0) + sum_i weight_i f(at_i).
 struct Stencil {
-  double base = 0;                     // weight of f(0)
-  std::span<const double> at, weight;  // distances, and weights of the values there
+  double base = 0;                 // weight of f(0)
+  std::vector<double> at, weight;  // distances, and weights of the values there
 };
 
-/// Distance and weight of the affine stencil, exact of affine functions.
-inline constexpr double affine_at[] = {0.25}, affine_weight[] = {4};
-/// Stencil for affine functions.
-inline constexpr Stencil affine_stencil{-4, affine_at, affine_weight};
+/// Stencil that is exact of affine functions.
+inline const Stencil affine_stencil{-4, {0.25}, {4}};
 
 /// Central differences of order 4 at the distance d. Their error is d^4/30 f''''' and,
 /// from rounding, 1.5e-16/d |f|. It is below 1e-10 f' also where stretching makes f'''''
 /// 4e12 times f' (edges of a hair, whose axial stiffness is 4e6 of its bending
 /// stiffness).
 inline constexpr double central_distance = 3e-6;
-/// Distances of the central stencil.
-inline constexpr double central_at[] = {-2 * central_distance, -central_distance,
-                                        central_distance, 2 * central_distance};
-/// Weights of the central stencil.
-inline constexpr double central_weight[] = {
-    1 / (12 * central_distance), -8 / (12 * central_distance),
-    8 / (12 * central_distance), -1 / (12 * central_distance)};
-/// Stencil of central differences.
-inline constexpr Stencil central_stencil{0, central_at, central_weight};
+/// Stencil of central differences at distances d and 2 d.
+inline Stencil central_differences(double d) {
+  const double part = 1 / (12 * d);
+  return {0, {-2 * d, -d, d, 2 * d}, {part, -8 * part, 8 * part, -part}};
+}
+/// That at central_distance.
+inline const Stencil central_stencil = central_differences(central_distance);
 
 /// s. Motions of roots, of periods and durations from milliseconds to seconds, are not at
 /// rest at all of these times.
@@ -62,11 +63,12 @@ struct VariedSystem {
 /// itself (`of_run`).
 enum class VariedMemory { own, of_run };
 
-/// With the affine stencil where residual, start and points are affine in s: measured at
-/// one state, in which all terms are alive, and several times. Never of systems with a
-/// History of their own, which makes the residual depend on the states behind it. The
-/// laws of exact contact are not affine in what moves the points. `simple` is measured at
-/// three such states and tried at a fourth one.
+/// With the affine stencil where residual and start are affine in s: measured near the
+/// start, where all terms of the strand are alive, at several times, and once far away.
+/// Never of what moves points or RunParameter::places, since forces that depend on a
+/// place may begin to act later and are not affine in it. Never of systems with a History
+/// of their own, which makes the residual depend on the states behind it. `simple` is
+/// measured at three states near the start and tried at a fourth one.
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory = VariedMemory::own);
 

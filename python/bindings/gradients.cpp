@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "python/bindings/owned_system.h"
+#include "simulation/errors/halved_step.h"
 #include "simulation/fit/scene_fit.h"
 #include "simulation/gradient/linearized_step.h"
 #include "simulation/gradient/scene_gradient.h"
@@ -106,7 +107,8 @@ py::dict gradient(const Scene& scene, bool tip, const Names& names,
                   py::arg("names") = names_of(task.parameters),
                   py::arg("units") = units_of(task.parameters),
                   py::arg("parameters") = values_of(task.parameters),
-                  py::arg("damped") = task.damped, py::arg("moved") = moved);
+                  py::arg("damped") = task.damped, py::arg("moved") = moved,
+                  py::arg("error_over_change") = error_over_change(scene));
 }
 
 py::dict step_matrices(const Scene& scene, std::size_t strand, double t,

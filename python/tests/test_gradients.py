@@ -65,7 +65,6 @@ class Gradients(unittest.TestCase):
         self.assertTrue(found.damped)
         self.assertEqual(found.status, "ok")
         self.assertEqual(found.parameters[1], 1e-4)
-        # Half the step of a method of order 2 changes a derivative by a part of it.
         self.assertGreater(found.time_error.max(), 0)
         self.assertLess(found.time_error[..., 1].max(), 0.1 * abs(found.jacobian[..., 1]).max())
         self.assertAlmostEqual(

@@ -30,7 +30,7 @@ class Gradient:
     # Largest distance, over the length of the strand, of the points of a run with a
     # tolerance from those of the run with its accepted steps frozen.
     moved: float = 0.0
-    # (F, P, 3, K) change of jacobian with half the step; None: not asked for
+    # (F, P, 3, K) estimated error of jacobian in time; None: not asked for
     time_error: np.ndarray = None
 
     def by(self, name):
@@ -83,7 +83,7 @@ def gradient(scene, of, by, start, time_errors):
         _one_of("start", start, ("auto", "damped", "as_run"))
     names = None if by is None else _names(by)
     found = _core.gradient(scene._core, of == "tip", names, start, 1)
-    strands = found.pop("strands")
+    strands, over_change = found.pop("strands"), found.pop("error_over_change")
     changes = np.any([near for _, _, _, near in strands], axis=0)
     rough = any(reason for _, _, reason, _ in strands)
     result = Gradient(
@@ -97,7 +97,7 @@ def gradient(scene, of, by, start, time_errors):
     if time_errors:
         finer = _core.gradient(scene._core, of == "tip", names, start, 2)["strands"]
         other = np.concatenate([s[1] for s in finer], axis=1)
-        result.time_error = np.abs(result.jacobian - other)
+        result.time_error = over_change * np.abs(result.jacobian - other)
     return result
 
 

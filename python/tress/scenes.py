@@ -139,7 +139,7 @@ class Scene:
             None: those of the scene's own [gradient].
         start: "auto", "damped" or "as_run", as in [gradient]; None: the scene's own, or
             "auto".
-        time_errors: runs again with half the step, for ``Gradient.time_error``.
+        time_errors: runs again with half the step to estimate ``Gradient.time_error``.
 
         InputError names a parameter that is none, or the reason why the run has no
         derivatives. A step without a solution raises SolveError.

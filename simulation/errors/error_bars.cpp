@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "contract/input_error.h"
-#include "integrators/catalogue.h"
+#include "simulation/errors/halved_step.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
@@ -231,10 +231,7 @@ Scene finer_in_time(Scene scene) {
 
 double time_factor(const Scene& scene) {
   // The finer run is without an error of its own beside that of the given scene.
-  if (scene.chooses_steps()) return 1;
-  const IntegratorEntry& method = find_integrator(scene.integrator);
-  const double ratio = std::pow(2, *method.order(scene.options.formulation));
-  return ratio / (ratio - 1);
+  return scene.chooses_steps() ? 1 : error_over_change(scene);
 }
 
 }  // namespace

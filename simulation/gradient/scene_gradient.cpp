@@ -43,6 +43,17 @@ double farthest(const std::vector<double>& x, const std::vector<double>& y) {
   return most;
 }
 
+/// Of a parameter that places something. Hair at rest sinks into a compliant body by 6e-5
+/// of its length, and the differences must not take points into or out of contact.
+/// Positions are rounded at 1e-16 of the length, frames several times at 1e-16.
+double distance_of_places(const Scene& scene, std::size_t strand,
+                          const SceneParameter& parameter) {
+  constexpr double part_of_length = 2e-9, turn = 1e-8;  // turn: rad
+  const bool turns = parameter.unit == "rad";
+  const double change = turns ? turn : part_of_length * scene.strands[strand].length();
+  return std::min(integrators::central_distance, change / parameter.measure);
+}
+
 GradientRun::Method method_of(const Scene& scene, bool with_damping) {
   GradientRun::Method method{.id = scene.integrator, .options = scene.options};
   method.start = with_damping ? GradientStart::damped : GradientStart::as_run;
@@ -202,6 +213,9 @@ std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
       parameter.change(changed, s);
       return exact_system_of(changed, strand);
     });
+    if (parameter.places) {
+      all.back().places = distance_of_places(scene, strand, parameter);
+    }
   }
   return all;
 }

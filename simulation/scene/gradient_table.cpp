@@ -98,6 +98,9 @@ constexpr OfShape of_shapes[] = {
 
 constexpr std::string_view of_roots[] = {"root_angle_rad", "root_position_m"};
 
+/// Whether a number of a root or an effect in this unit is a length or an angle.
+bool places(std::string_view unit) { return unit == "m" || unit == "rad"; }
+
 /// Numbers of a scene that have no derivative here, and why.
 struct Refused {
   std::string_view name, reason, remedy;
@@ -220,6 +223,7 @@ class Finder {
                       move(strand.free_root->position, strand.free_root->frame);
                     }
                   }});
+    to.back().places = true;
     return true;
   }
 
@@ -247,7 +251,7 @@ class Finder {
                     }
                     scene.tables = std::move(tables);
                   },
-                  of.positive, of.min, of.max});
+                  of.positive, of.min, of.max, places(of.unit)});
     return true;
   }
 
@@ -266,7 +270,7 @@ class Finder {
                     EffectChoice& changed = scene.effects[i];
                     changed.parameters.set(of.key, of.text(changed.parameters, s));
                   },
-                  of.positive, of.min, of.max});
+                  of.positive, of.min, of.max, places(of.unit)});
     return true;
   }
 

@@ -61,6 +61,9 @@ struct SceneParameter {
   bool positive = false;  // a number above 0, which a fit changes in proportion
   double min = -std::numeric_limits<double>::infinity();  // least value of its key
   double max = std::numeric_limits<double>::infinity();   // largest value of its key
+  /// Whether it places points, bodies or targets: lengths and angles of [root] and of
+  /// effects.
+  bool places = false;
 };
 
 /// Returns the parameters that the scene's [gradient] names. Throws InputError with its

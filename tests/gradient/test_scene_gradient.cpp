@@ -319,6 +319,34 @@ TEST(SimulateGradient, RefusesATableThatIsTooLargeBeforeItRuns) {
       << run.err;
 }
 
+// Richardson's estimates: 2 times the change of methods of order 1, 4/3 times that of
+// methods of order 2. The column has 3 digits.
+TEST(SimulateGradient, EstimatesTheErrorInTimeByTheOrderOfTheMethod) {
+  for (const auto& [method, factor] :
+       {std::pair("backward_euler", 2.0), {"tr_bdf2", 4.0 / 3}}) {
+    Toy simulate;
+    std::string text = scene_text("[gradient]\nby = [\"linear_drag.drag_kg_m_s\"]\n");
+    text.replace(text.find("tr_bdf2"), 7, method);
+    simulate.write("s.toml", text);
+    const Toy::Result run = simulate.run("s.toml --gradient --out out --progress none");
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_NE(run.err.find("; estimated error in time "), std::string::npos) << run.err;
+    const Scene scene = parse_scene(text, "s.toml");
+    const auto x_of_last_tip = [&](int parts) {
+      const StrandGradient found = scene_gradient(scene, parts).strands.front();
+      return found.by[0].back().end()[-3];
+    };
+    const double change = std::abs(x_of_last_tip(1) - x_of_last_tip(2));
+    const std::string table = simulate.read("out/s.gradient.csv");
+    const std::size_t row = table.find("0,5,0.1,x,");
+    ASSERT_NE(row, std::string::npos);
+    std::istringstream entries(table.substr(row));
+    std::string entry;
+    for (int i = 0; i < 9; ++i) std::getline(entries, entry, ',');
+    EXPECT_NEAR(std::stod(entry), factor * change, 6e-3 * factor * change) << method;
+  }
+}
+
 TEST(SimulateGradient, WritesTheTableAndSaysWhatAPercentDoes) {
   Toy simulate;
   const std::string text =
