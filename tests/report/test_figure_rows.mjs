@@ -21,7 +21,7 @@ import { calibrate_points } from '../../experiments/report/figures/calibrate_poi
 import { divided_heads } from '../../experiments/report/figures/divided_heads.mjs';
 import { damping } from '../../experiments/report/figures/damping.mjs';
 import { hard_rows, judged, not_compared } from '../../experiments/report/src/hard.mjs';
-import { work_findings } from '../../experiments/report/src/findings/work.mjs';
+import { order_table, work_findings } from '../../experiments/report/src/findings/work.mjs';
 import { outcome_text } from '../../experiments/report/src/outcome.mjs';
 import { stability_findings } from '../../experiments/report/src/findings/stability.mjs';
 
@@ -188,7 +188,7 @@ test('StableWithoutAReference_HasAMarkOfItsOwn', () => {
   assert.deepEqual(hard_cases.rows(tables).map((row) => row.letter), ['N', 'S', 'A']);
 });
 
-test('AShortenedCase_CountsOnlyWhereItWasRunWhole', () => {
+test('AShortenedCase_CountsWhereItWasRunWholeOrFails', () => {
   const long = (more) => hard_run({ case: 'million_steps', steps: 5000, error_rel: 0.2, ...more });
   const tables = {
     hard_cases: [long(), long({ dt_s: 1 / 30 }), hard_run({ error_rel: 0.1 }), hard_run({ dt_s: 1 / 30, error_rel: 0.1 })],
@@ -200,6 +200,13 @@ test('AShortenedCase_CountsOnlyWhereItWasRunWhole', () => {
   );
   assert.match(hard_findings(tables)[0], /survives 1 of the 1 cases/);
   assert.ok(hard_cases.rows(tables).some((row) => row.situation === 'million steps, cut to 5000'));
+  const failed = { ...tables, hard_cases: tables.hard_cases.map((row) => ({ ...row, outcome: 'unstable' })) };
+  assert.deepEqual(
+    judged(failed).filter((row) => row.case === 'million_steps').map((row) => [row.dt_s, row.cut]).sort((a, b) => a[0] - b[0]),
+    [[1e-3, 0], [1 / 30, 5000]],
+    'a run that fails within its first 5000 steps counts, once',
+  );
+  assert.match(hard_findings(failed)[0], /survives 0 of the 2 cases/);
   const whole = { hard_cases: [long({ steps: 1e6 })] };
   assert.equal(judged(whole).length, 1, 'a table that was run whole is not cut');
 });
@@ -232,6 +239,18 @@ test('Damping_KeepsTheSign', () => {
   assert.deepEqual(damping.rows(tables).map(({ sign }) => sign), ['lost', 'gained']);
   const { concat } = damping.spec(tables, { width: 1000, theme: paper_theme });
   assert.deepEqual(concat.map(({ title }) => title), ['der: energy lost', 'der: energy gained']);
+});
+
+test('Orders_IncludeNegativeOnes', () => {
+  const row = { error_kind: 'time', integrator: 'tr_bdf2', status: 'ok', wall_s_per_sim_s: 1, error_rel: 1e-3 };
+  const tables = {
+    work_precision: [['beam', 2], ['crank', -0.56], ['dahlquist', 1.9], ['oregonator', 1]].map(([scene, order_fit]) => ({
+      ...row,
+      scene,
+      order_fit,
+    })),
+  };
+  assert.deepEqual(order_table(tables), [['tr_bdf2', 4, '1.45', '-0.56 (crank)', '2.00 (beam)']]);
 });
 
 test('Cheapest_NamesItsField', () => {

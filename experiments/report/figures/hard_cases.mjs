@@ -9,6 +9,7 @@ import { row_channel } from './rows.mjs';
 import {
   best_variants,
   hard_rows,
+  judged,
   not_compared,
   outcome_words,
   outcomes,
@@ -16,15 +17,18 @@ import {
   survives,
 } from '../src/hard.mjs';
 
-const rows_of = (tables) =>
-  best_variants(hard_rows(tables).filter((row) => is_number(row.dt_s))).map((row) => ({
-    ...row,
-    name: spaced(row.model),
-    situation: spaced(row.case) + (row.cut > 0 ? `, cut to ${row.cut}` : ''),
-    letter: outcomes[rank(row)][1],
-    step: pace(row),
-    error_pct: is_number(row.error_rel) ? 100 * row.error_rel : null,
-  }));
+const drawn = (rows) =>
+  rows
+    .filter((row) => is_number(row.dt_s))
+    .map((row) => ({
+      ...row,
+      name: spaced(row.model),
+      situation: spaced(row.case) + (row.cut > 0 ? `, cut to ${row.cut}` : ''),
+      letter: outcomes[rank(row)][1],
+      step: pace(row),
+      error_pct: is_number(row.error_rel) ? 100 * row.error_rel : null,
+    }));
+const rows_of = (tables) => drawn(best_variants(hard_rows(tables)));
 
 // What a tolerance survives, over all models.
 const tolerance_findings = (rows, admitted) =>
@@ -42,7 +46,7 @@ const tolerance_findings = (rows, admitted) =>
   );
 
 export function hard_findings(tables) {
-  const rows = rows_of(tables).filter((row) => row.cut === 0);
+  const rows = drawn(judged(tables));
   if (rows.length === 0) return [];
   const fixed = rows.filter((row) => !by_tolerance(row));
   const longest = Math.max(...fixed.map((row) => row.dt_s));

@@ -122,7 +122,7 @@ def nominal(tables):
     rows = winners(tables, _TARGET)
     errors = rows["error_neighbours_rel"][known(rows["error_neighbours_rel"])]
     return ("These errors are nominal. With elements added, other steps, or length and modulus changed by 2 %, "
-            f"{(errors > _TARGET).sum()} of {len(errors)} winners exceed 1 %, by up to {percent(errors.max())}")
+            f"{(errors > _TARGET).sum()} of {len(errors)} winners exceed 1 %; the largest of their errors is {percent(errors.max())}")
 
 
 def step_rule(tables):

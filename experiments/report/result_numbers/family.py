@@ -1,5 +1,4 @@
 """Statements about one hair, tested on a family of hairs."""
-import math
 
 from .tables import first, groups, records
 from .words import is_number, number, percent, plain, spaced, table
@@ -161,10 +160,10 @@ def equal_curly_wind(tables):
 
 def gravito_bending(tables):
     """Returns percentiles of the gravito-bending number over the hairs."""
-    values = sorted(tables.rows("family", {"family": "hair", "claim": "exact_step_100ms"})["gravito_bending"])
+    values = tables.rows("family", {"family": "hair", "claim": "exact_step_100ms"})["gravito_bending"]
 
     def at(part):
-        return number(values[math.floor(part * (len(values) - 1) + 0.5)])
+        return number(values.quantile(part))
 
     return f"{at(0.05)} (5 %), {at(0.5)} (50 %) and {at(0.95)} (95 %)"
 

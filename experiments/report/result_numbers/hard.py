@@ -43,15 +43,16 @@ def outcomes_table(tables):
 
 
 def million_steps(tables):
-    """Returns the steps at which `million_steps` counts: those that were run to the end."""
+    """Returns the steps at which `million_steps` counts whole, and how its shorter runs count."""
     rows = counted(tables)
     rows = rows[rows["case"] == "million_steps"]
     cut = rows[rows["cut"] > 0]
     if cut.empty:
         return "`million_steps` was run whole"
     whole = [duration(dt) for dt in rows[rows["cut"] == 0]["dt_s"].unique()]
-    where = f"at {' and '.join(whole)} only, where all of its steps were run" if whole else "nowhere"
-    return f"`million_steps` counts {where}: the other runs stop after {cut.iloc[0]['cut']} steps"
+    where = f"whole at {' and '.join(whole)} only" if whole else "nowhere whole"
+    return (f"`million_steps` counts {where}: the other runs stop after {cut.iloc[0]['cut']} steps, and "
+            "count where they fail before that")
 
 
 def super_helix(tables):

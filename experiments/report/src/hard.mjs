@@ -62,5 +62,12 @@ export const best_variants = (rows) =>
     ).values(),
   ].map((members) => minimum_by(members, rank));
 
-// What counts, where a case that was cut short does not.
-export const judged = (tables) => best_variants(hard_rows(tables).filter((row) => !row.cut));
+const run_of = (row) => [row.case, row.model, row.integrator, pace(row)].join('|');
+
+// What counts. A run that was cut short and fails would fail whole as well: it counts, unless
+// the same was run whole. One that passes says nothing about the whole run.
+export function judged(tables) {
+  const best = best_variants(hard_rows(tables));
+  const whole = new Set(best.filter((row) => !row.cut).map(run_of));
+  return best.filter((row) => !row.cut || (!survives(row) && !whole.has(run_of(row))));
+}

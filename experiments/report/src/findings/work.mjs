@@ -2,6 +2,7 @@
 import {
   distinct,
   group_by,
+  is_number,
   is_positive,
   is_set,
   minimum_by,
@@ -69,7 +70,7 @@ export function field_table(tables) {
 const fitted_orders = (rows) =>
   [
     ...group_by(
-      rows.filter((row) => succeeded(row) && is_positive(row.order_fit)),
+      rows.filter((row) => succeeded(row) && is_number(row.order_fit)),
       (row) => row.integrator,
     ),
   ].map(([integrator, members]) => ({
@@ -78,7 +79,10 @@ const fitted_orders = (rows) =>
       .map(([problem, [row]]) => ({ problem, order: row.order_fit }))
       .sort((a, b) => a.order - b.order),
   }));
-const middle = (orders) => orders[Math.floor((orders.length - 1) / 2)].order.toFixed(2);
+const middle = (orders) => {
+  const [low, high] = [Math.floor, Math.ceil].map((round) => orders[round((orders.length - 1) / 2)].order);
+  return ((low + high) / 2).toFixed(2);
+};
 
 // Rows of integrator, problems, median, lowest and highest order with the problem of each.
 export const order_table = (tables) =>
