@@ -26,33 +26,6 @@ double first_to_last(const std::vector<double>& points) {
                    "stability judge", "choose a model that has it");
 }
 
-struct Trial {
-  double dt;
-  Broken broken;
-  bool stable() const { return broken == Broken::nothing; }
-};
-
-/// Summary of the trials so far, in any order.
-StepLimit summary(std::vector<Trial> trials, double resolution) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  StepLimit limit{unknown, unknown, Broken::nothing, unknown, unknown, 0, false, false};
-  limit.runs = static_cast<int>(trials.size());
-  std::ranges::sort(trials, {}, &Trial::dt);
-  if (!trials.empty()) limit.finest = trials.front().dt;
-  for (const Trial& trial : trials) {
-    const bool below = std::isnan(limit.unstable);
-    if (trial.stable()) {
-      (below ? limit.stable : limit.stable_above) = trial.dt;
-    } else if (below) {
-      limit.unstable = trial.dt;
-      limit.limited_by = trial.broken;
-    }
-  }
-  const bool some_stable = !std::isnan(limit.stable);
-  limit.resolved = some_stable && !(limit.unstable > limit.stable * resolution);
-  return limit;
-}
-
 }  // namespace
 
 std::string_view name(Broken broken) {
@@ -151,14 +124,35 @@ std::optional<StabilityRun> StabilityRuns::judge(double dt) {
   return run;
 }
 
+StepLimit step_limit(const TestedSteps& tested, double resolution) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  StepLimit limit{unknown, unknown, Broken::nothing, unknown, unknown,
+                  0,       0,       false,           false};
+  limit.runs = static_cast<int>(tested.size());
+  if (!tested.empty()) limit.finest = tested.begin()->first;
+  for (const auto& [dt, broken] : tested) {
+    const bool below = std::isnan(limit.unstable);
+    if (broken == Broken::nothing) {
+      (below ? limit.stable : limit.stable_above) = dt;
+      limit.stable_runs += below ? 1 : 0;
+    } else if (below) {
+      limit.unstable = dt;
+      limit.limited_by = broken;
+    }
+  }
+  const bool some_stable = !std::isnan(limit.stable);
+  limit.resolved = some_stable && !(limit.unstable > limit.stable * resolution);
+  return limit;
+}
+
 StepLimit find_step_limit(const StepSearch& search,
                           const std::function<std::optional<Broken>(double dt)>& judge) {
-  std::vector<Trial> trials;
-  StepLimit limit = summary(trials, search.resolution);
+  TestedSteps tested;
+  StepLimit limit = step_limit(tested, search.resolution);
   const auto test = [&](double dt) {
     const std::optional<Broken> broken = judge(dt);
-    if (broken) trials.push_back({dt, *broken});
-    limit = summary(trials, search.resolution);
+    if (broken) tested[dt] = *broken;
+    limit = step_limit(tested, search.resolution);
     return broken.has_value();
   };
 

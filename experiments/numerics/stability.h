@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -118,10 +119,18 @@ struct StepLimit {
   Broken limited_by;    // the violation there; nothing: all tested steps were stable
   double stable_above;  // s, largest stable step above `unstable`: not monotone
   double finest;        // s, smallest step tested
-  int runs;
+  int runs;             // steps tested
+  int stable_runs;      // of these, the ones up to `stable`
   bool resolved;  // unstable / stable is within the resolution, or nothing was unstable
   bool complete;  // and all was stable down to the depth, within the work limit
 };
+
+/// Steps that were tested (s), each with the bound that it violated.
+using TestedSteps = std::map<double, Broken>;
+
+/// Returns the limit that these steps show, however they were chosen; `complete` is
+/// false.
+StepLimit step_limit(const TestedSteps& tested, double resolution);
 
 /// Scans from coarse to fine. At the first stable step it bisects (geometrically) between
 /// `stable` and `unstable`, then continues down to the depth, where the next unstable

@@ -40,6 +40,7 @@ constexpr Column columns[] = {
     {"search_done",
      "false: the work was used up before smaller steps or tolerances were all tested"},
     {"runs", "steps or tolerances tested"},
+    {"stable_runs", "steps tested up to dt_max_s; all were stable"},
     {"tolerance_loosest",
      "tolerance: largest tolerance over the length, from 1e-1 to 1e-5, at and "
      "below which every run tried was stable"},

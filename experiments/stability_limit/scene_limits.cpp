@@ -69,50 +69,63 @@ std::optional<StabilityRun> judge(Scene scene, double t_end, double& left) {
   return run;
 }
 
-/// What happens a little below and well above the limit: where something breaks below it,
-/// the limit falls until nothing does.
-void confirm(Scene scene, const SceneLimits& how, double t_end, FoundLimit& limit,
-             Row& row) {
-  constexpr double below = 0.9, above = 1.5;
-  double left = how.most_work, left_above = how.most_work;
-  const auto end = [&](double dt) { return judged_s(scene, t_end, dt, confirmed_steps); };
-  const auto run = [&](double dt, double& work) {
-    scene.options.step = dt;
-    return judge(scene, end(dt), work);
-  };
-  auto near = run(below * limit.step, left);
-  while (near && !near->stable() && limit.step > how.search.finest) {
-    row.set("dt_first_unstable_s", below * limit.step);
-    row.set("limited_by", name(near->broken));
-    limit.step *= below * below;
-    near = run(below * limit.step, left);
-  }
-  row.set("dt_max_s", limit.step);
-  // Without work left the search's own time is what is known.
-  row.set("t_end_s", near ? end(below * limit.step)
-                          : judged_s(scene, t_end, limit.step, tried_steps));
-  if (row.text("limited_by") == "cap") return;
-  if (const auto far = run(above * limit.step, left_above)) {
-    row.set("at_1_5", far->stable() ? "stable" : name(far->broken));
+/// Stability is not monotone, so steps between those of the search are tried as well:
+/// these parts of the limit, judged for longer. Where one is unstable, the limit falls
+/// below it, and the parts of the new one are tried.
+constexpr double parts_of_limit[] = {1, 0.95, 0.9, 0.8, 0.7};
+constexpr double after_unstable = 0.9;
+
+/// Adds the runs that confirm the limit, as far as the work of `judge` reaches.
+void confirm(const SceneLimits& how, const JudgeStep& judge, SearchedSteps& searched) {
+  double limit = step_limit(searched, how.search).stable;
+  for (bool unstable = true; unstable && limit >= how.search.finest;) {
+    unstable = false;
+    for (const double part : parts_of_limit) {
+      const auto run = judge(part * limit);
+      if (!run) return;
+      searched.runs[part * limit] = *run;
+      unstable = !run->stable();
+      if (unstable) {
+        limit *= part * after_unstable;
+        break;
+      }
+    }
   }
 }
 
 void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   const double t_end = std::min(how.horizon, scene.duration);
   row.set("t_end_s", t_end);
-  double left = how.most_work;
-  std::optional<FoundLimit> limit;
   Scene tried = scene;
   tried.options.tolerance = 0;
+  const auto confirmed_s = [&](double dt) {
+    return judged_s(scene, t_end, dt, confirmed_steps);
+  };
+  const auto judge_to = [&](double dt, double end, double& work) {
+    tried.options.step = dt;
+    return judge(tried, end, work);
+  };
+  double left = how.most_work, left_confirming = how.most_work,
+         left_above = how.most_work;
+  std::optional<FoundLimit> limit;
   try {
-    limit = find_limit(
-        how.search,
-        [&](double dt) {
-          tried.options.step = dt;
-          return judge(tried, judged_s(scene, t_end, dt, tried_steps), left);
-        },
-        row);
-    if (limit) confirm(tried, how, t_end, *limit, row);
+    SearchedSteps searched = search_steps(how.search, [&](double dt) {
+      return judge_to(dt, judged_s(scene, t_end, dt, tried_steps), left);
+    });
+    confirm(
+        how, [&](double dt) { return judge_to(dt, confirmed_s(dt), left_confirming); },
+        searched);
+    limit = found_limit(searched, how.search, row);
+    if (!limit) return;
+    // Without work left to confirm it, the limit is judged for as long as in the search.
+    row.set("t_end_s", std::min(confirmed_s(limit->step), limit->run.t));
+    if (row.text("limited_by") != "cap") {
+      constexpr double above = 1.5;
+      const double dt = above * limit->step;
+      if (const auto far = judge_to(dt, confirmed_s(dt), left_above)) {
+        row.set("at_1_5", far->stable() ? "stable" : name(far->broken));
+      }
+    }
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,12 +76,27 @@ struct FoundLimit {
   StabilityRun run;
 };
 
-/// Searches for the largest step that `judge` finds stable (empty: the work is used up)
-/// and fills the columns about it. The row fails, and nothing is returned, if no stable
-/// step exists or none was found within the work limit.
-std::optional<FoundLimit> find_limit(
-    const StepSearch& search,
-    const std::function<std::optional<StabilityRun>(double dt)>& judge, Row& row);
+/// Judges a step (s); empty: the work is used up.
+using JudgeStep = std::function<std::optional<StabilityRun>(double dt)>;
+
+/// The runs of a search by their steps (s).
+struct SearchedSteps {
+  std::map<double, StabilityRun> runs;
+  bool complete;  // StepLimit
+};
+
+/// Searches for the largest step that `judge` finds stable.
+SearchedSteps search_steps(const StepSearch& search, const JudgeStep& judge);
+StepLimit step_limit(const SearchedSteps& searched, const StepSearch& search);
+
+/// Fills the columns about the limit that these runs show. The row fails, and nothing is
+/// returned, if no stable step exists or none was found within the work limit.
+std::optional<FoundLimit> found_limit(const SearchedSteps& searched,
+                                      const StepSearch& search, Row& row);
+
+/// search_steps() and found_limit().
+std::optional<FoundLimit> find_limit(const StepSearch& search, const JudgeStep& judge,
+                                     Row& row);
 
 /// Sets the columns about the run at the limit and the cost (s of wall time) of one of
 /// its steps.
@@ -139,8 +155,8 @@ std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings)
 void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 /// Returns the answer about scene files, a line for each method, the largest step first.
-/// A line has the largest stable step, the failure beyond it, the time over which that
-/// was judged, and the time of a simulated second.
+/// A line has the largest stable step, the steps up to it that were tried, the failure
+/// beyond it, the time over which it was judged, and the time of a simulated second.
 std::vector<std::string> stability_answer(const std::vector<Row>& rows);
 
 /// Checks the claims about the table of stability_limit. Two limits are equal when the
