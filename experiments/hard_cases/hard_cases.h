@@ -90,4 +90,8 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
 /// no solution.
 void check_hard_cases(const std::vector<Row>& rows, Verdicts& verdicts);
 
+/// Returns the answer about scene files, a line for each model, the most stable first:
+/// how many runs stayed stable, and the methods of which every run did.
+std::vector<std::string> hard_answer(const std::vector<Row>& rows);
+
 }  // namespace tress::experiments::hard_cases

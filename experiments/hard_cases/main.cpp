@@ -1,7 +1,6 @@
 // Which model by which integrator survives which hard case, and at which step? Each case
 // has a reason why it is hard, and a physical criterion that a correct answer meets.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <memory>
 #include <string>
@@ -104,35 +103,8 @@ std::vector<Gloss> glossary() {
   return all;
 }
 
-/// The methods of each outcome, with their steps.
 void answer(const CommandLine& line, const std::vector<Row>& rows) {
-  constexpr std::size_t most = 8;
-  std::vector<std::string> lines;
-  for (const Outcome outcome : {Outcome::accurate, Outcome::stable, Outcome::unstable,
-                                Outcome::not_finished, Outcome::refused}) {
-    std::vector<std::string> named;
-    std::size_t count = 0;
-    for (const Row& row : rows) {
-      if (row.text("outcome") != name(outcome) || ++count > most) continue;
-      const std::string steps =
-          row.has("position_tol_rel")
-              ? fmt::format("tolerance {:.2g}", row.number("position_tol_rel"))
-              : fmt::format("dt {:.3g} ms", 1e3 * row.number("dt_s"));
-      named.push_back(
-          fmt::format("{} {} {}", row.text("model"), row.text("integrator"), steps));
-    }
-    if (count == 0) continue;
-    lines.push_back(fmt::format("{}: {} of {} runs: {}{}", name(outcome), count,
-                                rows.size(), fmt::join(named, "; "),
-                                count > most ? "; ..." : ""));
-  }
-  for (const Row& row : rows) {
-    if (!row.has("t_s") || row.text("outcome") == name(Outcome::unstable)) continue;
-    lines.push_back(fmt::format(
-        "valid for the first {:.3g} s, the time that was simulated", row.number("t_s")));
-    break;
-  }
-  print_answer(line, lines);
+  print_answer(line, hard_answer(rows));
 }
 
 /// Failures to survive are the expected results.

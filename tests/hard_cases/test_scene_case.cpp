@@ -273,4 +273,34 @@ TEST(SceneCase, RefusesWhatTheSceneSaysItself) {
   EXPECT_THROW(rows(file, {}, {{"most_stretch", "0.6"}}), InputError);
 }
 
+// The answer on screen: a line for each model, and which of its methods stay stable.
+TEST(SceneCase, TellsWhichMethodsStayStable) {
+  const auto row = [](std::string_view model, std::string_view variant,
+                      std::string_view integrator, double dt, Outcome outcome) {
+    Row one;
+    one.set("model", model).set("variant", variant).set("integrator", integrator);
+    one.set("dt_s", dt).set("outcome", name(outcome));
+    return one;
+  };
+  std::vector<Row> all;
+  for (const double dt : {0.001, 0.01}) {
+    const bool fine = dt < 0.005;
+    all.push_back(row("der", "", "rk4", dt, Outcome::unstable));
+    all.push_back(
+        row("der", "", "bdf2", dt, fine ? Outcome::stable : Outcome::not_finished));
+    all.push_back(row("super_helix", "jacobian=exact", "bdf2", dt, Outcome::stable));
+    all.push_back(row("super_helix", "jacobian=elastic", "bdf2", dt, Outcome::stable));
+    all.push_back(
+        row("super_helix", "", "rk4", dt, fine ? Outcome::stable : Outcome::unstable));
+  }
+  all.push_back(row("corde", "", "xpbd", 0.001, Outcome::refused));
+  EXPECT_EQ(
+      hard_answer(all),
+      (std::vector<std::string>{
+          "super_helix: 5 of 6 runs are stable; stable in all of their runs, 2 of 3 "
+          "methods: bdf2 (jacobian=elastic), bdf2 (jacobian=exact)",
+          "der: 1 of 4 runs are stable; no method is stable in all of its runs",
+          "not supported: 1 of 11 runs; the column 'why' has the reasons"}));
+}
+
 }  // namespace tress::test_scene_case
