@@ -153,8 +153,10 @@ std::string Heartbeat::line(Clock::time_point now) const {
                                {"seconds", seconds}};
     return event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
   }
-  return fmt::format("{}{}: {}, for {}{}", terminal_ ? "\r" : "", program_, doing_,
-                     readable_duration(seconds), terminal_ ? "\033[K" : "\n");
+  const std::string lasting =
+      seconds < 1 ? "" : fmt::format(", for {}", readable_duration(seconds));
+  return fmt::format("{}{}: {}{}{}", terminal_ ? "\r" : "", program_, doing_, lasting,
+                     terminal_ ? "\033[K" : "\n");
 }
 
 }  // namespace tress::experiments

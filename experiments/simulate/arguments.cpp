@@ -1,6 +1,8 @@
 #include "experiments/simulate/arguments.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -80,13 +82,19 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({"cpu", "gpu", "auto"}));
   app.add_option("--frames", a.frames,
                  "bits of a coordinate in a batch's .h5: 32, 64, or none (default 32)")
-      ->check(CLI::IsMember({"32", "64", "none"}));
+      ->check(CLI::IsMember({"32", "64", "none"}))
+      ->each([&a](const std::string&) { a.frames_given = true; });
   app.add_flag("--resume", a.resume, "continue an interrupted run");
   app.add_option(
          "--save-every", a.save_every,
          "seconds of the clock after which a scene without checkpoint_s saves its "
          "state (default 60)")
-      ->check(CLI::Range(0.0, 86400.0));
+      ->check(CLI::Range(0.0, 86400.0))
+      ->check([](const std::string& text) {
+        return std::isnan(std::strtod(text.c_str(), nullptr))
+                   ? text + " is not a number: give seconds, as 60"
+                   : std::string();
+      });
   app.add_flag("--no-guard", a.no_guard,
                "continue after the guard reports an unphysical state (as guard = false)");
   app.add_flag("--error-bars", a.error_bars,

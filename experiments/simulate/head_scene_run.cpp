@@ -69,6 +69,7 @@ class HeadSceneRun {
                          options_.resume);
     }
     begin();
+    made.resumed = frames_ > 0;
     advance(outcome);
     made.frames = frames_;
     made.simulated_s = scene_.duration;

@@ -160,6 +160,12 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
                          (no ? ": " + no->reason : std::string()),
                      file, no ? no->remedy : "give --as batch, or --precision 64");
   }
+  if (!job.head && a.frames_given) {
+    throw InputError(
+        "--frames is for the .h5 of a batch, and this runs strand by strand" +
+            (no ? ": " + no->reason : std::string()),
+        file, no ? no->remedy : "give --as batch, or leave out --frames");
+  }
   if (!job.head && ranks.size() > 1) {
     throw InputError("strands that run one by one are not shared by ranks", file,
                      "leave out mpirun, or give --as batch");
@@ -248,9 +254,10 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   manifest.set_outcome(row);
   replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   // Last: all that it says is done is on the disk.
-  tell("simulate: {}: {} frames, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
-       scene.name, run.frames, run.simulated_s, run.wall_s, control_in_words(scene, run),
-       came_to_its_end ? "" : "; ", run.reason, options.stem);
+  tell("simulate: {}: {} frame{}, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
+       scene.name, run.frames, run.frames == 1 ? "" : "s", run.simulated_s, run.wall_s,
+       control_in_words(scene, run), came_to_its_end ? "" : "; ", run.reason,
+       options.stem);
   for (const std::string& warning : warnings(scene, run)) {
     tell("simulate: warning: {}: {}\n", scene.name, warning);
   }

@@ -250,11 +250,12 @@ std::string control_in_words(const Scene& scene, const SceneRun& run) {
             : fmt::format("; {} steps tried again with shorter ones", run.rejected);
     return again + contact_in_words(work);
   }
-  std::string words =
-      fmt::format("; {} steps, {} rejected by their error and {} by Newton's iteration{}",
-                  work.steps, work.rejected_by_error, work.rejected_by_newton,
-                  shortest_in_words(work.smallest_step, work.smallest_step_at,
-                                    work.smallest_step_cause));
+  std::string words = fmt::format(
+      "; {} steps{}, {} rejected by their error and {} by Newton's iteration{}",
+      work.steps, run.resumed ? " since the run was resumed" : "", work.rejected_by_error,
+      work.rejected_by_newton,
+      shortest_in_words(work.smallest_step, work.smallest_step_at,
+                        work.smallest_step_cause));
   words += contact_in_words(work);
   const Exchanges& exchanges = run.exchanges;
   if (exchanges.accepted + exchanges.rejected == 0) return words;

@@ -77,6 +77,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   }
 
   SceneRun run{SceneRun::End::complete, {}, 0, 0, 0, 0};
+  run.resumed = recording.saved().has_value();
   const std::size_t last = scene.last_frame();
   TimeBar bar(options.progress, scene, world->time(), *options.heartbeat);
   while (recording.frames().size() <= last) {

@@ -76,6 +76,7 @@ struct SceneRun {
   double wall_s, simulated_s;
   double indicator = 0;  // largest World::error_indicator
   Stats work = {};       // since this run began or was resumed
+  bool resumed = false;
   Exchanges exchanges = {};
   std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
   std::string not_smooth = {};  // World::not_smooth(), first that was seen

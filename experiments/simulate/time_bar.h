@@ -56,8 +56,8 @@ class TimeBar {
  private:
   using Clock = std::chrono::steady_clock;
   void at(double t) {
-    heartbeat_.doing(fmt::format("{}: at {:.4g} of {:.4g} s simulated", scene_.name, t,
-                                 scene_.duration));
+    heartbeat_.doing(
+        fmt::format("{}: at {:.4g} s of {:.4g} s", scene_.name, t, scene_.duration));
   }
 
   ProgressMode mode_;

@@ -280,13 +280,17 @@ class Finder {
     for (const OfStrand& one : of_strands) all.emplace_back(one.name);
     for (const OfShape& one : of_shapes) all.emplace_back(one.name);
     for (const std::string_view one : of_roots) all.push_back(std::string(one) + ".x");
+    const auto add = [&all](std::string_view table, const Parameter& p) {
+      if (p.text || p.rows || p.whole || !p.choices.empty()) return;
+      all.push_back(fmt::format("{}.{}{}", table, p.name, p.components == 3 ? ".x" : ""));
+    };
+    const Table& root = scene_.tables->root;
+    for (const Parameter& p : root.declared()) {
+      if (used(root_uses(), root.values().word("motion"), p.name)) add("root", p);
+    }
     const std::vector<std::string> effects = effect_names(scene_);
     for (std::size_t i = 0; i < effects.size(); ++i) {
-      for (const Parameter& p : scene_.effects[i].entry->parameters) {
-        if (p.text || p.rows || p.whole || !p.choices.empty()) continue;
-        all.push_back(
-            fmt::format("{}.{}{}", effects[i], p.name, p.components == 3 ? ".x" : ""));
-      }
+      for (const Parameter& p : scene_.effects[i].entry->parameters) add(effects[i], p);
     }
     return all;
   }
