@@ -16,8 +16,9 @@ double product(In x, In y) {
 /// A system at the distances of the central stencil and at those of the affine one.
 struct Distances {
   explicit Distances(const RunParameter& parameter)
-      : far(parameter(affine_at[0])), middle(parameter(affine_at[0] / 2)) {
-    for (const double s : central_at) near.push_back(parameter(s));
+      : far(parameter(affine_stencil.at[0])),
+        middle(parameter(affine_stencil.at[0] / 2)) {
+    for (const double s : central_stencil.at) near.push_back(parameter(s));
   }
   std::unique_ptr<System> far, middle;
   std::vector<std::unique_ptr<System>> near;
@@ -45,7 +46,7 @@ struct Slope {
     std::vector<double> r(at.q.size());
     for (std::size_t i = 0; i < near.size(); ++i) {
       ok = ok && near[i]->residual(at.t, at.q, at.v, at.a, r) == Status::ok;
-      by += central_weight[i] * product(r, at.mu);
+      by += central_stencil.weight[i] * product(r, at.mu);
       double terms = 0;
       for (std::size_t k = 0; k < r.size(); ++k) terms += std::abs(r[k] * at.mu[k]);
       size = std::max(size, terms);
@@ -65,6 +66,8 @@ std::vector<double> constants_of(System& system) {
 std::optional<ConstantsDerivative> constants_derivative(System& system,
                                                         const RunParameter& parameter) {
   TransposedForm* const form = transposed_form(system);
+  // Forces that depend on a place may begin to act later.
+  if (parameter.places) return {};
   if (form == nullptr || system.layout().constraints > 0) return {};
   const std::vector<double> here = form->constants();
   if (here.empty()) return {};
@@ -81,7 +84,7 @@ std::optional<ConstantsDerivative> constants_derivative(System& system,
   }
   ConstantsDerivative found{std::vector<double>(here.size()), {affine_stencil, {}, {}}};
   for (std::size_t i = 0; i < distances.near.size(); ++i) {
-    add(found.by, central_weight[i], constants_of(*distances.near[i]));
+    add(found.by, central_stencil.weight[i], constants_of(*distances.near[i]));
   }
   for (std::size_t j = 0; j < here.size(); ++j) {  // their sizes differ by many orders
     if (!affine({here[j]}, {middle[j]}, {far[j]})) continue;
@@ -101,7 +104,7 @@ std::optional<ConstantsDerivative> constants_derivative(System& system,
                  load_middle = form->power_of_loads(*distances.middle);
     double by = product(found.by, by_constants), by_loads = 0;
     for (std::size_t i = 0; i < distances.near.size(); ++i) {
-      by_loads += central_weight[i] * form->power_of_loads(*distances.near[i]);
+      by_loads += central_stencil.weight[i] * form->power_of_loads(*distances.near[i]);
     }
     loaded = loaded || load != load_far;
     straight = straight && affine({load}, {load_middle}, {load_far});
