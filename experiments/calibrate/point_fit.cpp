@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contract/input_error.h"
@@ -35,6 +36,25 @@ void set_parameters(const CommandLine& line, std::string_view given, const Scene
   const Table& gradient = *scene.tables->gradient;
   task.by = names_of(gradient.values().word("by"));
   task.place = gradient.place("by");
+}
+
+/// Refuses points that no pose of their strand comes near: of a file in another unit.
+void check_distances(const PointRecord& record, const Scene& scene) {
+  constexpr double most_lengths = 10;
+  for (const Observation& one : record.observations) {
+    if (one.strand >= scene.strands.size()) continue;  // check_fit() refuses it
+    const Strand& strand = scene.strands[one.strand];
+    if (strand.free_root) continue;
+    const Vec at = strand.root.at(one.t).x;
+    const double root = std::array{at.x, at.y, at.z}[one.component];
+    const double distance = std::abs(one.value - root), length = strand.length();
+    refuse_if(
+        distance > most_lengths * length,
+        fmt::format("{}_m = {:g} m is {:.3g} m from the root of a strand of {:.3g} "
+                    "m, more than {:g} times its length",
+                    "xyz"[one.component], one.value, distance, length, most_lengths),
+        record.place(one, &RowPlace::time), "give coordinates in metres");
+  }
 }
 
 }  // namespace
@@ -75,6 +95,9 @@ PointFit point_fit(const CommandLine& line, const Settings& settings) {
       all.scenes.size() > 1 && all.scenes.size() != all.records.size(),
       fmt::format("{} scenes for {} records", all.scenes.size(), all.records.size()),
       line.place("set:scenes"), "give one scene for all records, or one for each");
+  for (std::size_t i = 0; i < all.records.size(); ++i) {
+    check_distances(all.records[i], all.scenes[all.scenes.size() > 1 ? i : 0]);
+  }
   all.bounds = own.word("bounds");
   all.priors = own.word("priors");
   set_parameters(line, own.word("by"), all.scenes.front(), all.asked);

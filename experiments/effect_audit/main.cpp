@@ -240,11 +240,12 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
           scene, 1e2 * row.number("discretisation_rel"),
           1e2 * row.number("accuracy_rel")));
     } else {
+      const double saved = 1e2 * row.number("cost_share");
       lines.push_back(fmt::format(
-          "{}: {}: {} (without it the tips move by {:.2g} % of the length, and "
-          "{:.0f} % of the time goes)",
+          "{}: {}: {} (without it the tips move by {:.2g} % of the length, and the run "
+          "takes {:.0f} % {} time)",
           scene, effect, row.text("verdict"), 1e2 * row.number("error_without_rel"),
-          1e2 * row.number("cost_share")));
+          std::abs(saved), saved < 0 ? "more" : "less"));
     }
   }
   print_answer(line, lines);

@@ -11,6 +11,10 @@
 namespace tress::experiments::head_accuracy {
 namespace {
 
+std::string guides(double count) {
+  return fmt::format("{} guide{}", count, count == 1 ? "" : "s");
+}
+
 bool every(const Row& row) { return row.number("guides") == row.number("strands"); }
 
 double wanted(const Row& row) {
@@ -22,7 +26,8 @@ double wanted(const Row& row) {
 
 std::string hairs(const Row& row) {
   if (every(row)) return fmt::format("each of {} hairs", row.text("strands"));
-  return fmt::format("{} guides for {} hairs", row.text("guides"), row.text("strands"));
+  return fmt::format("{} for {} hairs", guides(row.number("guides")),
+                     row.text("strands"));
 }
 
 /// "800 guides for 10000 hairs, 9 elements, steps of 5.6 ms, 32-bit precision: ... in 1.2
@@ -39,8 +44,9 @@ std::string run(const Row& row) {
 
 std::string why_every(const Row& row) {
   if (!every(row) || !row.has("best_guides")) return "";
-  return fmt::format("; hairs that follow {} guides are off by {:.2g} %",
-                     row.text("best_guides"), 1e2 * row.number("best_interpolation_rel"));
+  return fmt::format("; hairs that follow {} are off by {:.2g} %",
+                     guides(row.number("best_guides")),
+                     1e2 * row.number("best_interpolation_rel"));
 }
 
 std::string sentence(const Row& row) {

@@ -17,12 +17,13 @@
 #include "experiments/simulate/head_series.h"
 #include "experiments/simulate/held_report.h"
 #include "experiments/simulate/save_clock.h"
+#include "experiments/simulate/starts_inside.h"
 #include "experiments/simulate/stop_request.h"
 #include "experiments/simulate/time_bar.h"
 #include "simulation/head/head_balance.h"
 #include "simulation/head/head_device.h"
 #include "simulation/head/scene_head.h"
-#include "simulation/run/guard.h"
+#include "simulation/run/remedy.h"
 #include "simulation/run/timing.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -118,7 +119,8 @@ class HeadSceneRun {
         "{}{} of {} strands failed, the first at t = {:.9g} s, strand {}: {} "
         "({}.failed.csv): {}{}",
         unsolved ? "" : "unstable: ", lost.size(), run_->strands(), first.t, first.strand,
-        first.reason, options_.stem, remedy(scene_.integrator, scene_.options),
+        first.reason, options_.stem,
+        remedy(scene_.integrator, scene_.options, Limit::none, scene_.model->id),
         unsolved && run_->lanes()
             ? ", or --as strands, which has more ways to solve a step"
             : "");
@@ -211,7 +213,10 @@ class HeadSceneRun {
     TimeBar bar(options_.progress, scene_, frames_ > 0 ? scene_.time_of(frames_ - 1) : 0,
                 *options_.heartbeat);
     SaveClock clock(options_.save_every);
-    if (frames_ == 0) add_frame(0, outcome);
+    if (frames_ == 0) {
+      look_at_start();
+      add_frame(0, outcome);
+    }
     std::size_t step = step_;
     const std::size_t last = scene_.last_frame();
     while (frames_ <= last) {
@@ -235,6 +240,22 @@ class HeadSceneRun {
         run_ = std::move(anew);
       });
     }
+  }
+
+  /// Warns of strands that begin inside bodies.
+  void look_at_start() {
+    StartsInside inside(scene_);
+    if (!inside.any()) return;
+    std::vector<double> x;
+    reading_->by_chunks(*run_, [&](HeadRun::Numbers strands) {
+      run_->positions(0, strands, x);
+      if (!ranks_.first()) return;
+      const std::size_t each = x.size() / strands.size();
+      for (std::size_t k = 0; k < strands.size(); ++k) {
+        inside.look(std::span(x).subspan(each * k, each));
+      }
+    });
+    tell_starts_inside(scene_, inside);
   }
 
   /// Equal ones, as long as longest_step() at most, from `done` on.

@@ -173,6 +173,7 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
   if (job.head) return job;
   job.outline.scene = read_scene(file);
   if (a.verify) check_verifiable(job.outline.scene);
+  if (a.error_bars) check_error_bars(job.outline.scene);
   if (a.gradient) {
     check_gradient(job.outline.scene);
     check_gradient_table(job.outline.scene);

@@ -37,9 +37,13 @@ constexpr Column columns_of_outcome[] = {
      "energy that the method dissipated (negative: created). Energy at the "
      "start, and the work of loads, root and friction, less the energy at the "
      "end. Work by the trapezoidal rule over every fourth step. Empty without a "
-     "guard, and where impulses or other strands act"},
+     "guard, of a batch, and where impulses or other strands act"},
+    {"method_dissipated_bound_j",
+     "estimated bound of the error of method_dissipated_j: the sum of the changes of "
+     "power between two checks times the intervals. The run warns where "
+     "method_dissipated_j exceeds it by a tenth of the energy of the motion"},
     {"method_dissipated_rel",
-     "method_dissipated_j over the energy of the motion: the largest above the "
+     "method_dissipated_j over the energy of the motion: the highest above the "
      "lowest potential, and the work put in"},
     {"not_smooth", "reason why the motion is not smooth, where forces jump"},
     {"pilot_elements",
@@ -167,6 +171,7 @@ Row outcome(const Scene& scene, const SceneRun& run) {
   row.set("solves", work.solves).set("newton_iterations", work.newton_iterations);
   if (run.dissipation) {
     row.set("method_dissipated_j", run.dissipation->dissipated);
+    row.set("method_dissipated_bound_j", run.dissipation->uncertain);
     row.set("method_dissipated_rel", run.dissipation->share());
   }
   if (!run.not_smooth.empty()) row.set("not_smooth", run.not_smooth);

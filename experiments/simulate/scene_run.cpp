@@ -11,9 +11,11 @@
 #include "experiments/simulate/held_report.h"
 #include "experiments/simulate/pictures.h"
 #include "experiments/simulate/save_clock.h"
+#include "experiments/simulate/starts_inside.h"
 #include "experiments/simulate/time_bar.h"
 #include "simulation/export/recording.h"
 #include "simulation/files/files.h"
+#include "simulation/run/remedy.h"
 
 namespace tress::experiments::scene_runs {
 namespace {
@@ -72,7 +74,16 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   if (recording.saved()) {
     restore(*world, *recording.saved());
     if (between_saves == 0) latest = recording.saved();
+    static_cast<void>(world->take_depth());  // watched from here on
   } else {
+    StartsInside inside(scene);
+    std::size_t first = 0;
+    for (const int points : world->points()) {
+      const auto numbers = 3 * static_cast<std::size_t>(points);
+      if (inside.any()) inside.look(In(world->positions()).subspan(first, numbers));
+      first += numbers;
+    }
+    tell_starts_inside(scene, inside);
     add_frame();
   }
 
@@ -120,7 +131,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
         "{} of {} strands failed, the first at t = {:.9g} s, strand {}: {} "
         "({}.failed.csv): {}",
         run.lost, world->strands(), first.t, first.strand, first.reason, options.stem,
-        remedy(scene.integrator, scene.options));
+        remedy(scene.integrator, scene.options, Limit::none, scene.model->id));
   }
   run.simulated_s = world->time();
   run.dissipation = world->dissipation();

@@ -3,21 +3,39 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
+#include "integrators/catalogue.h"
 #include "simulation/run/dissipation_warning.h"
+#include "simulation/run/remedy.h"
 
 namespace tress::experiments::scene_runs {
 
+namespace {
+
+/// What reduces the energy that the method of a scene dissipates or creates.
+std::string_view remedy_of_energy(const Scene& scene) {
+  if (scene.chooses_steps()) return "take a smaller tolerance";
+  const IntegratorEntry& method = find_integrator(scene.integrator);
+  if (ends_after_sweeps(method)) {
+    return "take more sweeps, or a method that solves its steps, such as tr_bdf2";
+  }
+  return *method.order(scene.options.formulation) > 1
+             ? "take a shorter dt_s"
+             : "take a shorter dt_s, or a method of order 2, such as tr_bdf2";
+}
+
+}  // namespace
+
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
   std::vector<std::string> all;
-  const double share = run.dissipation ? run.dissipation->share() : 0;
   if (run.dissipation && simulation::warns(*run.dissipation)) {
+    const MethodDissipation& of = *run.dissipation;
     all.push_back(fmt::format(
-        "{} {} {:.2g} J, {:.2g} % of the energy of the motion: {}", scene.integrator,
-        share > 0 ? "dissipated" : "created", std::abs(run.dissipation->dissipated),
-        100 * std::abs(share),
-        scene.chooses_steps() ? "take a smaller tolerance"
-                              : "take a shorter dt_s, or a method of order 2 or more"));
+        "{} {} {:.2g} J (within {:.2g} J), {:.2g} % of the energy of the motion: {}",
+        scene.integrator, of.dissipated > 0 ? "dissipated" : "created",
+        std::abs(of.dissipated), of.uncertain, 100 * std::abs(of.share()),
+        remedy_of_energy(scene)));
   }
   if (!run.not_smooth.empty()) {
     all.push_back(fmt::format(

@@ -6,7 +6,9 @@
 #include <numeric>
 
 #include "contract/input_error.h"
+#include "integrators/catalogue.h"
 #include "simulation/errors/halved_step.h"
+#include "simulation/run/remedy.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
@@ -290,6 +292,18 @@ ErrorBar space_error(const Scene& scene, int threads) try {
   return distance(scene, with_twice_the_elements(scene), falls / (falls - 1), threads);
 } catch (const InputError& error) {
   return missing(error.what());
+}
+
+void check_error_bars(const Scene& scene) {
+  if (!ends_after_sweeps(find_integrator(scene.integrator))) return;
+  throw InputError(
+      scene.integrator +
+          " ends a step after a number of sweeps, and a run with half the step does not "
+          "show the error that they leave",
+      "--error-bars",
+      "take a method that solves its steps, such as backward_euler or tr_bdf2, or "
+      "compare "
+      "with a run of that method");
 }
 
 void check_verifiable(const Scene& scene) {

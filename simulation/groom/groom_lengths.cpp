@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tress::simulation {
 namespace {
@@ -30,6 +31,17 @@ std::size_t long_piece_of(std::span<const Vec> x) {
   return most > long_piece * *middle ? at : 0;
 }
 
+/// "lengths: median 0.1 m, half of the strands 0.09 m to 0.11 m, all 0.08 m to 0.12 m"
+std::string lengths_in_words(double median, std::pair<double, double> half,
+                             std::pair<double, double> all) {
+  const auto text = [](double length) { return fmt::format("{:.3g} m", length); };
+  const std::string shortest = text(all.first), longest = text(all.second);
+  if (shortest == longest) return fmt::format("lengths: {} each", shortest);
+  return fmt::format("lengths: median {}, half of the strands {} to {}, all {} to {}",
+                     text(median), text(half.first), text(half.second), shortest,
+                     longest);
+}
+
 }  // namespace
 
 double polyline_length(std::span<const Vec> points) {
@@ -53,10 +65,8 @@ std::vector<std::string> notes_on_lengths(const Polylines& lines) {
                                            static_cast<double>(sorted.size() - 1))];
   };
   const double median = quantile(0.5);
-  std::vector<std::string> notes{
-      fmt::format("lengths: median {:.3g} m, half of the strands {:.3g} to {:.3g} m, all "
-                  "{:.3g} to {:.3g} m",
-                  median, quantile(0.25), quantile(0.75), sorted.front(), sorted.back())};
+  std::vector<std::string> notes{lengths_in_words(
+      median, {quantile(0.25), quantile(0.75)}, {sorted.front(), sorted.back()})};
   const auto point_at = [&](const auto& stands_out, double limit, std::string_view how) {
     const auto count = std::ranges::count_if(lengths, stands_out);
     if (count == 0) return;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
-#include "integrators/catalogue.h"
+#include "simulation/run/remedy.h"
 
 namespace tress::simulation {
 namespace {
@@ -32,35 +34,6 @@ double typical_energy(System& system, double t, In q) {
 
 std::string Breach::message() const {
   return fmt::format("{} at t = {:.9g} s{}{}", what, t, where.empty() ? "" : ", ", where);
-}
-
-std::string remedy(std::string_view integrator, const Options& options, Limit limit) {
-  const bool adaptive = find_integrator(integrator).adaptive;
-  if (limit == Limit::steps && options.tolerance > 0) {
-    return fmt::format("try a larger tolerance than {:g}, or more than max_steps = {}",
-                       options.tolerance, options.max_steps);
-  }
-  if (limit == Limit::steps) {
-    return (adaptive
-                ? fmt::format("try a larger tolerance than rtol = {:g}, a method for "
-                              "stiff systems such as ida",
-                              options.rtol)
-                : fmt::format("try a longer step than {:g} s", options.step)) +
-           fmt::format(", or more than max_steps = {}", options.max_steps);
-  }
-  if (limit == Limit::work) {
-    return fmt::format("try more than max_work = {:g}", options.max_work);
-  }
-  if (adaptive) {
-    return fmt::format("try a smaller tolerance than rtol = {:g}", options.rtol);
-  }
-  if (options.tolerance > 0) {
-    return fmt::format("try another tolerance than {:g}, or a max_step_s",
-                       options.tolerance);
-  }
-  std::string words = fmt::format("try a step of {:.3g} s", options.step / 4);
-  if (integrator != "backward_euler") words += ", or backward_euler, which damps";
-  return words;
 }
 
 Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t first)
@@ -253,6 +226,17 @@ std::string Guard::place(std::size_t point, std::string_view what) const {
 bool Guard::broken(Breach::Kind kind, std::string what, std::string where, double t) {
   breach_ = Breach{kind, std::move(what), std::move(where), t};
   return false;
+}
+
+/// Mechanisms have no length: whether they move is not asked.
+MethodDissipation Guard::dissipation() const {
+  double mass = 0, length = std::numeric_limits<double>::infinity();
+  for (const GuardedStrand& strand : strands_) {
+    mass += strand.mass;
+    length =
+        std::min(length, std::accumulate(strand.rest.begin(), strand.rest.end(), 0.0));
+  }
+  return meter_.dissipation(strands_.empty() ? 0 : std::sqrt(mass) * length);
 }
 
 Guard::Memory Guard::memory() const {

@@ -27,11 +27,6 @@ struct Breach {
   std::string message() const;
 };
 
-/// Suggests what to try instead of this method at this step (s); `limit`: the bound that
-/// ended the run, if any.
-std::string remedy(std::string_view integrator, const Options& options,
-                   Limit limit = Limit::none);
-
 /// Checks one system for physically impossible states, so that no run ends "ok" with
 /// invalid results. Impossible are numbers that are not finite, and a segment stretched
 /// or compressed by more than half of its length. So are more energy than the initial
@@ -43,8 +38,7 @@ std::string remedy(std::string_view integrator, const Options& options,
 /// kinetic energy (System::scale) replaces it, and P is Energetics::power.
 ///
 /// An error of the energy up to m g L ends no run: coarse but sound steps may have one
-/// while the strand falls. MethodDissipation, which is exact up to the trapezoidal rule,
-/// shows it.
+/// while the strand falls. MethodDissipation shows it, as far as its quadrature decides.
 ///
 /// Checks every fourth step, all steps longer than 2 ms, and the last; each check costs
 /// about two evaluations of the loads.
@@ -64,7 +58,7 @@ class Guard {
   const std::optional<Breach>& breach() const { return breach_; }
   /// Returns the dissipation of the method until the last check. Meaningless where
   /// impulses or other strands act.
-  MethodDissipation dissipation() const { return meter_.dissipation(); }
+  MethodDissipation dissipation() const;
 
   /// All data gathered since start(); recall() lets another guard of an identically
   /// constructed system continue from there.

@@ -48,7 +48,9 @@ Readout::Readout(const Scene& scene, const World& world)
     }
   }
   add("stretch_rel", "largest |length/rest - 1| of a piece");
-  add("penetration_m", "largest depth of a strand in a body");
+  add("penetration_m",
+      "largest depth of a strand, straight between its points, in a body: at the ends of "
+      "all steps since the last frame");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "mean distance from a strand to the nearest other one");
@@ -97,7 +99,7 @@ Frame3d Readout::read(World& world) {
     depth =
         std::max(depth, effect->penetration(world.time(), world.positions()).value_or(0));
   }
-  row.push_back(depth);
+  row.push_back(std::max(depth, world.take_depth()));
   const StrandInteraction* interaction = world.interaction();
   double touching = 0;
   if (interaction != nullptr)

@@ -156,6 +156,7 @@ void SteppedSystem::keep(double at, In new_q, In new_v) {
 Observer SteppedSystem::observer() {
   return [this](double at, In new_q, In new_v) {
     keep(at, new_q, new_v);
+    if (depth) depth->look(*system->material_points(), at, new_q);
     return !guard || (*guard)(at, new_q, new_v);
   };
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/catalogue.h"
+#include "simulation/run/body_depth.h"
 #include "simulation/run/guards.h"
 #include "simulation/run/metered.h"
 
@@ -27,6 +28,7 @@ struct SteppedSystem {
   std::unique_ptr<System> system;          // equations
   std::unique_ptr<Integrator> integrator;  // null before take_method()
   std::optional<Guards> guard;             // check of the steps; none: not checked
+  std::optional<BodyDepth> depth;          // depth in bodies; none: no bodies
   /// Effects of its first strand, of the second ...
   std::vector<std::shared_ptr<const Metered>> meters;
 

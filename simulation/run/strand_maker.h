@@ -27,6 +27,8 @@ class StrandMaker {
   explicit StrandMaker(const Scene& scene);
 
   const Effects& effects() const { return effects_; }  // make_effects()
+  /// Returns the model of the scene.
+  const ModelEntry& model() const { return *model_; }
   /// Returns the integrator of the scene.
   const IntegratorEntry& method() const { return *method_; }
   /// Returns the integrator's options.

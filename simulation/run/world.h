@@ -91,6 +91,9 @@ class World {
   /// changes by other means than power: impulses of rigid contact and of friction between
   /// strands, other strands that move.
   std::optional<MethodDissipation> dissipation() const;
+  /// Returns the largest depth of a strand in a body at the ends of all steps since the
+  /// last call, m. Watches from the first call on, which returns 0.
+  double take_depth();
   /// Why the motion of a strand was not smooth; empty: no such event was seen.
   std::string not_smooth() const;
   /// Returns the breach that a guard found, or null.
@@ -151,6 +154,7 @@ class World {
     State marked;
     double marked_t = 0;
     Guards::Memory marked_guard;
+    double marked_depth = 0;
     PointNorm norm;
     void mark();
     void rewind();
@@ -169,6 +173,8 @@ class World {
   }
   std::string name_of(const Body& body) const;
   std::string failure_of(const Body& body) const;
+  void watch_depth();
+  std::string remedy_of(Limit limit) const;
   /// Coordinates of all points at the present state.
   struct Read {
     std::vector<double> values;  // (3 points)
@@ -213,6 +219,8 @@ class World {
   Read x_, u_;
   double t_ = 0;
   std::string failure_;
+  std::string overlap_;  // of strands at the start, in words
+  bool depth_watched_ = false;
   std::vector<FailedStrand> lost_;
   Crew crew_;
 };

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contract/forms/moving_history.h"
+#include "simulation/run/remedy.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {
@@ -83,13 +85,17 @@ Status World::couple(double h) {
 }
 
 std::string World::failure_of(const Body& body) const {
-  const IntegratorEntry& method = maker_.method();
   if (body.breached()) {
     return fmt::format("{}: {}; guard = false lets it go on", body.failure(),
-                       remedy(method.id, maker_.options()));
+                       remedy_of(Limit::none));
   }
   return fmt::format("{}: {}: {}", name_of(body), body.failure(),
-                     remedy(method.id, maker_.options(), body.limit()));
+                     remedy_of(body.limit()));
+}
+
+std::string World::remedy_of(Limit limit) const {
+  if (limit == Limit::none && !overlap_.empty()) return overlap_;
+  return remedy(maker_.method().id, maker_.options(), limit, maker_.model().id);
 }
 
 std::string World::name_of(const Body& body) const {
@@ -113,6 +119,26 @@ std::optional<MethodDissipation> World::dissipation() const {
     sum += body.guard->dissipation();
   }
   return sum;
+}
+
+void World::watch_depth() {
+  depth_watched_ = true;
+  for (Body& body : bodies_) {
+    MaterialPoints* const seen = body.system->material_points();
+    if (seen == nullptr) continue;
+    if (BodyDepth depth(maker_.effects(), *seen); depth.any()) {
+      body.depth.emplace(std::move(depth));
+    }
+  }
+}
+
+double World::take_depth() {
+  if (!depth_watched_) watch_depth();
+  double deepest = 0;
+  for (Body& body : bodies_) {
+    if (body.depth) deepest = std::max(deepest, std::exchange(body.depth->deepest, 0.0));
+  }
+  return deepest;
 }
 
 std::string World::not_smooth() const {

@@ -52,9 +52,8 @@ void World::start_control() {
 Status World::advance_controlled(double t_end) {
   for (long taken = 0; t_ < t_end; ++taken) {
     if (taken >= maker_.options().max_steps) {
-      failure_ =
-          fmt::format("more than max_steps exchanges needed at t = {:.9g} s: {}", t_,
-                      remedy(maker_.method().id, maker_.options(), Limit::steps));
+      failure_ = fmt::format("more than max_steps exchanges needed at t = {:.9g} s: {}",
+                             t_, remedy_of(Limit::steps));
       return Status::fatal;
     }
     if (const Status s = next_interval(t_end); s != Status::ok) return s;
@@ -139,8 +138,7 @@ Status World::reject(const StepControl::Trial& failed, const Difference* found) 
         "{}: tolerance {:g} needs exchanges with other strands less than {:.9g} s apart "
         "at t = {:.9g} s, for the error of the {}: {}",
         name_of(*found->body), maker_.options().tolerance, control_->least(),
-        t_ - failed.h, found->body->norm.where(),
-        remedy(maker_.method().id, maker_.options()));
+        t_ - failed.h, found->body->norm.where(), remedy_of(Limit::none));
     return Status::fatal;
   }
   control_->unsolved(failed, "strand");
@@ -158,6 +156,7 @@ void World::Body::mark() {
   marked.v.assign(integrator->v().begin(), integrator->v().end());
   marked.memory = system->memory();
   if (guard) marked_guard = guard->memory();
+  if (depth) marked_depth = depth->deepest;
   marked_t = integrator->time();
   rewindable->mark();
 }
@@ -168,6 +167,7 @@ void World::Body::rewind() {
   system->recall(marked.memory);
   system->accept(marked_t, old_q, old_v);
   if (guard) guard->recall(marked_guard);
+  if (depth) depth->deepest = marked_depth;
   rewindable->rewind();
   status = Status::ok;
 }

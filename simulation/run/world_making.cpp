@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "math/pack.h"
 #include "simulation/run/memory.h"
+#include "simulation/run/overlap_at_start.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {
@@ -188,6 +189,7 @@ void World::ready(const Scene& scene) {
   x_.done.resize(bodies_.size());
   u_.done.resize(bodies_.size());
   restore(begin);
+  overlap_ = overlap_at_start(scene, points_, positions());
   if (mesh_ == nullptr) return;
   mesh_->tie(positions());
   exchange();

@@ -127,6 +127,11 @@ TEST(CalibratePoints, RefusesWhatDoesNotFitTheSceneBeforeAnyRun) {
   calibrate.write("strand.csv", "time_s,strand,x_m\n0.1,0,0\n0.2,1,0\n0.3,0,0\n");
   EXPECT_THAT(refused("--set data=strand.csv"),
               HasSubstr("has no strand 1 (strand.csv:3:5): it has 1, the first is 0"));
+  calibrate.write("millimetres.csv", "time_s,x_m\n0.1,0\n0.2,80\n0.3,0\n");
+  EXPECT_THAT(
+      refused("--set data=millimetres.csv"),
+      AllOf(HasSubstr("x_m = 80 m is "), HasSubstr("more than 10 times its length"),
+            HasSubstr("millimetres.csv:3:1"), HasSubstr("give coordinates in metres")));
   calibrate.write("point.csv", "time_s,x_m,point\n0.1,0,0\n0.2,0,41\n0.3,0,0\n");
   EXPECT_THAT(refused("--set data=point.csv"),
               HasSubstr("no point 41 (point.csv:3:7): it has points 0 to 40"));

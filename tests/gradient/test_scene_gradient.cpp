@@ -230,6 +230,8 @@ TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
             "unknown parameter 'youngs_moduls_pa' (s.toml:24:6):");
   EXPECT_NE(refused("by = [\"youngs_moduls_pa\"]\n").find("youngs_modulus_pa'?"),
             std::string::npos);
+  const std::string listed = refused("by = [\"zzzzzz\"]\n");
+  EXPECT_NE(listed.find("root.amplitude_m"), std::string::npos) << listed;
   EXPECT_NE(refused("by = [\"poisson_ratio\"]\n").find("give shear_modulus_pa"),
             std::string::npos);
   EXPECT_NE(refused("by = [\"initial_velocity_m_s\"]\n").find("starts at rest"),

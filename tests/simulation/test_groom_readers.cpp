@@ -266,13 +266,25 @@ TEST_F(GroomReaders, PointAtLengthsThatStandOut) {
   const std::vector<std::string> notes = place_groom(read, "f", {}).notes;
   ASSERT_EQ(notes.size(), 3u);
   // The lengths are 0.08 to 0.156 m but for one.
-  EXPECT_EQ(notes[0],
-            "lengths: median 0.12 m, half of the strands 0.096 to 0.14 m, all 0.08 to "
-            "1.7 m");
+  EXPECT_EQ(
+      notes[0],
+      "lengths: median 0.12 m, half of the strands 0.096 m to 0.14 m, all 0.08 m to "
+      "1.7 m");
   EXPECT_THAT(notes[1], HasSubstr("1 of 20 strands are longer than 4 times the median"));
   EXPECT_THAT(notes[1], HasSubstr("strand 7: 1.7 m"));
   EXPECT_THAT(notes[2], AllOf(HasSubstr("in 1 of 20 strands one piece"),
                               HasSubstr("strand 7 from point 4 to 5: 1.59 m of 1.7 m")));
+}
+
+TEST_F(GroomReaders, LengthsThatAreEqualAreToldOnce) {
+  GroomFile read;
+  read.metres = 1;
+  read.up = FileAxis{2, false};
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) read.lines.points.push_back({0.01 * k, 0, -0.05 * i});
+    read.lines.end_strand(static_cast<std::size_t>(k), 0);
+  }
+  EXPECT_EQ(place_groom(read, "f", {}).notes.front(), "lengths: 0.1 m each");
 }
 
 }  // namespace tress::test_groom_readers

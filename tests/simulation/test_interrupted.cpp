@@ -112,6 +112,18 @@ TEST(Interrupted, IsContinuedFromTheLastFrameWithoutCheckpoints) {
   }
 }
 
+TEST(Interrupted, OptionsThatCannotBeMeantAreRefused) {
+  Toy toy;
+  toy.write("scene.toml", swinging("3", ""));
+  for (const auto& [option, said] :
+       {std::pair{" --save-every nan", "nan is not a number"},
+        std::pair{" --frames 64", "--frames is for the .h5 of a batch"}}) {
+    const Toy::Result refused = toy.run(std::string(run) + option);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.err, HasSubstr(said));
+  }
+}
+
 TEST(Interrupted, ASecondSignalEndsAtOnce) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(static_cast<void>(exit_code("test",

@@ -382,6 +382,10 @@ TEST_P(SimulateBadInput, IsOneLineExitCode2AndNothingWritten) {
   toy.write("key.toml", falling("super_helix") + "gravty_m_s2 = [0, 0, -1]\n");
   toy.write("nan.toml",
             falling("super_helix", "[effects.linear_drag]\ndrag_kg_m_s = nan\n"));
+  toy.write("sweeps.toml",
+            "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"xpbd_cosserat\"\n"
+            "[integrator]\nid = \"stable_cosserat_rods\"\ndt_s = 0.0005\n[strand]\n"
+            "elements = 10\n[effects.gravity]\n");
   const auto before = toy.files();
   const Toy::Result run = toy.run(GetParam().arguments);
   EXPECT_EQ(run.code, 2);
@@ -404,6 +408,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"no_scenes", "--out out", "scene"},
         Wrong{"second_is_bad", "good.toml typo.toml --out out", "linear_drag"},
         Wrong{"verify", "good.toml --verify --out out", "tolerance"},
+        Wrong{"error_bars_of_sweeps", "sweeps.toml --error-bars --out out",
+              "stable_cosserat_rods ends a step after a number of sweeps"},
         Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
         Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
     [](const auto& tested) { return tested.param.name; });
