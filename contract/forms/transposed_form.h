@@ -25,7 +25,7 @@ class TransposedForm {
   virtual std::vector<double> constants() const = 0;
   /// Prepares the calls below at a state where mu is known; solve_transposed() does, too.
   virtual void place_transposed(double t, In q, In v, In a, In mu) noexcept = 0;
-  /// by += (dr/dc)^T mu, of fixed loads.
+  /// Adds (dr/dc)^T mu to `by`, at fixed loads.
   virtual void add_by_constants(InOut by) noexcept = 0;
   /// Returns the power of the loads that the effects of `other` have at this state, W.
   /// NaN: `other` is another kind of system.

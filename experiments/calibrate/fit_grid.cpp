@@ -38,8 +38,8 @@ constexpr Parameter settings_of_rows[] = {
      .text = true},
     {.name = "profile",
      .help =
-         "on: intervals of parameters of `by` also by their profiles, which are right "
-         "where linear ones are not; some 20 runs for each end",
+         "intervals of parameters of `by` also by their profiles, which are right where "
+         "linear ones are not; about 20 runs for each end",
      .choices = "off|on"},
     {.name = "signal",
      .help = "amplitude_m is the tip's displacement from the root, up to a constant, or "

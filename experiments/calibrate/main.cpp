@@ -66,13 +66,11 @@ constexpr Column columns[] = {
     {"reduced_chi2", "sum of squares over sigma_m, over the degrees of freedom"},
     {"autocorrelation",
      "autocorrelation of successive residuals: near 0 for errors of measurement"},
-    {"profile", "whether intervals by profiles were asked for"},
+    {"profile", "whether intervals by profiles were computed"},
     {"profile_low",
-     "lower end of the interval by the profile: the sum of squares, with the other "
-     "values "
-     "fitted again, rises as much as the confidence level asks for; empty: not asked "
-     "for, "
-     "or no end"},
+     "lower end of the interval by the profile. There the sum of squares, with the "
+     "other values fitted again, rises as much as the confidence level says. Empty: "
+     "not computed, or no end"},
     {"profile_high", "upper end of the interval by the profile"},
     {"step_shift",
      "move of the fitted value with half the step, the largest one of oscillations, "

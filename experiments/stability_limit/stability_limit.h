@@ -155,8 +155,9 @@ std::vector<Case> nodal_cases(const CommandLine& line, const Settings& settings)
 void check_nodal_claims(const std::vector<Row>& rows, Verdicts& verdicts);
 
 /// Returns the answer about scene files, a line for each method, the largest step first.
-/// A line has the largest stable step, the steps up to it that were tried, the failure
-/// beyond it, the time over which it was judged, and the time of a simulated second.
+/// A line has the largest stable step, the steps up to it that were tried, and the
+/// failure beyond it. It ends with the time over which the step was judged, and the time
+/// of a simulated second.
 std::vector<std::string> stability_answer(const std::vector<Row>& rows);
 
 /// Checks the claims about the table of stability_limit. Two limits are equal when the

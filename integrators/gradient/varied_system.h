@@ -38,7 +38,7 @@ inline Stencil central_differences(double d) {
   const double part = 1 / (12 * d);
   return {0, {-2 * d, -d, d, 2 * d}, {part, -8 * part, 8 * part, -part}};
 }
-/// That at central_distance.
+/// Central differences at central_distance.
 inline const Stencil central_stencil = central_differences(central_distance);
 
 /// s. Motions of roots, of periods and durations from milliseconds to seconds, are not at
@@ -63,12 +63,12 @@ struct VariedSystem {
 /// itself (`of_run`).
 enum class VariedMemory { own, of_run };
 
-/// With the affine stencil where residual and start are affine in s: measured near the
-/// start, where all terms of the strand are alive, at several times, and once far away.
-/// Never of what moves points or RunParameter::places, since forces that depend on a
-/// place may begin to act later and are not affine in it. Never of systems with a History
-/// of their own, which makes the residual depend on the states behind it. `simple` is
-/// measured at three states near the start and tried at a fourth one.
+/// Returns the affine stencil where residual and start are affine in s. This is measured
+/// near the start, where all terms of the strand are alive, at several times, and once
+/// far away. Two kinds never get it. What moves points or RunParameter::places is not
+/// affine in forces that begin to act later. The residual of a system with a History of
+/// its own depends on the states behind it. `simple` is measured at three states near the
+/// start and tried at a fourth one.
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory = VariedMemory::own);
 

@@ -23,7 +23,7 @@ class TransposedElimination {
   virtual void place_transposed(const Placement& p, In x) noexcept = 0;
   /// Returns the constants of the elasticity, as TransposedForm::constants().
   virtual std::vector<double> constants() const = 0;
-  /// by += products of that x with the derivatives of forces by constants.
+  /// Adds the products of that x with the derivatives of forces by constants to `by`.
   virtual void add_by_constants(InOut by) noexcept = 0;
 };
 

@@ -114,11 +114,12 @@ class ExactTangent {
     }
   }
 
-  /// What the transposed product finds at a segment (TransposedProduct).
+  /// Results of the transposed product at a segment (TransposedProduct).
   using Rows = Eigen::Matrix<double, Shape::rows, 1>;
   using State = Eigen::Matrix<double, Shape::states, 1>;
-  /// Writes (dr/dv)^T mu and (dr/da)^T mu of the unknowns of segment i: the products with
-  /// their columns of segment() for the weights {0, 1, 0} and {1, 0, 0}. `velocities`: of
+  /// Writes (dr/dv)^T mu and (dr/da)^T mu of the unknowns of segment i. These are the
+  /// products with their columns of segment() for the weights {0, 1, 0} and {1, 0, 0}.
+  /// `velocities`: of
   /// all blocks of points for v = mu, in the components of the start; writes those of the
   /// segment.
   void pull_rates(std::size_t i, const EffectBlocks& effects, const Rows& rows,

@@ -71,8 +71,8 @@ ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int thr
 /// their length. Missing for bodies whose elements no table sets.
 ErrorBar space_error(const Scene& scene, int threads);
 
-/// Throws InputError if the scene's method ends its steps after a number of sweeps: what
-/// the sweeps leave of the equations is an error that a shorter step does not show.
+/// Throws InputError if the scene's method ends its steps after a number of sweeps. A
+/// shorter step does not show the error that unfinished sweeps leave in the equations.
 void check_error_bars(const Scene& scene);
 
 /// Throws InputError if the scene has no tolerance to compare the error with.

@@ -27,7 +27,7 @@ class FitSearch {
   /// Returns why the search did not converge; empty: it did.
   std::string run();
 
-  /// Where a search is.
+  /// State of a search.
   struct Place {
     std::vector<std::optional<double>> held;  // u of parameters that are held
     std::vector<std::size_t> free;            // the others

@@ -26,7 +26,7 @@ struct FitTask {
   double confidence = 0.95;             // of the intervals
   /// Runs again with half the step and with twice the elements.
   bool shifts = true;
-  /// Also finds intervals by profiles: each takes some 20 runs.
+  /// Adds intervals by profiles, each with about 20 runs.
   bool profile = false;
   std::string place = "fit";  // of `by`, in messages
   /// Called after each evaluation with the number of evaluations and the root mean

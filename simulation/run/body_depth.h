@@ -9,8 +9,8 @@
 namespace tress::simulation {
 
 /// Gauges the depth of strands in bodies after every step. A strand is the polygon
-/// through its material points: between two points, places are looked at that are no
-/// farther apart than half the thickness of the thinnest body, 64 at most.
+/// through its material points. Between two points the depth is sampled at distances of
+/// at most half the thickness of the thinnest body, in 64 pieces at most.
 class BodyDepth {
  public:
   /// Gauges the depth in those of the effects that are bodies.

@@ -228,7 +228,7 @@ bool Guard::broken(Breach::Kind kind, std::string what, std::string where, doubl
   return false;
 }
 
-/// Mechanisms have no length: whether they move is not asked.
+/// Of mechanisms, which have no length, `moved` is infinite.
 MethodDissipation Guard::dissipation() const {
   double mass = 0, length = std::numeric_limits<double>::infinity();
   for (const GuardedStrand& strand : strands_) {

@@ -462,7 +462,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Eigen::Matrix<Real, states, 3>> reached_;  // scratch of respond()
   double growth_ = 0;  // largest product of a pivot's inverse and the terms that it sums
   std::vector<Real> b_, left_, correction_;  // scratch of refine()
-  /// For refine_transposed().
+  // For refine_transposed().
   [[no_unique_address]] std::conditional_t<transposes, TransposedProduct<Shape>,
                                            std::monostate>
       product_;
