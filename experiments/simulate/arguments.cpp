@@ -83,7 +83,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--frames", a.frames,
                  "bits of a coordinate in a batch's .h5: 32, 64, or none (default 32)")
       ->check(CLI::IsMember({"32", "64", "none"}))
-      ->each([&a](const std::string&) { a.frames_given = true; });
+      ->each([&a](const std::string& word) { a.frames_given = word != "none"; });
   app.add_flag("--resume", a.resume, "continue an interrupted run");
   app.add_option(
          "--save-every", a.save_every,

@@ -7,8 +7,8 @@
 
 #include "contract/input_error.h"
 #include "math/pack.h"
+#include "simulation/rest/overlap_at_start.h"
 #include "simulation/run/memory.h"
-#include "simulation/run/overlap_at_start.h"
 #include "simulation/run/world.h"
 
 namespace tress::simulation {

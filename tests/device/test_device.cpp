@@ -416,7 +416,7 @@ TEST_F(ScalingOnDevice, StepsAHeadThereOrSaysWhyNot) {
   const Toy::Result strands = scaling("--device gpu");
   EXPECT_EQ(strands.code, 2);
   EXPECT_EQ(errors_in(strands.err), 1) << strands.err;
-  EXPECT_THAT(strands.err, HasSubstr("give --scene head.toml, or --device cpu"));
+  EXPECT_THAT(strands.err, HasSubstr("give --scene groom.toml, or --device cpu"));
 }
 
 }  // namespace tress::test_device

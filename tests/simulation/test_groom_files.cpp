@@ -280,7 +280,7 @@ TEST(PlacedGroom, HasMetresAndZUp) {
     EXPECT_NEAR(norm(placed.lines.points[0] - Vec{0.1, 0.2, 0.3}), 0, 1e-15);
     EXPECT_NEAR(norm(placed.lines.points[3] - Vec{0.1, 0.2, 0.1}), 0, 1e-15);
     EXPECT_EQ(placed.notes.size(), notes + 1);
-    EXPECT_THAT(placed.notes.back(), HasSubstr("lengths: median"));
+    EXPECT_THAT(placed.notes.back(), HasSubstr("lengths: 0.246 m each"));
   };
   check(place_groom(cm_y_up, "f", placing(0.01, {1, false})), 0);
   const PlacedGroom guessed = place_groom(cm_y_up, "f", {});

@@ -1,4 +1,4 @@
-#include "simulation/run/overlap_at_start.h"
+#include "simulation/rest/overlap_at_start.h"
 
 #include <fmt/format.h>
 
