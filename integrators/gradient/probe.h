@@ -13,7 +13,9 @@ namespace tress::integrators {
 /// A state away from the initial one, by parts of the typical sizes that differ from
 /// coordinate to coordinate.
 struct Probe {
+  /// Values of several functions.
   using Values = std::vector<std::vector<double>>;
+  /// Reach of a probe near the start.
   static constexpr double near_start = 0.02;
 
   /// `reach`: largest part of a typical size.
@@ -32,7 +34,8 @@ struct Probe {
       a[i] = 7 * part * v_typ[i] * v_typ[i] / q_typ[i];
     }
   }
-  std::vector<double> q, v, a, q_typ, v_typ;
+  std::vector<double> q, v, a;       // coordinates, rates, accelerations
+  std::vector<double> q_typ, v_typ;  // typical sizes of q and v (System::scale)
 
   /// All that may depend on a parameter: the start, then residuals, points and
   /// constraints. NaN where a residual is not finite.

@@ -13,8 +13,10 @@ struct ProfileInterval {
 /// its linear interval, in u. The sum of squares, `least` where the search ended, rises
 /// by the square of `deviation` to the ends of the interval.
 struct ProfileTask {
-  std::size_t k;
-  double half, least, deviation;
+  std::size_t k;     // free parameter
+  double half;       // half its linear interval, in u
+  double least;      // sum of squares where the search ended
+  double deviation;  // square root of the rise at the ends of the interval
 };
 
 /// Returns where the sum of squares has risen by deviation^2 if parameter k is held there

@@ -42,9 +42,10 @@ struct FittedParameter {
   std::string name = {}, unit = {};  // name and unit of the parameter
   double start = 0, value = 0;       // value of the scene and fitted value, in the unit
   double low = not_there, high = not_there;  // interval; NaN: none
-  /// Interval by the profile, where it was asked for; NaN: no end within ten of the
-  /// others.
-  double profile_low = not_there, profile_high = not_there;
+  /// Lower end of the interval by the profile. NaN: not computed, or no end within ten
+  /// linear half-intervals.
+  double profile_low = not_there;
+  double profile_high = not_there;  // upper end, likewise
   /// Changes with half the step and with twice the elements, over half the interval.
   double step_shift = not_there, elements_shift = not_there;
   std::string status = "ok", reason = {};  // status and its reason in words

@@ -55,9 +55,11 @@ class TransposedProduct {
     to.noalias() += root.transfer.transpose() * at_root_;
   }
 
-  /// State of a tip, and a segment's wrench and equations.
+  /// State of a tip.
   using State = Eigen::Matrix<double, Shape::states, 1>;
+  /// Wrench on a segment.
   using Wrench = Eigen::Matrix<double, Shape::wrench, 1>;
+  /// Equations of a segment.
   using Rows = Eigen::Matrix<double, Shape::rows, 1>;
   /// Returns what compute() found for the state of the tip of segment i.
   const State& by_state(std::size_t i) const { return by_state_[i]; }
