@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numeric>
 
 #include "contract/basics.h"
 
@@ -9,6 +10,11 @@ namespace tress {
 /// y += factor x
 inline void add(InOut y, double factor, In x) {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
+}
+
+/// Returns the scalar product of two vectors of equal length.
+inline double scalar_product(In x, In y) {
+  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
 }
 
 /// y = x + factor d

@@ -220,7 +220,7 @@ void AdjointRun::add_seeds(std::size_t events, const Seed& seed) {
       unit[k] = 0;
       add(u, -1, rest);
       for (std::size_t s = 0; s < hat_.size(); ++s) {
-        hat_[s][0][k] += product(u, x_hat[s]);
+        hat_[s][0][k] += scalar_product(u, x_hat[s]);
       }
     }
   }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "contract/forms/transposed_form.h"
 #include "integrators/gradient/probe.h"
@@ -8,10 +7,6 @@
 
 namespace tress::integrators {
 namespace {
-
-double product(In x, In y) {
-  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
-}
 
 /// A system at the distances of the central stencil and at those of the affine one.
 struct Distances {
@@ -46,7 +41,7 @@ struct Slope {
     std::vector<double> r(at.q.size());
     for (std::size_t i = 0; i < near.size(); ++i) {
       ok = ok && near[i]->residual(at.t, at.q, at.v, at.a, r) == Status::ok;
-      by += central_stencil.weight[i] * product(r, at.mu);
+      by += central_stencil.weight[i] * scalar_product(r, at.mu);
       double terms = 0;
       for (std::size_t k = 0; k < r.size(); ++k) terms += std::abs(r[k] * at.mu[k]);
       size = std::max(size, terms);
@@ -102,7 +97,7 @@ std::optional<ConstantsDerivative> constants_derivative(System& system,
     const double load = form->power_of_loads(system),
                  load_far = form->power_of_loads(*distances.far),
                  load_middle = form->power_of_loads(*distances.middle);
-    double by = product(found.by, by_constants), by_loads = 0;
+    double by = scalar_product(found.by, by_constants), by_loads = 0;
     for (std::size_t i = 0; i < distances.near.size(); ++i) {
       by_loads += central_stencil.weight[i] * form->power_of_loads(*distances.near[i]);
     }

@@ -217,8 +217,8 @@ Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
     std::ranges::fill(c_, 0.0);
     status = linearized.add_parameter(k, r_, c_);
     for (std::size_t s = 0; s < x.size(); ++s) {
-      by_[s][k] -= product(r_, In(x[s]).first(r_.size())) +
-                   product(c_, In(x[s]).subspan(r_.size()));
+      by_[s][k] -= scalar_product(r_, In(x[s]).first(r_.size())) +
+                   scalar_product(c_, In(x[s]).subspan(r_.size()));
     }
   }
   if (status != Status::ok || !natural_) return status;
@@ -232,7 +232,7 @@ void PulledParameters::pull_start(System& system, std::span<const In> q_hat,
     each_term(system, varied_[k], [&](double weight, System& at) {
       at.initial_state(q, v);
       for (std::size_t s = 0; s < by_.size(); ++s) {
-        by_[s][k] += weight * (product(q, q_hat[s]) + product(v, v_hat[s]));
+        by_[s][k] += weight * (scalar_product(q, q_hat[s]) + scalar_product(v, v_hat[s]));
       }
     });
   }
@@ -245,7 +245,7 @@ void PulledParameters::pull_points(System& system, double t, In q,
     each_term(system, varied_[k], [&](double weight, System& at) {
       at.material_points()->positions(t, q, x);
       for (std::size_t s = 0; s < by_.size(); ++s) {
-        by_[s][k] += weight * product(x, x_hat[s]);
+        by_[s][k] += weight * scalar_product(x, x_hat[s]);
       }
     });
   }
@@ -257,9 +257,9 @@ void PulledParameters::write(Out by) const {
     for (std::size_t k = 0; k < index_.size(); ++k) row[index_[k]] = by_[s][k];
     for (std::size_t k = 0; k < count(); ++k) {
       if (constants_by_[k]) {
-        row[k] = by_loads_[s][k] - product(constants_by_[k]->by, c_hat_[s]);
+        row[k] = by_loads_[s][k] - scalar_product(constants_by_[k]->by, c_hat_[s]);
       }
-      if (!natural_by_[k].empty()) row[k] = product(natural_by_[k], n_hat_[s]);
+      if (!natural_by_[k].empty()) row[k] = scalar_product(natural_by_[k], n_hat_[s]);
     }
   }
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,11 +8,6 @@
 #include "integrators/gradient/linearized.h"
 
 namespace tress::integrators {
-
-/// Returns the scalar product of two vectors of equal length.
-inline double product(In x, In y) {
-  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
-}
 
 /// n_hat -= r_n^T mu of the natural strains n (NaturalStrains). r_n is -diag(stiffness)
 /// where strains are coordinates. Elsewhere r is affine in n, and strains that are in

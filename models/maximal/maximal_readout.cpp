@@ -2,8 +2,8 @@
 // location of numbers that are not finite.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "linear/vector_ops.h"
 #include "models/maximal/maximal_system.h"
 #include "models/strand/not_finite.h"
 
@@ -64,7 +64,7 @@ double MaximalSystem::root_power(double t, In q, In v) {
   if (s != Status::ok) return std::nan("");
   place(t, q, v);
   forces(t, a);
-  return std::inner_product(force_.begin(), force_.end(), rate_.begin(), 0.0);
+  return scalar_product(force_, rate_);
 }
 
 std::optional<Momentum> MaximalSystem::momentum(double t, In q, In v) {

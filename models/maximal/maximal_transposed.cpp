@@ -1,9 +1,9 @@
 // The TransposedForm of maximal_system.h.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "linear/finite.h"
+#include "linear/vector_ops.h"
 #include "models/maximal/maximal_system.h"
 #include "models/maximal/strand_elimination.h"
 
@@ -87,9 +87,8 @@ double MaximalSystem::power_of_loads(System& other) noexcept {
   const Points p = points(needs_ | of->needs_);
   std::ranges::fill(load_, 0.0);
   for (const auto& effect : of->strand_.effects) effect->add_load(pose_time_, p, load_);
-  return std::inner_product(mu_.begin(),
-                            mu_.begin() + 3 * std::ptrdiff_t(mass_.size()) - 3,
-                            load_.begin() + 3, 0.0);
+  const std::size_t moving = 3 * (mass_.size() - 1);  // node 0 is clamped
+  return scalar_product(In(mu_).first(moving), In(load_).subspan(3, moving));
 }
 
 }  // namespace tress::models

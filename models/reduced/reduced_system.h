@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 
 #include "contract/forms/contact_form.h"
@@ -13,6 +12,7 @@
 #include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
 #include "contract/forms/transposed_form.h"
+#include "linear/vector_ops.h"
 #include "models/held/held_contacts.h"
 #include "models/reduced/contact_tangent.h"
 #include "models/reduced/exact_tangent.h"
@@ -27,11 +27,11 @@
 namespace tress::models {
 
 /// A chain or tree of segments with one or two unknowns for each mode, of any kernel
-/// (Helix, Clothoid, BallLink), behind the contract of contract/system.h. residual:
-/// Newton-Euler, O(N). linearize and solve: the mass tangent, or the exact one, by the
-/// chosen method, or by `composite` if the strand touches itself. The acceleration of the
-/// explicit form always comes from the recursion. With the elastic Jacobian, StrandSweeps
-/// replace both where they exist.
+/// (Helix, Clothoid, BallLink), behind the contract of contract/system.h. The residual is
+/// that of Newton-Euler recursion, O(N). linearize() and solve() take the mass tangent or
+/// the exact one, by the chosen method. If the strand touches itself, they take
+/// `composite`. The acceleration of the explicit form always comes from the recursion.
+/// With the elastic Jacobian, StrandSweeps replace both where they exist.
 template <class Kernel, int modes>
 class ReducedSystem : public System,
                       public NaturalStrains,
@@ -309,7 +309,7 @@ class ReducedSystem : public System,
       loads_placed_ = true;
     }
     const In loads = of->dynamics_.find_loads(t_transposed_, dynamics_.points(wanted));
-    return std::inner_product(loads.begin(), loads.end(), u_world_.begin(), 0.0);
+    return scalar_product(loads, u_world_);
   }
 
  protected:

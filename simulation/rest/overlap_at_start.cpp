@@ -76,8 +76,7 @@ std::string overlap_at_start(const Scene& scene, const std::vector<int>& points,
   if (other == 0) return {};
   return fmt::format(
       "strands {} and {} overlap by {:.3g} m at t = 0: move them {:.3g} m apart, or take "
-      "a "
-      "thickness_m below {:.3g}",
+      "a thickness_m below {:.3g}",
       one, other, thickness - nearest, thickness, nearest);
 }
 

@@ -32,10 +32,10 @@ struct Breach {
 /// or compressed by more than half of its length. So are more energy than the initial
 /// energy plus the work done, and a point faster than that energy permits.
 ///
-/// Energy and speed: as EnergyAccount, with the slack m g L + E_0/10. m g L is the energy
-/// gained by hanging down; a tenth of E_0, the initial kinetic and elastic energy, allows
-/// for the error of coarse but sound steps. Mechanisms have no m g L: their typical
-/// kinetic energy (System::scale) replaces it, and P is Energetics::power.
+/// Energy and speed are bounded as in EnergyAccount, with the slack m g L + E_0/10. m g L
+/// is the energy gained by hanging down. A tenth of E_0, the initial kinetic and elastic
+/// energy, allows for the error of coarse but sound steps. Mechanisms have no m g L:
+/// their typical kinetic energy (System::scale) replaces it, and P is Energetics::power.
 ///
 /// An error of the energy up to m g L ends no run: coarse but sound steps may have one
 /// while the strand falls. MethodDissipation shows it, as far as its quadrature decides.

@@ -35,15 +35,18 @@ constexpr Parameter gradient_keys[] = {
      .choices = "tip|points|last_tip"},
     {.name = "way",
      .help =
-         "direction of the derivatives in time. forward: along with the run, one more "
-         "solution per parameter. adjoint: one sweep backward, one solution per number "
-         "that is differentiated. auto: adjoint where the parameters outnumber these "
-         "numbers, 3 for each point and frame, more than 3 to 1",
+         "direction of the derivatives in time. forward goes along with the run, with "
+         "one "
+         "more solution per parameter. adjoint goes backward after it, with one solution "
+         "per differentiated number, 3 for each point and frame. auto takes adjoint "
+         "where "
+         "there are more than 3 parameters per number",
      .choices = "auto|forward|adjoint"},
     {.name = "start",
-     .help = "start of the run. damped: two short steps of backward Euler; auto: damped "
-             "where "
-             "a parameter moves the shape at rest, the start or the root; as_run: never",
+     .help =
+         "start of the run. damped takes two short steps of backward Euler, as_run "
+         "none. auto takes damped where a parameter moves the shape at rest, the start "
+         "or the root",
      .choices = "auto|damped|as_run"},
 };
 

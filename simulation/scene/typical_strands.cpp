@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "linear/vector_ops.h"
+
 namespace tress::simulation {
 namespace {
 
@@ -30,10 +32,6 @@ Features mean(const std::vector<Features>& all, const std::vector<std::size_t>& 
   }
   for (double& entry : sum) entry /= static_cast<double>(of.size());
   return sum;
-}
-
-double product(const Features& a, const Features& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 Features less(Features a, const Features& b) {
@@ -65,10 +63,10 @@ Features principal_axis(const std::vector<Features>& all) {
   for (int i = 0; i < iterations; ++i) {
     Features next{};
     for (const Features& one : all) {
-      const double along = product(one, axis);
+      const double along = scalar_product(one, axis);
       for (std::size_t k = 0; k < features; ++k) next[k] += along * one[k];
     }
-    const double size = std::sqrt(product(next, next));
+    const double size = std::sqrt(scalar_product(next, next));
     if (!(size > 0)) break;
     for (std::size_t k = 0; k < features; ++k) axis[k] = next[k] / size;
   }
@@ -88,7 +86,7 @@ std::vector<std::size_t> typical_strands(const std::vector<Strand>& strands,
   standardize(all, order);
   const Features axis = principal_axis(all);
   std::ranges::stable_sort(order, {},
-                           [&](std::size_t i) { return product(all[i], axis); });
+                           [&](std::size_t i) { return scalar_product(all[i], axis); });
   std::vector<std::size_t> chosen;
   for (std::size_t g = 0; g < most; ++g) {
     const auto at = [&](std::size_t group) {
@@ -98,7 +96,7 @@ std::vector<std::size_t> typical_strands(const std::vector<Strand>& strands,
     const Features centre = mean(all, group);
     chosen.push_back(*std::ranges::min_element(group, {}, [&](std::size_t i) {
       const Features away = less(all[i], centre);
-      return product(away, away);
+      return scalar_product(away, away);
     }));
   }
   std::ranges::sort(chosen);

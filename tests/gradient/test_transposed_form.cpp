@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "contract/forms/transposed_form.h"
+#include "integrators/gradient/probe.h"
+#include "linear/vector_ops.h"
 #include "tests/gradient/strand_runs.h"
 
 namespace tress::test_transposed_form {
@@ -25,22 +26,8 @@ StrandRun hair(const std::string& model) {
 }
 
 /// A state away from the start, and numbers without a pattern.
-struct State {
-  explicit State(System& system)
-      : q(static_cast<std::size_t>(system.layout().coordinates)),
-        v(q),
-        a(q),
-        q_typ(q),
-        v_typ(q) {
-    system.initial_state(q, v);
-    system.scale(q_typ, v_typ);
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      const double x = static_cast<double>(i);
-      q[i] += 0.01 * std::sin(1 + 2.7 * x) * q_typ[i];
-      v[i] += 0.05 * std::cos(2 + 1.3 * x) * v_typ[i];
-      a[i] = 0.05 * std::sin(3 + 1.7 * x) * v_typ[i] * v_typ[i] / q_typ[i];
-    }
-  }
+struct State : integrators::Probe {
+  using Probe::Probe;
   std::vector<double> numbers(double seed) const {
     std::vector<double> x(q.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -49,12 +36,7 @@ struct State {
     return x;
   }
   double t = 0.0137;
-  std::vector<double> q, v, a, q_typ, v_typ;
 };
-
-double product_of(In x, In y) {
-  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
-}
 
 double sizes_of(In x, In y) {
   double sum = 0;
@@ -78,7 +60,7 @@ TEST_P(TransposedFormOf, SolvesWithTheTransposedMatrix) {
   ASSERT_EQ(form->solve_transposed(b, mu, by_q, by_v), Status::ok);
   ASSERT_EQ(system->linearize(at.t, at.q, at.v, at.a, w), Status::ok);
   ASSERT_EQ(system->solve(c, x), Status::ok);
-  EXPECT_NEAR(product_of(mu, c), product_of(b, x), 1e-10 * sizes_of(b, x));
+  EXPECT_NEAR(scalar_product(mu, c), scalar_product(b, x), 1e-10 * sizes_of(b, x));
 }
 
 // Against central differences at 1e-6 of typical sizes: 1e-12 times third derivatives,
@@ -110,7 +92,7 @@ TEST_P(TransposedFormOf, MultipliesWithTheDerivativesOfTheResidual) {
       by_differences += term;
       sizes += std::abs(term);
     }
-    EXPECT_NEAR(product_of(of_v ? by_v : by_q, d), by_differences, 1e-6 * sizes);
+    EXPECT_NEAR(scalar_product(of_v ? by_v : by_q, d), by_differences, 1e-6 * sizes);
   }
 }
 

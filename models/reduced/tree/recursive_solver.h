@@ -74,7 +74,9 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   Status solve(In b, Out x) noexcept override {
     if constexpr (refines) {
       if (growth_ > most_growth) {
-        refine(b, x);
+        refine(
+            b, x, [this](In of, Out to) { sweep(of, to); },
+            [this](In of) { subtract_image(of); });
         return Status::ok;
       }
     }
@@ -84,10 +86,14 @@ class RecursiveSolver final : public TreeSolver<Shape> {
 
   bool solve_transposed(In b, Out x) noexcept override {
     if constexpr (transposes) {
+      const auto sweep = [this](In of, Out to) { sweep_transposed(of, to); };
       if (growth_ > most_growth) {
-        refine_transposed(b, x);
+        refine(b, x, sweep, [this](In of) {
+          product_.compute(*tangent_, of, left_);
+          for (std::size_t k = 0; k < left_.size(); ++k) left_[k] = b_[k] - left_[k];
+        });
       } else {
-        sweep_transposed(b, x);
+        sweep(b, x);
       }
     }
     return transposes;
@@ -213,20 +219,6 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
   }
 
-  /// refine() for S^T.
-  void refine_transposed(In b, Out x) noexcept {
-    for (auto* values : {&b_, &left_, &correction_}) values->resize(b.size());
-    std::ranges::copy(b, b_.begin());
-    sweep_transposed(b_, x);
-    for (const double most : {most_growth, most_of_one_sweep}) {
-      if (growth_ <= most) return;
-      product_.compute(*tangent_, x, left_);
-      for (std::size_t k = 0; k < left_.size(); ++k) left_[k] = b_[k] - left_[k];
-      sweep_transposed(left_, correction_);
-      for (std::size_t k = 0; k < correction_.size(); ++k) x[k] += correction_[k];
-    }
-  }
-
   /// Costs O(segments + loads^2). The unknowns x beyond the tip i of a load do not feel
   /// it. There, states are passed on as s_tip = T s, T = transfer [I; -Z], and a wrench
   /// reaches the start of a segment as T^T w. So Omega, the response of a tip's state to
@@ -291,8 +283,10 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     }
   }
 
-  /// Solves S x = b with one or two steps of iterative refinement.
-  void refine(In b, Out x) noexcept {
+  /// Solves by sweep(b, x) with one or two steps of iterative refinement;
+  /// subtract_image(x): left_ = b_ less the image of x.
+  template <class Sweep, class SubtractImage>
+  void refine(In b, Out x, const Sweep& sweep, const SubtractImage& subtract_image) {
     std::ranges::copy(b, b_.begin());
     sweep(b_, x);
     for (const double most : {most_growth, most_of_one_sweep}) {
@@ -462,7 +456,7 @@ class RecursiveSolver final : public TreeSolver<Shape> {
   std::vector<Eigen::Matrix<Real, states, 3>> reached_;  // scratch of respond()
   double growth_ = 0;  // largest product of a pivot's inverse and the terms that it sums
   std::vector<Real> b_, left_, correction_;  // scratch of refine()
-  // For refine_transposed().
+  // For the refinement of solve_transposed().
   [[no_unique_address]] std::conditional_t<transposes, TransposedProduct<Shape>,
                                            std::monostate>
       product_;
