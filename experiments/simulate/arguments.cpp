@@ -123,11 +123,10 @@ std::string help_text(const CLI::App& app) {
 }
 
 models::HeadPack pack_of(const Arguments& a) {
-  const bool wide = a.bits == 64;
-  return {wide ? models::HeadNumber::float64 : models::HeadNumber::float32, a.lanes != 0
-                                                                                ? a.lanes
-                                                                            : wide ? 8
-                                                                                   : 16};
+  models::HeadPack pack = models::longest_pack(
+      a.bits == 64 ? models::HeadNumber::float64 : models::HeadNumber::float32);
+  if (a.lanes != 0) pack.lanes = a.lanes;
+  return pack;
 }
 
 SceneRunOptions options_of(const std::string& scene, const Arguments& a) {

@@ -70,6 +70,17 @@ inline HeadPack widest_pack(HeadNumber number) {
   if (number == HeadNumber::float64) return {number, wide ? 8 : 4};
   return {number, wide ? 16 : 8};
 }
+/// Lanes of the longest pack of doubles in this build. One of floats has twice that.
+#ifdef TRESS_NARROW_PACKS
+inline constexpr int longest_lanes = 4;
+#else
+inline constexpr int longest_lanes = 8;
+#endif
+/// Returns the longest pack of this build, which also runs on machines with narrower
+/// registers.
+inline HeadPack longest_pack(HeadNumber number) {
+  return {number, number == HeadNumber::float64 ? longest_lanes : 2 * longest_lanes};
+}
 
 /// A strand without a solution: it stays where it was, the others go on.
 struct HeadLoss {

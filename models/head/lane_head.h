@@ -84,14 +84,14 @@ Result on_pack(const HeadPack& pack, Made made) {
   if (pack.number == HeadNumber::float64) {
     if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>(set);
     if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>(set);
-#ifndef TRESS_NARROW_PACKS
-    if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>(set);
-#endif
+    if constexpr (longest_lanes == 8) {
+      if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>(set);
+    }
   } else if constexpr (short_numbers) {
     if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>(set);
-#ifndef TRESS_NARROW_PACKS
-    if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>(set);
-#endif
+    if constexpr (longest_lanes == 8) {
+      if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>(set);
+    }
   }
   throw InputError(
       std::to_string(pack.lanes) + " lanes", place_of_head,

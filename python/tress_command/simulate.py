@@ -1,12 +1,13 @@
 """./tress simulate."""
 
+import contextlib
 import os
 import shutil
 import subprocess
 
 from .command import Command
 from .counting import must
-from .messages import Stopwatch, refuse, say
+from .messages import BAD_INPUT, ROWS_FAILED, Ended, Stopwatch, refuse, say
 from .processes import run
 from .scene_folder import scene_folder
 from .scripts import REPORT
@@ -14,6 +15,32 @@ from .tree import PROGRAMS, first_program
 
 PROGRAM = f"{PROGRAMS}/simulate"
 DEFAULTS = ["--print-defaults"]
+
+
+@contextlib.contextmanager
+def _in_place_of(folder):
+    """Moves the folder of an earlier run aside. It comes back if the new run refuses its input."""
+    earlier = f"{folder}.earlier"
+    shutil.rmtree(earlier, ignore_errors=True)
+    with contextlib.suppress(FileNotFoundError):
+        os.rename(folder, earlier)
+    try:
+        yield
+    except Ended as end:
+        if end.code == BAD_INPUT and os.path.isdir(earlier):
+            shutil.rmtree(folder, ignore_errors=True)
+            os.rename(earlier, folder)
+        raise
+    finally:
+        shutil.rmtree(earlier, ignore_errors=True)
+
+
+def _simulate(program, scene, folder, options):
+    """Returns 0, or ROWS_FAILED of a run that ended early and has a page all the same."""
+    code = run(program, scene, "--out", f"{folder}/scenes", *options)
+    if code not in (0, ROWS_FAILED):
+        raise Ended(code)
+    return code
 
 
 def _run(words, machine):
@@ -26,14 +53,15 @@ def _run(words, machine):
     if any(word.partition("=")[0] == "--out" for word in options):
         refuse(f"simulate: --out is {folder} here; {PROGRAM} takes another")
     program = first_program(machine, "simulate")
-    shutil.rmtree(folder, ignore_errors=True)
     watch = Stopwatch()
-    must(program, scene, "--out", f"{folder}/scenes", *options)
+    with contextlib.nullcontext() if "--resume" in options else _in_place_of(folder):
+        code = _simulate(program, scene, folder, options)
     watch.say("simulation")
     watch = Stopwatch()
     must(*REPORT, folder, stdout=subprocess.DEVNULL)
     watch.say("page")
     say(f"open in a browser: file://{os.getcwd()}/{folder}/report.html#tab-scenes")
+    return code
 
 
 COMMAND = Command(
@@ -45,6 +73,7 @@ COMMAND = Command(
     example="./tress simulate scenes/cantilever.toml --error-bars",
     time="seconds for most shipped scenes; a first build takes about a quarter of an hour of "
          "processor time.",
-    options=(("--print-defaults", "prints a complete scene of one hair instead"),
+    options=(("--resume", "continues an interrupted run from its last saved state"),
+             ("--print-defaults", "prints a complete scene of one hair instead"),
              ("--help", "this text; OPTIONS are those of the program, without --out")),
     program=(PROGRAM,))

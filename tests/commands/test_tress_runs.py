@@ -191,8 +191,23 @@ class Scenes(House):
         left.touch()
         self.tress("simulate", self.own / "a/s.toml")
         self.assertFalse(left.exists())
+        # A run that fails has a page.
         self.study("simulate", "exit 3")
-        self.ends(3, "build: ", self.tress("simulate", self.scene("a/s.toml")))
+        self.ends(3, "open in a browser: ", self.tress("simulate", self.scene("a/s.toml")))
+
+    def test_simulate_keeps_what_a_user_may_still_need(self):
+        scene = self.scene("a/s.toml")
+        self.study("simulate", 'mkdir -p "$3"; touch "$3/state"')
+        self.tress("simulate", scene)
+        self.study("simulate", 'ls "$3"; exit 0')
+        self.assertIn("state\n", self.tress("simulate", scene, "--resume").stdout)
+        # Nor does a refusal take the results of the run before.
+        self.study("simulate", "exit 2")
+        self.ends(2, "build: ", self.tress("simulate", scene, "--such"))
+        self.study("simulate", 'ls "$3"')
+        self.assertIn("state\n", self.tress("simulate", scene, "--resume").stdout)
+        folders = list((self.house / "results/simulate").iterdir())
+        self.assertEqual(len(folders), 1, folders)
 
     def in_a_new_clone(self):
         """Only build/first has the program then. What cmake is asked goes into the file `asked`."""
