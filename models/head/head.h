@@ -64,11 +64,13 @@ struct HeadPack {
   int lanes = 4;                                  // 1, 4, 8; of float32 8, 16
   std::optional<Instructions> instructions = {};  // none: the widest of the machine
 };
+/// Returns the pack of this number type that has the width of `doubles` doubles.
+inline HeadPack pack_as_long_as(int doubles, HeadNumber number) {
+  return {number, number == HeadNumber::float64 ? doubles : 2 * doubles};
+}
 /// Returns the widest pack that the machine's registers hold.
 inline HeadPack widest_pack(HeadNumber number) {
-  const bool wide = widest_instructions() == Instructions::avx512;
-  if (number == HeadNumber::float64) return {number, wide ? 8 : 4};
-  return {number, wide ? 16 : 8};
+  return pack_as_long_as(widest_instructions() == Instructions::avx512 ? 8 : 4, number);
 }
 /// Lanes of the longest pack of doubles in this build. One of floats has twice that.
 #ifdef TRESS_NARROW_PACKS
@@ -79,7 +81,7 @@ inline constexpr int longest_lanes = 8;
 /// Returns the longest pack of this build, which also runs on machines with narrower
 /// registers.
 inline HeadPack longest_pack(HeadNumber number) {
-  return {number, number == HeadNumber::float64 ? longest_lanes : 2 * longest_lanes};
+  return pack_as_long_as(longest_lanes, number);
 }
 
 /// A strand without a solution: it stays where it was, the others go on.

@@ -7,7 +7,7 @@ import subprocess
 
 from .command import Command
 from .counting import must
-from .messages import BAD_INPUT, ROWS_FAILED, Ended, Stopwatch, refuse, say
+from .messages import BAD_INPUT, DONE, ROWS_FAILED, Ended, Stopwatch, refuse, say
 from .processes import run
 from .scene_folder import scene_folder
 from .scripts import REPORT
@@ -35,14 +35,6 @@ def _in_place_of(folder):
         shutil.rmtree(earlier, ignore_errors=True)
 
 
-def _simulate(program, scene, folder, options):
-    """Returns 0, or ROWS_FAILED of a run that ended early and has a page all the same."""
-    code = run(program, scene, "--out", f"{folder}/scenes", *options)
-    if code not in (0, ROWS_FAILED):
-        raise Ended(code)
-    return code
-
-
 def _run(words, machine):
     if words == DEFAULTS:
         return run(first_program(machine, "simulate"), *words)
@@ -55,7 +47,9 @@ def _run(words, machine):
     program = first_program(machine, "simulate")
     watch = Stopwatch()
     with contextlib.nullcontext() if "--resume" in options else _in_place_of(folder):
-        code = _simulate(program, scene, folder, options)
+        code = run(program, scene, "--out", f"{folder}/scenes", *options)
+        if code not in (DONE, ROWS_FAILED):  # a run that fails has a page all the same
+            raise Ended(code)
     watch.say("simulation")
     watch = Stopwatch()
     must(*REPORT, folder, stdout=subprocess.DEVNULL)

@@ -36,11 +36,9 @@ constexpr Parameter gradient_keys[] = {
     {.name = "way",
      .help =
          "direction of the derivatives in time. forward goes along with the run, with "
-         "one "
-         "more solution per parameter. adjoint goes backward after it, with one solution "
-         "per differentiated number, 3 for each point and frame. auto takes adjoint "
-         "where "
-         "there are more than 3 parameters per number",
+         "one more solution per parameter. adjoint goes backward after it, with one "
+         "solution per differentiated number, 3 for each point and frame. auto takes "
+         "adjoint where there are more than 3 parameters per number",
      .choices = "auto|forward|adjoint"},
     {.name = "start",
      .help =
