@@ -81,6 +81,7 @@ struct Stats {
   // Of `rejected`, by methods that tell them apart.
   long rejected_by_error = 0;   // steps rejected by the estimated error
   long rejected_by_newton = 0;  // steps rejected since Newton's method did not converge
+  long replaced = 0;            // accepted backward Euler steps in place of the method's
   double smallest_step = 0;     // s, that error control chose; 0: it chose none
   double smallest_step_at = 0;  // s
   /// Cause of that step: "start", "error" or "newton".

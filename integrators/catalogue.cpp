@@ -24,6 +24,10 @@
   METHOD(bdf2)                       \
   METHOD(tr_bdf2)                    \
   METHOD(esdirk43)                   \
+  METHOD(guarded)                    \
+  METHOD(guarded_esdirk43)           \
+  METHOD(radau5)                     \
+  METHOD(rodas5p)                    \
   METHOD(newmark)                    \
   METHOD(generalized_alpha)          \
   METHOD(xpbd)                       \

@@ -186,7 +186,7 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
   stage_.places(t, q, v, place_);
   stage_.slides(t, q, v, slides_[0]);
   impact_ = stopped(t, q, v, gently);
-  if (impact_) return impact(t, h, q, v);
+  if (impact_) return damped(t, h, q, v);
   t_ = t;
   h_ = h;
   std::ranges::copy(v, v_[0].begin());
@@ -214,10 +214,17 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
     stage_.slides(t + h * table_.c(i), stage_.q(), stage_.v(), slides_[i]);
   }
   impact_ = stopped(t, q, v, gently);
-  return impact_ ? impact(t, h, q, v) : Status::ok;
+  return impact_ ? damped(t, h, q, v) : Status::ok;
 }
 
-Status EsdirkStages::impact(double t, double h, In q, In v) noexcept {
+Status EsdirkStages::backward_euler(double t, double h, In q, In v) noexcept {
+  stage_.leave(t, q);
+  stage_.places(t, q, v, place_);
+  return damped(t, h, q, v);
+}
+
+/// From where step() and backward_euler() have left the stage.
+Status EsdirkStages::damped(double t, double h, In q, In v) noexcept {
   forget();
   shifted(q_bar_, q, h, v);
   std::ranges::copy(place_, stage_.place_bar().begin());
@@ -226,7 +233,7 @@ Status EsdirkStages::impact(double t, double h, In q, In v) noexcept {
   if (s != Status::ok) return s;
   for (std::size_t i = 0; i < q.size(); ++i) v_[0][i] = stage_.q()[i] - q_bar_[i];
   std::ranges::copy(stage_.v(), v_[last()].begin());
-  dynamics_.system().contact_form()->release();
+  if (ContactForm* contacts = dynamics_.system().contact_form()) contacts->release();
   return dynamics_.accelerate(t + h, stage_.q(), stage_.v(), a_[last()], lambda_);
 }
 

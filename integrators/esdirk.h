@@ -59,6 +59,9 @@ class EsdirkStages {
   Status step(double t, double h, In q, In v, In a, In lambda, double gently,
               Effort effort = Effort::whole) noexcept;
 
+  /// A backward Euler step instead, which also ends with consistent accelerations.
+  Status backward_euler(double t, double h, In q, In v) noexcept;
+
   /// The next step does not guess from the last one.
   void forget() { h_ = 0; }
 
@@ -77,7 +80,7 @@ class EsdirkStages {
 
  private:
   bool stopped(double t, In q, In v, double gently) noexcept;
-  Status impact(double t, double h, In q, In v) noexcept;
+  Status damped(double t, double h, In q, In v) noexcept;
   std::size_t last() const { return table_.stages - 1; }
   /// Whether the last step ended, or began, where this one begins.
   void look_back(double t) noexcept;

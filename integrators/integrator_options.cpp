@@ -96,7 +96,8 @@ const Field fields[] = {
      number<&Options::max_step>},
     {{.name = "position_tol_rel",
       .help = "error of a point over the length for which the step is controlled, 0: "
-              "fixed step. Methods with rtol take it as rtol, and a hundredth as atol",
+              "fixed step. In a scene it excludes dt_s, newton_tolerance and refresh. "
+              "Methods with rtol take it as rtol, and a hundredth as atol",
       .number = defaults.tolerance,
       .min = 0,
       .max = 1},

@@ -55,4 +55,16 @@ void by(Instructions set, const Work& work) {
   work();
 }
 
+/// Does work() on packs T by the instructions of their registers: packs of 512 bits by
+/// the widest that are available, shorter ones by the base. With more sets for shorter
+/// packs, kernels would take half as long again to compile.
+template <class T, class Work>
+void by_registers_of(const Work& work) {
+  if constexpr (sizeof(T) == 64) {
+    by(widest_instructions(), work);
+  } else {
+    work();
+  }
+}
+
 }  // namespace tress

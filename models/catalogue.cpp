@@ -22,6 +22,7 @@ namespace tress::models {
 ModelEntry double_pendulum_entry();
 ModelEntry andrews_squeezer_entry();
 ModelEntry slider_crank_entry();
+ModelEntry car_axis_entry();
 ModelEntry beam_entry();
 ModelEntry der_entry();
 ModelEntry corde_entry();
@@ -52,6 +53,7 @@ std::vector<ModelEntry> built_in_models() {
       double_pendulum_entry(),
       andrews_squeezer_entry(),
       slider_crank_entry(),
+      car_axis_entry(),
       beam_entry(),
       ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), on_described_strand<make_super_helix>, make_super_helix, together<Unknown::curvature>},
       ModelEntry{"super_helix_tree", "super_helix with branches: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},

@@ -8,6 +8,7 @@
 #include "models/strand/strand_parameters.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::experiments::calibrate {
 namespace {
@@ -67,6 +68,10 @@ Specimen specimen(const Scene& scene) {
     throw InputError(
         fmt::format("{} strands, but records are of one", scene.strands.size()), where,
         "leave one [strand] in it");
+  }
+  if (simulation::SceneSupports(scene).any()) {
+    throw InputError("the strand has supports: its tip does not swing about a root",
+                     where, "leave out [supports]");
   }
   const Strand& strand = scene.strands.front();
   if (strand.free_root) {

@@ -66,12 +66,13 @@ constexpr std::string_view usual[] = {"linearly_implicit_euler",
                                       "implicit_midpoint",
                                       "bdf2",
                                       "tr_bdf2",
+                                      "guarded",
                                       "esdirk43",
                                       "generalized_alpha",
                                       "xpbd",
                                       "rattle",
                                       "rk4"};
-constexpr std::size_t usual_quick = 5;  // the first of them
+constexpr std::size_t usual_quick = 6;  // the first of them
 
 /// Whether the integrator is tried at fixed steps.
 bool by_step(const CommandLine& line, const IntegratorEntry& entry) {

@@ -72,6 +72,7 @@ void set_survival(const Survival& s, Row& row) {
   if (s.outcome != Outcome::refused) {
     row.set("t_s", s.t).set("steps", s.stats.steps);
     row.set("newton_iterations", s.stats.newton_iterations);
+    if (s.stats.replaced > 0) row.set("replaced_steps", s.stats.replaced);
   }
   if (!passed(s.outcome)) row.failed(name(s.outcome), s.why);
 }

@@ -154,6 +154,7 @@ std::vector<Problem> make_problems() {
   // crank's turns.
   add("slider_crank", "slider_crank", {}, 0.1, 1e-3, {}, 1, Compared::coordinates,
       Formulation::projection, Formulation::acceleration);
+  all.push_back(published("car_axis", 1e-2));
   all.push_back(published("beam", 1e-2));
   return all;
 }

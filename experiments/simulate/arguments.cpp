@@ -54,12 +54,14 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--hairs", a.hairs,
                  "hairs drawn between the strands of a groom (default 0)")
       ->check(CLI::Range(0, 100'000));
-  app.add_flag("--vtk", a.vtk, ".vtp and .pvd files for ParaView, in addition");
-  app.add_flag("--usd", a.usd, ".usda file for Blender and Houdini, in addition");
-  app.add_flag("--hair", a.hair, ".hair files for renderers, one per frame, in addition");
+  app.add_flag("--vtk", a.vtk, ".vtp and .pvd files for ParaView, as --export vtk");
+  app.add_flag("--usd", a.usd, ".usda file for Blender and Houdini, as --export usd");
+  app.add_flag("--hair", a.hair, ".hair files for renderers, as --export hair");
   app.add_option(
          "--export", a.exports,
-         "formats to write by name: vtk, usd, hair, or gltf (a .glb file for viewers)")
+         "formats to write by name: vtk, usd, hair, or gltf (a .glb file for viewers). "
+         "Of single strands they have every strand and frame. Of a batch they have at "
+         "most 1000 strands and 50 frames: use its .h5, or --as strands")
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
   app.add_option(
@@ -74,7 +76,8 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({64, 32}));
   app.add_option("--simd-width", a.lanes,
                  "strands per SIMD pack of a batch: 1, 4 or 8 with --precision 64, 8 or "
-                 "16 with --precision 32 (default 8, 16). Results are bitwise identical")
+                 "16 with --precision 32. The default is the largest of the build: 8 and "
+                 "16, or 4 and 8 without TRESS_WIDE_PACKS. Results are bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
                  "device for the time steps of a batch: cpu, gpu or auto (default cpu). "

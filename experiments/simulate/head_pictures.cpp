@@ -57,10 +57,12 @@ std::vector<std::size_t> shown_strands(std::size_t strands) {
   return shown;
 }
 
+std::size_t shown_frames(std::size_t frames) { return std::min(frames, most_frames); }
+
 void write_head_pictures(const SceneOutline& outline, const HeadFrames& frames,
                          const std::vector<std::size_t>& shown,
                          const SceneRunOptions& options) {
-  std::vector<Frame3d> chosen(std::min(frames.size(), most_frames));
+  std::vector<Frame3d> chosen(shown_frames(frames.size()));
   const std::size_t points = outline.scene.strands.front().segments.size() + 1;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::size_t frame = spread(i, chosen.size(), frames.size());

@@ -13,8 +13,12 @@ namespace tress::experiments::scene_runs {
 /// again.
 std::vector<std::size_t> shown_strands(std::size_t strands);
 
-/// Writes pictures of the shown strands, of at most about 50 of the frames, in the format
-/// of any scene. All frames of all strands would not fit into memory, or on a page.
+/// Returns the number of frames that pictures of a head of `frames` frames show, 50 at
+/// most.
+std::size_t shown_frames(std::size_t frames);
+
+/// Writes pictures of the shown strands and frames in the format of any scene. All frames
+/// of all strands would not fit into memory, or on a page.
 void write_head_pictures(const SceneOutline& outline, const HeadFrames& frames,
                          const std::vector<std::size_t>& shown,
                          const SceneRunOptions& options);

@@ -91,6 +91,8 @@ class HeadSceneRun {
     outcome.engine = run_->lanes() ? "lanes" : "replicated";
     outcome.strands = run_->strands();
     outcome.lost = recording_->progress().lost.size();
+    outcome.shown_strands = reading_->shown().size();
+    outcome.shown_frames = shown_frames(recording_->frames().size());
     outcome.bytes_per_strand = static_cast<double>(run_->head().bytes()) /
                                static_cast<double>(run_->head().strands());
     outcome.state = fmt::format("{:016x}", state);
@@ -137,6 +139,7 @@ class HeadSceneRun {
       all.steps += done.steps;
       all.rejected_by_error += done.rejected_by_error;
       all.rejected_by_newton += done.rejected_by_newton;
+      all.replaced += done.replaced;
       all.newton_iterations += done.iterations + done.again_iterations;
       all.rejected += run_->lanes() ? done.rejected_by_error + done.rejected_by_newton
                                     : done.shortened;

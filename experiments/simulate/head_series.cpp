@@ -13,8 +13,8 @@ std::vector<Reading> head_series(const Scene& scene) {
       {"kinetic_j", "kinetic energy of all strands"},
       {"elastic_j", "elastic energy of all strands"},
       {"gravity_j", "potential energy of gravity, 0 at the origin"},
-      {"most_kinetic_j", "kinetic energy of the strand that has most"},
-      {"most_elastic_j", "elastic energy of the strand that has most"},
+      {"most_kinetic_j", "largest kinetic energy of a strand"},
+      {"most_elastic_j", "largest elastic energy of a strand"},
       {"fastest_m_s", "largest speed of an element's end"},
       {"failed_strands", "strands that have stopped, for their step was impossible"},
   };

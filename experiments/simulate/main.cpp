@@ -255,10 +255,14 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   manifest.set_outcome(row);
   replace_file(options.stem + ".meta.json", manifest.finished({row}, {}, 0));
   // Last: all that it says is done is on the disk.
-  tell("simulate: {}: {} frame{}, {:.3g} s simulated in {:.3g} s{}{}{} -> {}.csv\n",
+  tell("simulate: {}: {} frame{}, {:.3g} s simulated in {:.3g} s{}{}{}{} -> {}.csv\n",
        scene.name, run.frames, run.frames == 1 ? "" : "s", run.simulated_s, run.wall_s,
-       control_in_words(scene, run), came_to_its_end ? "" : "; ", run.reason,
-       options.stem);
+       control_in_words(scene, run), pictures_in_words(run), came_to_its_end ? "" : "; ",
+       run.reason, options.stem);
+  if (!run.supports.empty()) {
+    tell("simulate: {}: forces of supports on their strands at {:.9g} s: {}\n",
+         scene.name, run.simulated_s, supports_in_words(run));
+  }
   for (const std::string& warning : warnings(scene, run)) {
     tell("simulate: warning: {}: {}\n", scene.name, warning);
   }

@@ -30,6 +30,8 @@ constexpr Column columns_of_outcome[] = {
     {"linearizations", "matrices built and factored"},
     {"solves", "linear solves"},
     {"newton_iterations", "Newton iterations"},
+    {"replaced_steps",
+     "steps that are backward Euler steps, of guarded and guarded_esdirk43"},
     {"contact_iterations", "solutions of steps until the law of exact friction held"},
     {"contact_unfinished", "steps or stages that ended before the law held"},
     {"contact_violation_m_s", "largest speed by which these steps violate the law"},
@@ -113,6 +115,8 @@ constexpr Column columns_of_outcome[] = {
     {"step_s", "time to step the strands of a batch", true},
     {"read_s", "time to read and compress the frames and energies of a batch", true},
     {"write_s", "time to write frames and states of a batch", true},
+    {"support_force_max_n",
+     "largest force of a support on its strand at a frame; without supports empty"},
     {"wall_s", "wall time of the run, output included", true},
 };
 
@@ -134,6 +138,10 @@ std::string strands_in_words(const ErrorBar& bar) {
   if (bar.strands.size() == 1) return "";
   return fmt::format("; strand {} of {}, median {:.2g}", bar.worst(), bar.strands.size(),
                      bar.median());
+}
+
+bool replaces_steps(const Scene& scene) {
+  return find_integrator(scene.integrator).replaces_steps;
 }
 
 double bound(std::string_view part) { return part == "time" ? time_bound : space_bound; }
@@ -174,6 +182,7 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("method_dissipated_bound_j", run.dissipation->uncertain);
     row.set("method_dissipated_rel", run.dissipation->share());
   }
+  if (replaces_steps(scene)) row.set("replaced_steps", work.replaced);
   if (!run.not_smooth.empty()) row.set("not_smooth", run.not_smooth);
   if (work.contact_iterations > 0) {
     row.set("contact_iterations", work.contact_iterations);
@@ -203,6 +212,7 @@ Row outcome(const Scene& scene, const SceneRun& run) {
   if (!run.head && scene.failed_strands == FailedStrands::stay) {
     row.set("failed_strands", run.lost);
   }
+  if (!run.supports.empty()) row.set("support_force_max_n", run.support_force);
   row.set("wall_s", run.wall_s);
   if (run.end == SceneRun::End::failed) row.failed("diverged", run.reason);
   return row;
@@ -236,6 +246,13 @@ std::string shortest_in_words(double h, double at, std::string_view cause) {
   return fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", h, at, cause);
 }
 
+std::string replaced_in_words(const Scene& scene, const Stats& work) {
+  if (!replaces_steps(scene)) return {};
+  return fmt::format(
+      "; {} of {} steps replaced by backward Euler (no solution, or energy gained)",
+      work.replaced, work.steps);
+}
+
 std::string contact_in_words(const Stats& work) {
   if (work.contact_unfinished == 0) return {};
   return fmt::format(
@@ -246,6 +263,16 @@ std::string contact_in_words(const Stats& work) {
 
 }  // namespace
 
+std::string supports_in_words(const SceneRun& run) {
+  std::string words;
+  for (const NamedForce& support : run.supports) {
+    const Vec& f = support.force;
+    words += fmt::format("{}{} ({:.4g}, {:.4g}, {:.4g}) N", words.empty() ? "" : ", ",
+                         support.name, f.x, f.y, f.z);
+  }
+  return words;
+}
+
 std::string control_in_words(const Scene& scene, const SceneRun& run) {
   const Stats& work = run.work;
   if (scene.options.tolerance == 0) {
@@ -253,7 +280,7 @@ std::string control_in_words(const Scene& scene, const SceneRun& run) {
         run.rejected == 0
             ? ""
             : fmt::format("; {} steps tried again with shorter ones", run.rejected);
-    return again + contact_in_words(work);
+    return again + replaced_in_words(scene, work) + contact_in_words(work);
   }
   std::string words = fmt::format(
       "; {} steps{}, {} rejected by their error and {} by Newton's iteration{}",
@@ -269,6 +296,14 @@ std::string control_in_words(const Scene& scene, const SceneRun& run) {
                      exchanges.rejected,
                      shortest_in_words(exchanges.shortest.h, exchanges.shortest.at,
                                        exchanges.shortest.cause));
+}
+
+std::string pictures_in_words(const SceneRun& run) {
+  if (!run.head) return {};
+  const HeadOutcome& head = *run.head;
+  if (head.shown_strands == head.strands && head.shown_frames == run.frames) return {};
+  return fmt::format("; pictures show {} of {} strands and {} of {} frames",
+                     head.shown_strands, head.strands, head.shown_frames, run.frames);
 }
 
 std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene) {

@@ -24,6 +24,11 @@ void set_errors(std::string_view part, const ErrorBar& bar, Row& row);
 /// that were repeated. Empty: none.
 std::string control_in_words(const Scene& scene, const SceneRun& run);
 
+/// Forces of the supports in the last frame, in words.
+std::string supports_in_words(const SceneRun& run);
+/// "; pictures show 1000 of 20000 strands and 50 of 201 frames". Empty: they show all.
+std::string pictures_in_words(const SceneRun& run);
+
 /// "time error 2e-4 of the length at 0.3 s, ..."
 std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene);
 

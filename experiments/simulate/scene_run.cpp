@@ -51,6 +51,9 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   if (!world->held().empty() && scene.unstable != Unstable::drop) {
     report_held(scene, world->held(), options.stem + ".rest.csv");
   }
+  for (const std::string& start : world->supported_starts()) {
+    tell("simulate: {}: {}\n", scene.name, start);
+  }
   Readout readout(scene, *world);
   const Pictures pictures(scene, *world, readout, options);
   Recording recording(options.stem, key, readout, options.resume);
@@ -123,6 +126,12 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   run.frames = recording.frames().size();
   for (const Frame3d& frame : recording.frames()) {
     run.rejected += static_cast<long>(frame.series.back());
+  }
+  for (const Frame3d& frame : recording.frames()) {
+    run.supports = readout.support_forces(frame);
+    for (const NamedForce& support : run.supports) {
+      run.support_force = std::max(run.support_force, norm(support.force));
+    }
   }
   if (run.lost > 0 && run.end != SceneRun::End::failed) {
     const FailedStrand& first = world->lost().front();

@@ -61,6 +61,7 @@ struct HeadOutcome {
   // Of a step, s, the same.
   double claim_s = 0, exchange_s = 0, meet_s = 0;
   std::size_t strands, lost;
+  std::size_t shown_strands, shown_frames;  // of pictures
   double bytes_per_strand;
   std::string state;  // checksum of all strands' states at the end
   // Wall time of the parts, s.
@@ -82,6 +83,8 @@ struct SceneRun {
   std::string not_smooth = {};  // World::not_smooth(), first that was seen
   std::size_t lost = 0;         // strands that failed and stay
   std::optional<HeadOutcome> head = {};
+  std::vector<NamedForce> supports = {};  // their forces in the last frame
+  double support_force = 0;               // N, largest in a frame
 };
 
 /// Runs a scene and writes series, pictures, and during the run the states from which a

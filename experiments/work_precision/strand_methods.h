@@ -41,6 +41,8 @@ inline constexpr Variation methods[] = {
     {"bdf2", "exact", converged, 0, true},
     {"tr_bdf2", "elastic", tight},
     {"esdirk43", "elastic", tight},
+    {"radau5", "exact", converged},
+    {"rodas5p", "exact"},
     {"backward_euler", "elastic", loose},
     {"backward_euler", "exact", converged, 0, true},
     {"linearly_implicit_euler", "elastic"},

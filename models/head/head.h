@@ -60,9 +60,8 @@ Options with_uniform_effects(Options options) {
 enum class HeadNumber { float64, float32 };
 /// Lanes of a batch.
 struct HeadPack {
-  HeadNumber number = HeadNumber::float64;        // number type
-  int lanes = 4;                                  // 1, 4, 8; of float32 8, 16
-  std::optional<Instructions> instructions = {};  // none: the widest of the machine
+  HeadNumber number = HeadNumber::float64;  // number type
+  int lanes = 4;                            // 1, 4, 8; of float32 8, 16
 };
 /// Returns the pack of this number type that has the width of `doubles` doubles.
 inline HeadPack pack_as_long_as(int doubles, HeadNumber number) {

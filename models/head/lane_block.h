@@ -25,10 +25,10 @@ class ModelLanes final : public LaneKernel<typename Model::Real::Scalar> {
   using Memory = LaneMemory<Model>;
 
   /// Makes the model with what acts on all strands.
-  ModelLanes(const LaneOptions& options, Instructions instructions)
+  explicit ModelLanes(const LaneOptions& options)
       : options_(with_uniform_effects(options)),
         units_(HeadUnits::of(options.longest)),
-        model_(options_, units_, instructions) {
+        model_(options_, units_) {
     options_.motion.frame = {};
     for (const auto& effect : options_.effects) {
       check_for_head(*effect);
@@ -290,11 +290,10 @@ std::unique_ptr<Block<typename ModelLanes<Model>::N>> ModelLanes<Model>::block()
 /// ModelLanes of a Model<T>, T the numbers of a pack.
 template <template <class> class ModelOf, bool short_numbers = true>
 AnyLaneKernel lanes_of(const LaneOptions& options, const HeadPack& pack) {
-  return on_pack<AnyLaneKernel, short_numbers>(
-      pack, [&]<class T>(Instructions set) -> AnyLaneKernel {
-        return std::unique_ptr<LaneKernel<typename T::Scalar>>(
-            std::make_unique<ModelLanes<ModelOf<T>>>(options, set));
-      });
+  return on_pack<AnyLaneKernel, short_numbers>(pack, [&]<class T>() -> AnyLaneKernel {
+    return std::unique_ptr<LaneKernel<typename T::Scalar>>(
+        std::make_unique<ModelLanes<ModelOf<T>>>(options));
+  });
 }
 
 }  // namespace tress::models

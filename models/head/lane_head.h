@@ -73,24 +73,20 @@ inline double largest_bulge(std::span<const double> x, double length) {
   return 0.5 * std::sqrt(square);
 }
 
-/// Returns made<T>(instructions) for the number type T of this pack. Throws InputError if
-/// the pack does not exist. `short_numbers`: whether single precision is supported.
+/// Returns made<T>() for the number type T of this pack. Throws InputError if the pack
+/// does not exist. `short_numbers`: whether single precision is supported.
 template <class Result, bool short_numbers = true, class Made>
 Result on_pack(const HeadPack& pack, Made made) {
-  const Instructions set = pack.instructions.value_or(widest_instructions());
-  refuse_if(!available(set),
-            std::string("no instructions ") + name(set) + " on this machine",
-            place_of_head, "leave the choice open");
   if (pack.number == HeadNumber::float64) {
-    if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>(set);
-    if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>(set);
+    if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>();
+    if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>();
     if constexpr (longest_lanes == 8) {
-      if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>(set);
+      if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>();
     }
   } else if constexpr (short_numbers) {
-    if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>(set);
+    if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>();
     if constexpr (longest_lanes == 8) {
-      if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>(set);
+      if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>();
     }
   }
   throw InputError(

@@ -13,7 +13,7 @@ namespace tress::models {
 template <class Kind>
 void ReducedLoads<Kind>::look_around(const Block& block, const Element* elements) {
   block_ = block;
-  by(instructions_, [&] { place(elements); });
+  by_registers_of<T>([&] { place(elements); });
   near_.resize(block_.bodies.size() * n_);
   for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
     look_for(block_.bodies[b], std::span(near_).subspan(b * n_, n_));
@@ -25,7 +25,7 @@ auto ReducedLoads<Kind>::find_exact(const Block& block, const Vec3T* v,
                                     const Element* elements)
     -> const ExactPoint<T>* const* {
   look_around(block, elements);
-  by(instructions_, [&] {
+  by_registers_of<T>([&] {
     for (std::size_t i = 0; i < n_; ++i) exact_[i] = exact(i, v[i], elements[i]);
   });
   return exact_.data();
@@ -38,7 +38,7 @@ auto ReducedLoads<Kind>::find(const Block& block, const Vec3T* v, const Element*
   const bool others = std::ranges::any_of(
       block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
   if (others) take_others(v, elements);
-  by(instructions_, [&] {
+  by_registers_of<T>([&] {
     for (std::size_t i = 0; i < n_; ++i) {
       loads_[i] = element(i, v[i], elements[i], others) ? &sums_[i] : nullptr;
     }
@@ -152,7 +152,7 @@ TRESS_FLATTEN void ReducedLoads<Kind>::look_for(const NearBody& body,
   const T square = length * length, offset(body.contact->body.offset());
   std::visit(
       [&](const auto& shape) {
-        by(instructions_, [&] {
+        by_registers_of<T>([&] {
           for (std::size_t i = 0; i < n_; ++i) {
             const Start& at = starts_[i];
             const Vec3T chord = in_body(body.pose, at.chord);

@@ -24,9 +24,8 @@ class ReducedLoads {
 
  public:
   /// Allocates for the elements of a kernel, which must outlive it.
-  ReducedLoads(const Kernel& kernel, const HeadUnits& units, Instructions instructions)
+  ReducedLoads(const Kernel& kernel, const HeadUnits& units)
       : kernel_(kernel),
-        instructions_(instructions),
         units_(units),
         n_(static_cast<std::size_t>(kernel.elements())),
         points_(static_cast<std::size_t>(kernel.points())),
@@ -87,7 +86,6 @@ class ReducedLoads {
   }
 
   const Kernel& kernel_;
-  Instructions instructions_;
   HeadUnits units_;
   std::size_t n_, points_;
   Block block_{};

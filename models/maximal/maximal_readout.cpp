@@ -93,6 +93,16 @@ void MaximalSystem::velocities(double t, In q, In v, Out u) {
   }
 }
 
+/// Points are linear in the nodes.
+void MaximalSystem::accelerations(double t, In q, In v, In a, Out x) {
+  place(t, q, v);
+  std::ranges::copy(a, force_.begin() + static_cast<std::ptrdiff_t>(held()));
+  if (strand_.clamped) store3(pose_.a, force_.data());
+  for (std::size_t i = 0; i < strand_.shown.size(); ++i) {
+    store3(strand_.shown[i].of(force_), &x[3 * i]);
+  }
+}
+
 std::optional<std::array<double, 9>> MaximalSystem::end_frame(double t, In q) {
   place(t, q);
   const std::optional<Frame> last = strand_.elasticity->end_frame(placement());

@@ -13,6 +13,7 @@
 #include "contract/forms/history.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/moving_history.h"
+#include "contract/forms/point_accelerations.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/forms/stress_form.h"
 #include "contract/forms/transposed_form.h"
@@ -72,6 +73,7 @@ struct MaximalStrand {
 class MaximalSystem final : public System,
                             public NaturalStrains,
                             public TransposedForm,
+                            public PointAccelerations,
                             private SparseForm,
                             private ExplicitForm,
                             private ComplianceForm,
@@ -118,6 +120,8 @@ class MaximalSystem final : public System,
   void place_transposed(double t, In q, In v, In a, In mu) noexcept override;
   void add_by_constants(InOut by) noexcept override;
   double power_of_loads(System& other) noexcept override;
+
+  void accelerations(double t, In q, In v, In a, Out x) override;
 
   void set_natural(In values) override {
     strand_.elasticity->natural_strains()->set_natural(values);

@@ -18,8 +18,9 @@ struct Knots {
                    "give at least two, finite, each later than the one before");
 }
 
-void check(const std::vector<double>& times, const std::vector<double>& values) {
-  bool good = times.size() >= 2 && times.size() == values.size();
+void check(const std::vector<double>& times, const std::vector<double>& values,
+           std::size_t least = 2) {
+  bool good = times.size() >= least && times.size() == values.size();
   for (std::size_t i = 0; good && i < times.size(); ++i) {
     good = std::isfinite(times[i]) && std::isfinite(values[i]) &&
            (i == 0 || times[i] > times[i - 1]);
@@ -107,6 +108,21 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
             u * m + w * n};
   };
   return {value, k->t};
+}
+
+Signal rests(const std::vector<double>& times, const std::vector<double>& values) {
+  check(times, values, 1);
+  const auto value = [times, values](double t) -> SignalValue {
+    if (t <= times.front()) return {values.front(), 0, 0};
+    if (t >= times.back()) return {values.back(), 0, 0};
+    const auto after = std::ranges::upper_bound(times, t);
+    const auto j = static_cast<std::size_t>(after - times.begin()), i = j - 1;
+    const double h = times[j] - times[i], x = (t - times[i]) / h;
+    const double height = values[j] - values[i], y = 1 - x;
+    return {values[i] + height * x * x * x * (10 - 15 * x + 6 * x * x),
+            height / h * 30 * x * x * y * y, height / (h * h) * 60 * x * y * (1 - 2 * x)};
+  };
+  return {value, times};
 }
 
 }  // namespace tress::models

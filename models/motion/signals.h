@@ -34,4 +34,9 @@ Signal driven_oscillator(const Oscillator& body, double t0);
 /// on other times.
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
 
+/// Returns a signal that takes `values` at `times` (s, ascending, at least one) and rests
+/// there. Between two times it is the quintic of smooth_step(), C^2 everywhere. Throws
+/// InputError on other times.
+Signal rests(const std::vector<double>& times, const std::vector<double>& values);
+
 }  // namespace tress::models

@@ -38,6 +38,15 @@ constexpr std::array<double, 7> crank_a = {0,
 constexpr std::array<double, 3> crank_lambda = {6.232893262533717e1, 1.637910131687472e2,
                                                 -2.529853213732781e1};
 
+constexpr std::array<double, 4> axis_q = {
+    0.493455784275402809122e-1, 0.496989460230171153861, 0.104174252488542151681e1,
+    0.373911027265361256927};
+constexpr std::array<double, 4> axis_v = {
+    -0.770583684040972357970e-1, 0.744686658723778553466e-2, 0.175568157537232222276e-1,
+    0.770341043779251976443};
+constexpr std::array<double, 2> axis_lambda = {-0.473688659084893324729e-2,
+                                               -0.110468033125734368808e-2};
+
 constexpr std::array<double, 40> beam_q = {
     -0.5792366591285007e-2, -0.1695298550721735e-1, -0.2769103312973094e-1,
     -0.3800815655879158e-1, -0.4790616859743763e-1, -0.5738710435274594e-1,
@@ -69,7 +78,7 @@ constexpr std::array<double, 40> beam_v = {
     0.1185543909805575e1,  0.1186297084203716e1, 0.1186637618908127e1,
     0.1186724615113034e1};
 
-constexpr std::array<PublishedEnd, 3> ends = {{
+constexpr std::array<PublishedEnd, 4> ends = {{
     {"andrews_squeezer", .03, squeezer_q, squeezer_v, squeezer_a, squeezer_lambda, 9, 7,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem andrews: "
      "PSIDE, "
@@ -77,6 +86,15 @@ constexpr std::array<PublishedEnd, 3> ends = {{
     {"slider_crank", .1, crank_q, crank_v, crank_a, crank_lambda, 5, 3,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem crank: linear "
      "elasticity, no damping, smooth start"},
+    {"car_axis",
+     3,
+     axis_q,
+     axis_v,
+     {},
+     axis_lambda,
+     11,
+     11,
+     "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem caraxis"},
     {"beam",
      5,
      beam_q,

@@ -21,8 +21,9 @@ constexpr Parameter own_parameters[] = {
      .help = "linear solver; recursive_plain is the textbook update (loses digits)",
      .choices = "recursive|composite|sparse|recursive_plain"},
     {.name = "jacobian",
-     .help = "terms of dr/dq, dr/dv: all; mass, friction, elastic stiffness; the latter "
-             "with those of distal segments left out of the recursion",
+     .help = "terms of dr/dq and dr/dv. exact: all. elastic: mass, friction and elastic "
+             "stiffness. elastic_local: as elastic, without the stiffness of distal "
+             "segments in the recursion",
      .choices = "exact|elastic|elastic_local"},
     {.name = "rotary_inertia",
      .help = "rotational inertia of the section about the tangent",

@@ -11,6 +11,7 @@
 #include "contract/forms/history.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
+#include "contract/forms/point_accelerations.h"
 #include "contract/forms/transposed_form.h"
 #include "linear/vector_ops.h"
 #include "models/held/held_contacts.h"
@@ -36,6 +37,7 @@ template <class Kernel, int modes>
 class ReducedSystem : public System,
                       public NaturalStrains,
                       public TransposedForm,
+                      public PointAccelerations,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
@@ -542,6 +544,21 @@ class ReducedSystem : public System,
     for (const auto& tip : kinematics_.tips(t, q, v)) {
       store3(tip.frame * tip.v, u.data());
       u = u.subspan(3);
+    }
+  }
+  /// Kinematics measure accelerations relative to a frame that falls.
+  void accelerations(double t, In q, In v, In a, Out x) override {
+    Vec fall;
+    for (const auto& effect : dynamics_.effects()) {
+      fall = fall + effect->uniform_acceleration().value_or(Vec{});
+    }
+    kinematics_.move(t, q, v, a);
+    const auto put = [&](std::size_t point, const FrameMotion& m) {
+      store3(m.frame * m.a + fall, &x[3 * point]);
+    };
+    put(0, kinematics_.root());
+    for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
+      put(i + 1, kinematics_.motion(i).tip);
     }
   }
   /// A point moves by the slope of every segment before it, and turns about its tip.

@@ -104,6 +104,7 @@ class Stepper {
     put("rejected", s.rejected);
     put("rejected_by_error", s.rejected_by_error);
     put("rejected_by_newton", s.rejected_by_newton);
+    put("replaced", s.replaced);
     put("smallest_step_s", s.smallest_step);
     put("residuals", s.residuals);
     put("linearizations", s.linearizations);

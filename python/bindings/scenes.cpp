@@ -9,9 +9,11 @@
 #include "simulation/head/head_classes.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
+#include "simulation/rest/supported_start.h"
 #include "simulation/run/readout.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 #include "simulation/scene/write_scene.h"
 
 namespace tress::python {
@@ -200,6 +202,11 @@ OwnedSystem system_of(const ScenePtr& scene, std::size_t strand) {
   }
   std::unique_ptr<System> system = scene->model->on_strand(
       scene->strands[strand], scene->model_options, make_effects(*scene));
+  const SceneSupports supports(*scene);
+  if (supports.hold(strand)) {
+    system = supports.on(std::move(system), scene->strands[strand], strand);
+    static_cast<void>(begin_on_supports(*system, supports.place(strand)));
+  }
   return {std::move(system), scene};
 }
 

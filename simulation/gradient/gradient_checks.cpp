@@ -9,6 +9,7 @@
 #include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -56,6 +57,9 @@ void check_derivatives(const Scene& scene) {
             "no gradient with rest = \"inverse\", whose natural strains follow from the "
             "parameters",
             place, "leave out rest = \"inverse\"");
+  refuse_if(SceneSupports(scene).any(),
+            "no gradient of strands on [supports], whose start depends on the parameters",
+            place, "leave out [supports]");
   const auto system = exact_system_of(scene, 0);
   const auto no = integrators::no_gradient(scene.integrator, *system, scene.options);
   if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);

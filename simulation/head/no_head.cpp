@@ -7,6 +7,7 @@
 #include "models/head/head.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -261,6 +262,10 @@ std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber nu
     return NoHead{fmt::format("{} brings its own geometry and is one system: there are "
                               "no strands to batch",
                               scene.model->id),
+                  "give --as strands"};
+  }
+  if (SceneSupports(scene).any()) {
+    return NoHead{"[supports], which need a matrix of all coordinates of a strand",
                   "give --as strands"};
   }
   if (auto no = no_strand_alone(scene)) return no;

@@ -72,6 +72,7 @@ void add_done(const Stats& before, const Stats& now, models::HeadWork& work) {
   work.iterations += iterations;
   work.lanes += iterations;
   work.shortened += now.rejected - before.rejected;
+  work.replaced += now.replaced - before.replaced;
   work.rejected_by_error += now.rejected_by_error - before.rejected_by_error;
   work.rejected_by_newton += now.rejected_by_newton - before.rejected_by_newton;
 }

@@ -113,7 +113,28 @@ EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double 
     if (strand.root) move_with(t, strand, p, first, now);
     first += strand.rest.size();
   }
+  if (SupportForces* const supports = support_forces(system_)) {
+    now.power += power_of(*supports, t, q, v);
+  }
   return now;
+}
+
+/// Power of the supports in the clamp's frame, in which those at rest in space move.
+double Guard::power_of(SupportForces& supports, double t, In q, In v) {
+  const std::size_t numbers = 3 * supports.supports();
+  std::vector<double> forces(numbers), x(numbers), u(numbers);
+  if (supports.support_forces(t, q, v, forces) != Status::ok) return 0;
+  supports.support_motion(t, x, u);
+  double power = 0;
+  for (std::size_t i = 0; i < numbers; i += 3) {
+    Vec velocity = load3(&u[i]);
+    if (const auto& root = strands_.front().root) {
+      const RootPose pose = root->at(t);
+      velocity = velocity - pose.v - cross(pose.omega, load3(&x[i]) - pose.x);
+    }
+    power += dot(load3(&forces[i]), velocity);
+  }
+  return power;
 }
 
 /// Tangents along the mean of the chords that meet at a point.

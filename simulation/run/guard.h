@@ -7,6 +7,7 @@
 
 #include "contract/forms/energetics.h"
 #include "contract/forms/material_points.h"
+#include "contract/forms/support_forces.h"
 #include "simulation/run/energy_account.h"
 #include "simulation/run/guarded_strand.h"
 #include "simulation/run/method_dissipation.h"
@@ -73,6 +74,7 @@ class Guard {
 
  private:
   EnergyMeasure measure(double t, In q, In v, const Energy& energy, double power);
+  double power_of(SupportForces& supports, double t, In q, In v);
   Points points_of(const GuardedStrand& strand, std::size_t first);
   void move_with(double t, const GuardedStrand& strand, const Points& p,
                  std::size_t first, EnergyMeasure& now);

@@ -1,10 +1,13 @@
 #include "simulation/run/readout.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "models/effects/effect.h"
 #include "simulation/run/line_curvature.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -27,7 +30,9 @@ void add_contact(const Vec& place, const Vec& force, Frame3d& frame) {
 }  // namespace
 
 Readout::Readout(const Scene& scene, const World& world)
-    : scene_(scene), effects_(make_effects(scene)) {
+    : scene_(scene),
+      effects_(make_effects(scene)),
+      supports_(SceneSupports(scene).names()) {
   find_lines(world);
   const std::vector<std::string> names = effect_names(scene);
   const auto add = [this](std::string name, std::string help) {
@@ -49,8 +54,8 @@ Readout::Readout(const Scene& scene, const World& world)
   }
   add("stretch_rel", "largest |length/rest - 1| of a piece");
   add("penetration_m",
-      "largest depth of a strand, straight between its points, in a body: at the ends of "
-      "all steps since the last frame");
+      "largest depth of a strand in a body since the last frame, over the ends of all "
+      "steps; strands are straight between their points");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "mean distance from a strand to the nearest other one");
@@ -62,6 +67,13 @@ Readout::Readout(const Scene& scene, const World& world)
   }
   if (scene.failed_strands == FailedStrands::stay) {
     add("failed_strands", "strands that have failed and stay where they are");
+  }
+  first_force_ = series_.size();
+  for (const std::string& name : supports_) {
+    for (const char* axis : {"x", "y", "z"}) {
+      add(fmt::format("force_{}_{}_n", name, axis),
+          fmt::format("force of the support {} on the strand, along {}", name, axis));
+    }
   }
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
@@ -117,6 +129,8 @@ Frame3d Readout::read(World& world) {
   if (scene_.failed_strands == FailedStrands::stay) {
     row.push_back(static_cast<double>(world.lost().size()));
   }
+  const std::vector<double> forces = world.support_forces();
+  row.insert(row.end(), forces.begin(), forces.end());
   const Stats now = world.stats();
   const auto steps = static_cast<double>(now.steps - before_.steps);
   const auto iterations =
@@ -152,6 +166,14 @@ void Readout::read_steps(const World& world, double interval, Frame3d& frame) {
   std::ranges::copy(at_drawn(of_points),
                     frame.channels.begin() +
                         static_cast<std::ptrdiff_t>(*step_channel_ * drawn_.size()));
+}
+
+std::vector<NamedForce> Readout::support_forces(const Frame3d& frame) const {
+  std::vector<NamedForce> all;
+  for (std::size_t i = 0; i < supports_.size(); ++i) {
+    all.push_back({supports_[i], load3(&frame.series[first_force_ + 3 * i])});
+  }
+  return all;
 }
 
 std::vector<float> Readout::at_drawn(const std::vector<float>& of_points) const {

@@ -52,7 +52,7 @@ Impulsive& impulsive(Integrator& method) {
   if (able != nullptr) return *able;
   throw InputError("the method cannot go on after the impulses of strands that rub",
                    "effects.strand_friction",
-                   "use linearly_implicit_euler or backward_euler");
+                   "use linearly_implicit_euler, backward_euler or guarded");
 }
 
 }  // namespace

@@ -23,6 +23,12 @@ bool has_fixed_step(const IntegratorEntry& method, const Options& options) {
   return !method.adaptive && options.tolerance == 0;
 }
 
+/// A strand without constraints, next to others on supports, has no formulation of them.
+Options options_for(System& system, Options options) {
+  if (system.layout().constraints == 0) options.formulation = Formulation::parametric;
+  return options;
+}
+
 }  // namespace
 
 void add_work(const Stats& from, Stats& to) {
@@ -38,6 +44,7 @@ void add_work(const Stats& from, Stats& to) {
   to.condition = std::max(to.condition, from.condition);
   to.rejected_by_error += from.rejected_by_error;
   to.rejected_by_newton += from.rejected_by_newton;
+  to.replaced += from.replaced;
   to.contact_iterations += from.contact_iterations;
   to.contact_unfinished += from.contact_unfinished;
   to.contact_violation = std::max(to.contact_violation, from.contact_violation);
@@ -56,7 +63,7 @@ SteppedSystem::State SteppedSystem::initial_state() const {
 }
 
 void SteppedSystem::take_method(std::string_view method, const Options& options) {
-  integrator = make_integrator(method, *system, options);
+  integrator = make_integrator(method, *system, options_for(*system, options));
 }
 
 void SteppedSystem::start(double begin, State state) {
@@ -108,7 +115,7 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
   const double begin = t;
   const std::vector<double> old_q = q, old_v = v, memory = system->memory();
   const auto gathered = guard ? guard->memory() : Guards::Memory{};
-  Options shorter = options;
+  Options shorter = options_for(*system, options);
   for (int k = 0; k < halvings && work_left(options) > 0; ++k) {
     ++before_.rejected;
     if (options.max_work > 0) shorter.max_work = work_left(options);

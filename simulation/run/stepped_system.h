@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/catalogue.h"
+#include "simulation/rest/supported_start.h"
 #include "simulation/run/body_depth.h"
 #include "simulation/run/guards.h"
 #include "simulation/run/metered.h"
@@ -29,6 +30,7 @@ struct SteppedSystem {
   std::unique_ptr<Integrator> integrator;  // null before take_method()
   std::optional<Guards> guard;             // check of the steps; none: not checked
   std::optional<BodyDepth> depth;          // depth in bodies; none: no bodies
+  SupportedStart supported;                // how it came onto its supports
   /// Effects of its first strand, of the second ...
   std::vector<std::shared_ptr<const Metered>> meters;
 

@@ -25,6 +25,7 @@ StrandMaker::StrandMaker(const Scene& scene)
       method_(&find_integrator(scene.integrator)),
       options_(scene.options),
       effects_(make_effects(scene)),
+      supports_(scene),
       guard_(scene.guard) {}
 
 /// Those of the scene.
@@ -55,6 +56,10 @@ SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) c
   SteppedSystem made(metered(strand, meters));
   made.meters = std::move(meters);
   hold(*made.system, {&strand, 1});
+  if (supports_.hold(number)) {
+    made.system = supports_.on(std::move(made.system), strand.strand, number);
+    made.supported = begin_on_supports(*made.system, supports_.place(number));
+  }
   add_guard(made, {&strand, 1}, number);
   return made;
 }

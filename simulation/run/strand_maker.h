@@ -9,6 +9,7 @@
 #include "simulation/rest/held_shape.h"
 #include "simulation/run/stepped_system.h"
 #include "simulation/scene/scene.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 
@@ -34,8 +35,11 @@ class StrandMaker {
   /// Returns the integrator's options.
   const Options& options() const { return options_; }
 
-  /// Makes a strand as a system of its own, without integrator. `number`: the strand's
-  /// number in messages.
+  /// Returns the supports of the scene.
+  const SceneSupports& supports() const { return supports_; }
+
+  /// Makes a strand as a system of its own, on its supports, without integrator.
+  /// `number`: the strand's number in messages.
   SteppedSystem one(const StrandToMake& strand, std::size_t number) const;
   /// Several of equal discretisation as one system; empty: the model has no such form for
   /// them.
@@ -60,6 +64,7 @@ class StrandMaker {
   const IntegratorEntry* method_;
   Options options_;
   Effects effects_;
+  SceneSupports supports_;
   bool guard_;
 };
 

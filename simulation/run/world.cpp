@@ -1,8 +1,12 @@
 #include "simulation/run/world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "contract/forms/support_forces.h"
 #include "integrators/error_indicator.h"
 
 namespace tress::simulation {
@@ -121,6 +125,32 @@ std::vector<ContactForce> World::contact_forces() {
                        load3(&meter.forces()[c])});
       }
     }
+  }
+  return all;
+}
+
+std::vector<double> World::support_forces() {
+  std::vector<double> all;
+  for (const Body& body : bodies_) {
+    SupportForces* const supports = tress::support_forces(*body.system);
+    if (supports == nullptr) continue;
+    std::vector<double> forces(3 * supports->supports());
+    const Status s = supports->support_forces(t_, body.seen_q(), body.seen_v(), forces);
+    if (s != Status::ok || body.stays()) std::ranges::fill(forces, std::nan(""));
+    all.insert(all.end(), forces.begin(), forces.end());
+  }
+  return all;
+}
+
+std::vector<std::string> World::supported_starts() const {
+  std::vector<std::string> all;
+  for (const Body& body : bodies_) {
+    if (body.supported.steps == 0) continue;
+    all.push_back(fmt::format(
+        "{} begins at rest on its supports: its points were up to {:.3g} m away "
+        "({} steps, forces in balance within {:.1g})",
+        name_of(body), body.supported.moved, body.supported.steps,
+        body.supported.unbalanced));
   }
   return all;
 }

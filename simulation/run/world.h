@@ -112,6 +112,12 @@ class World {
   /// Returns the held shape of each strand; empty unless the scene's rest is inverse.
   const std::vector<HeldShape>& held() const { return held_; }
 
+  /// Returns the force of each support on its strand, (3 supports), N, strand after
+  /// strand. NaN of strands that have failed.
+  std::vector<double> support_forces();
+  /// Returns the strands that began away from their supports, in words.
+  std::vector<std::string> supported_starts() const;
+
   /// Returns the number of strands.
   std::size_t strands() const { return points_.size(); }
   /// Returns the number of systems; several strands may be one.

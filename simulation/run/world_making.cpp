@@ -128,8 +128,8 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
                         held_.empty() ? nullptr : &held_[k]};
   };
   // A failed strand must not take others with it.
-  const bool alone =
-      scene.failed_strands == FailedStrands::stay || scene.model->on_strands == nullptr;
+  const bool alone = scene.failed_strands == FailedStrands::stay ||
+                     scene.model->on_strands == nullptr || maker_.supports().any();
   const std::size_t most = alone ? 1 : Pack::lanes;
   for (std::size_t k = 0; k < strands.size();) {
     std::vector<StrandToMake> some;

@@ -20,6 +20,7 @@
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_table.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -27,8 +28,9 @@ namespace {
 constexpr std::size_t most_effects = 1000, most_groom_files = 100;
 constexpr double most_frames = 1e6;
 
-constexpr std::string_view known_tables[] = {
-    "model", "integrator", "material", "strand", "groom", "root", "effects", "gradient"};
+constexpr std::string_view known_tables[] = {"model",   "integrator", "material",
+                                             "strand",  "groom",      "root",
+                                             "effects", "gradient",   "supports"};
 constexpr std::string_view material_table[] = {"material"};
 
 /// A scene being read: the parsed text and the part interpreted so far.
@@ -186,7 +188,7 @@ class Reader {
 
   void refuse_strand_tables() const {
     for (const std::string_view name :
-         {"strand", "groom", "material", "root", "effects", "gradient"}) {
+         {"strand", "groom", "material", "root", "effects", "gradient", "supports"}) {
       const toml::node* node = root_.get(name);
       if (node == nullptr) continue;
       throw InputError(fmt::format("[{}] is not allowed with model {}, which brings its "
@@ -212,7 +214,16 @@ class Reader {
       tables.gradient =
           read_table(*given, gradient_table_parameters(), "[gradient]", file_);
     }
+    if (const toml::node* node = root_.get("supports")) {
+      for (const toml::table* one : each(*node, "supports", true)) {
+        tables.supports.push_back(read_support(*one, file_));
+      }
+    }
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
+    if (SceneSupports(scene_).any() &&
+        scene_.options.formulation == Formulation::parametric) {
+      scene_.options.formulation = formulation_of_supports(scene_);
+    }
     series_ = std::make_shared<const StrandSeries>(
         scene_.tables, scene_.head, scene_.seed, outlined ? made_singly : held_at_once);
     CutStrands cut = outlined ? series_->outline() : series_->all();

@@ -8,6 +8,7 @@
 #include "integrators/catalogue.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -85,19 +86,25 @@ void check_friction(const Scene& scene, const ScenePlaces& places) {
 
 void check_integrator(const Scene& scene, System& system, const ScenePlaces& places) {
   const IntegratorEntry& entry = find_integrator(scene.integrator);
-  const std::string reason = refusal(entry, system, scene.options.formulation);
+  Options options = scene.options;
+  // Strands without supports, next to others that have them.
+  if (SceneSupports(scene).any() && system.layout().constraints == 0) {
+    options.formulation = Formulation::parametric;
+  }
+  const std::string reason = refusal(entry, system, options.formulation);
   if (reason.empty()) {
-    at_place(places.integrator, [&] { return entry.make(system, scene.options); });
+    at_place(places.integrator, [&] { return entry.make(system, options); });
     return;
   }
   std::string able;
   for (const IntegratorEntry& other : integrator_catalogue()) {
-    if (!refusal(other, system, scene.options.formulation).empty()) continue;
+    if (!refusal(other, system, options.formulation).empty()) continue;
     able += (able.empty() ? "" : ", ") + std::string(other.id);
   }
   throw InputError(
-      fmt::format("{} cannot drive {} as {}: {}", scene.integrator, scene.model->id,
-                  name(scene.options.formulation), reason),
+      fmt::format("{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
+                  SceneSupports(scene).any() ? " with [supports]" : "",
+                  name(options.formulation), reason),
       places.integrator,
       able.empty() ? "give another formulation: ./tress list shows what can drive what"
                    : "use one of: " + able);
@@ -161,6 +168,8 @@ void check(const Scene& scene, const ScenePlaces& places) {
     check_integrator(scene, *system, places);
     return;
   }
+  const SceneSupports supports(scene);
+  supports.check(scene);
   check_friction(scene, places);
   check_mesh(scene, places);
   const Parameters* interaction = scene.interaction();
@@ -182,13 +191,16 @@ void check(const Scene& scene, const ScenePlaces& places) {
   const std::string* before = nullptr;
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {
     const std::string& place = places.strands[i];
-    if (before != nullptr && *before == place) continue;  // of the same groom
+    const bool held = supports.hold(i);
+    // Of the same groom.
+    if (before != nullptr && *before == place && !held) continue;
     Effects effects = effects_of(scene, places);
-    const auto system = at_place(place, [&] {
+    const auto make = [&] {
       return scene.model->on_strand(scene.strands[i], scene.model_options,
                                     std::move(effects));
-    });
-    if (before == nullptr) check_integrator(scene, *system, places);
+    };
+    const auto system = supports.on(at_place(place, make), scene.strands[i], i);
+    if (before == nullptr || held) check_integrator(scene, *system, places);
     if (scene.rest == RestStrains::inverse) {
       strains_to_hold(scene, scene.strands[i], *system, places.rest);
     }

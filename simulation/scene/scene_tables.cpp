@@ -13,12 +13,15 @@
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/shapes.h"
 #include "simulation/scene/strand_table.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
 
 constexpr Parameter top[] = {
-    {.name = "title", .help = "one line, must be given", .text = true},
+    {.name = "title",
+     .help = "title in one line; required: the empty default is refused",
+     .text = true},
     {.name = "source", .help = "source of the scene", .text = true},
     {.name = "duration_s",
      .help = "simulated time (s)",
@@ -39,10 +42,10 @@ constexpr Parameter top[] = {
     {.name = "guard",
      .help = "end the run at a state that physics rules out. These are a piece stretched "
              "by half, a point faster than the energy allows, or too much energy. The "
-             "energy may exceed that at the start by m g L and a tenth of the initial "
-             "kinetic and elastic energy. To this, 1.1 times the work of loads and root "
-             "is added. Coarse but sound steps need that margin; the energy that the "
-             "method created within it is printed. See failed_strands",
+             "energy may exceed its initial value by m g L and a tenth of the initial "
+             "kinetic and elastic energy. The work of loads and root, times 1.1, adds to "
+             "this limit. Coarse but sound steps need that margin. A run prints the "
+             "energy that the method created within it. See failed_strands",
      .choices = "true|false"},
     {.name = "failed_strands",
      .help = "outcome of a strand that fails, or that the guard stops. It ends the run, "
@@ -187,6 +190,13 @@ std::vector<TableEntry> table_entries() {
     entry.many = effect.many;
     all.push_back(std::move(entry));
   }
+  all.push_back({.name = "supports",
+                 .summary = "a point of a strand that is held, in addition to a clamped "
+                            "root. The strand begins at rest in an equilibrium if its "
+                            "points begin elsewhere. [integrator] formulation has a "
+                            "default that suits the method",
+                 .parameters = support_table_parameters(),
+                 .many = true});
   all.push_back({.name = "gradient",
                  .summary = "derivatives of the motion by numbers of the scene, which "
                             "simulate --gradient writes; without it of no effect",

@@ -94,8 +94,7 @@ void add_materials(std::string& page) {
         m.material.density, 1e3 * m.curl_radius, 1e3 * m.curl_pitch);
   }
   page +=
-      "\nSources, and what is from memory: "
-      "[material_table.cpp](../simulation/scene/material_table.cpp).\n";
+      "\n[Materials](../docs/start/faq.md#materials) lists the source of each value.\n";
 }
 
 void add_models(std::string& page) {

@@ -132,6 +132,10 @@ void add_strands(std::string& text, const StrandTables& tables) {
   }
   add_header(text, "[root]");
   add_given(text, tables.root);
+  for (const Table& support : tables.supports) {
+    add_header(text, "[[supports]]");
+    add_given(text, support);
+  }
   if (!tables.gradient) return;
   add_header(text, "[gradient]");
   add_given(text, *tables.gradient);

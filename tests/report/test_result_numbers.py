@@ -26,6 +26,7 @@ class Values(unittest.TestCase):
         self.assertEqual(span([3, 1, 2]), "1 to 3")
         self.assertEqual(span([2.01, 2.02]), "2")
         self.assertEqual(words.signed_percent(0.1), "+10 %")
+        self.assertEqual([words.counted(count, "thread") for count in (0, 1, 2)], ["0 threads", "1 thread", "2 threads"])
         self.assertEqual([plain(3.0), plain(0.5), plain(2.5e-7)], ["3", "0.5", "2.5e-7"])
 
     def test_halves_are_rounded_away_from_zero(self):
@@ -85,6 +86,25 @@ class Reading(Made):
         (self.root / "t.csv").write_bytes(b"a\n\xff\n")
         with self.assertRaisesRegex(InputError, r"t\.csv cannot be read .*; write it again"):
             read_table(self.root / "t.csv", "t.csv")
+
+
+class Columns(Made):
+    def series(self, description):
+        lines = "".join(f'add("c{k}_s", "time {k}");\n' for k in range(8))
+        self.write("simulation/run/readout.cpp", f'{lines}add("depth_m",\n    {description});\n')
+        self.write("experiments/simulate/head_series.cpp", "".join(f'{{"c{k}_s", "time {k}"}},\n' for k in range(8)))
+        return markdown(columns.series(Tables(self.root)))
+
+    def test_adjacent_literals_are_one_description(self):
+        self.assertIn("| `depth_m` | m | depth at the ends of all steps |", self.series('"depth at the ends of "\n    "all steps"'))
+
+    def test_a_description_that_ends_in_the_middle_is_refused(self):
+        for cut in ("depth at the ends of", "depth in the ", "depth:", "largest depth, "):
+            with self.assertRaisesRegex(InputError, "depth_m ends in the middle"):
+                self.series(f'"{cut}" + more')
+
+    def test_descriptions_of_the_shipped_columns_are_whole(self):
+        self.assertNotRegex(markdown(columns.series(Tables(ROOT))), r"(?m) (?:a|an|and|at|by|from|in|of|or|the|to|with) *\|$")
 
 
 class Sources(unittest.TestCase):
@@ -269,9 +289,11 @@ class Queries(Made):
                     "strands": strands, "precision": precision, "threads": threads, "cost_per_step_s": cost, "status": "ok"}
 
         self.write("results/heads.meta.json", json.dumps({"machine": {"cpus": 2}}))
+        rows = [row(64, 1, 6e-4), row(64, 1, 9e-4), row(64, 2, 4e-4), row(64, 3, 1e-4), row(32, 2, 2e-4), row(32, 2, 1e-9, 10)]
         self.assertEqual(
-            self.say("heads.per_element", heads=[row(64, 2, 4e-4), row(64, 3, 1e-4), row(32, 2, 2e-4), row(32, 2, 1e-9, 10)]),
-            "40 ns in double precision, 20 ns in single precision")
+            self.say("heads.per_element", heads=rows),
+            "In double precision it is 60 ns with one thread and 40 ns with 2 threads. In single precision it is 20 ns with 2 threads.")
+        self.assertEqual(self.say("heads.frame_example", heads=rows), "0.3 s with one thread and 0.2 s with 2 threads")
 
     def test_a_claim_about_hairs_names_its_best_predictor(self):
         row = {"claim": "super_helix_step_longer", "range": "all", "family": "hair", "hairs": 48, "no_answer": 2,

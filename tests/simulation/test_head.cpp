@@ -585,7 +585,8 @@ TEST(HeadOfHair, IsTakenFromAThousandStrandsOnWhereTheSceneCanBeOne) {
 TEST(HeadOfHair, ThePageShowsSomeOfTheStrands) {
   Toy toy;
   toy.write("head.toml", text({.count = 1500, .elements = 2}));
-  run(toy, "--vtk --usd");
+  EXPECT_THAT(run(toy, "--vtk --usd").err,
+              HasSubstr("; pictures show 1000 of 1500 strands and 5 of 5 frames"));
   const auto page = nlohmann::json::parse(toy.read("out/head.json"));
   EXPECT_EQ(page.at("format"), "tress-strands-1");
   EXPECT_EQ(page.at("times_s").size(), 5U);

@@ -72,6 +72,8 @@ TEST(SceneDefaults, AreDefaults) {
 std::string with_table(const TableEntry& entry) {
   std::string text = "title = \"t\"\n";
   if (entry.name != "strand" && entry.name != "groom") text += "[strand]\n";
+  // A straight strand on a support at its tip must stretch.
+  if (entry.name == "supports") text += "[model]\nid = \"der\"\n";
   text += "[" + entry.name + "]\n";
   std::string_view word;
   for (const Parameter& p : entry.parameters) {

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "integrators/catalogue.h"
+#include "simulation/rest/supported_start.h"
 #include "simulation/run/simulation.h"
 #include "simulation/scene/scene.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::test_shipped {
 
@@ -26,11 +28,14 @@ class ShippedSceneTest : public testing::TestWithParam<std::string> {};
 TEST_P(ShippedSceneTest, IsReadBuiltAndTakesAStep) {
   const Scene scene = read_scene(GetParam());
   EXPECT_FALSE(scene.source.empty());
-  const auto system =
-      scene.model->on_strand == nullptr
-          ? scene.model->make(scene.model_options)
-          : scene.model->on_strand(scene.strands.front(), scene.model_options,
-                                   make_effects(scene));
+  auto system = scene.model->on_strand == nullptr
+                    ? scene.model->make(scene.model_options)
+                    : scene.model->on_strand(scene.strands.front(), scene.model_options,
+                                             make_effects(scene));
+  if (const SceneSupports supports(scene); supports.hold(0)) {
+    system = supports.on(std::move(system), scene.strands.front(), 0);
+    EXPECT_TRUE(begin_on_supports(*system, supports.place(0)).held);
+  }
   const State start = initial_state(*system);
   const auto method = make_integrator(scene.integrator, *system, scene.options);
   ASSERT_EQ(method->start(0, start.q, start.v), Status::ok) << method->failure();

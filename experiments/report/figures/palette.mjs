@@ -107,7 +107,7 @@ export const families = [
   {
     name: 'implicit, step or tolerance',
     colour: purple,
-    members: ['tr_bdf2', 'esdirk43'],
+    members: ['tr_bdf2', 'esdirk43', 'guarded', 'guarded_esdirk43', 'radau5', 'rodas5p'],
   },
   {
     name: 'implicit, adaptive',

@@ -141,23 +141,34 @@ def listing(tables):
     return "\n\n".join(parts)
 
 
-def _found(tables, file, pattern):
-    found = re.findall(pattern, tables.text(file))
+_CUT = re.compile(r"(?:\b(?:a|an|and|at|by|for|from|in|of|on|or|the|to|with)|[\s,:;(])$")
+
+
+def _found(tables, file, before):
+    """Returns (column, description) of each call or entry that begins with `before`. A description may
+    be several adjacent literals."""
+    text = tables.text(file)
+    found = [(column, "".join(re.findall(r'"([^"]*)"', literals)))
+             for column, literals in re.findall(before + r'"(\w+)",\s*((?:"[^"]*"\s*)+)', text)]
     if len(found) < 8:
         raise InputError(f"{file}: no columns are found there; correct the pattern in columns.py")
-    # A number that the scene says may follow.
-    return [(column, what.removesuffix(", of ")) for column, what in found]
+    # A number of the scene may follow.
+    found = [(column, what.removesuffix(", of ")) for column, what in found]
+    for column, what in found:
+        if _CUT.search(what):
+            raise InputError(f'{file}: the description of {column} ends in the middle: "{what}"; write it as one literal')
+    return found
 
 
 def series(tables):
     """Returns the columns of time series, as the sources that write them describe them."""
     strands = [
-        *_found(tables, "simulation/run/readout.cpp", r'\badd\("(\w+)",\s*"([^"]+)"'),
+        *_found(tables, "simulation/run/readout.cpp", r"\badd\("),
         ("tip_x_m, tip_y_m, tip_z_m", "tip, mean over the strands"),
         ("<effect>_j", "the effect's potential energy"),
     ]
     there = {column for columns, _ in strands for column in columns.split(", ")}
-    heads = _found(tables, "experiments/simulate/head_series.cpp", r'\{"(\w+)",\s*"([^"]+)"\}')
+    heads = _found(tables, "experiments/simulate/head_series.cpp", r"\{")
     lines = [*strands, *((column, f"{what} (batches of strands)") for column, what in heads if column not in there)]
     return table(["column", "unit", ""],
                  [[f"`{columns}`", unit_of(columns.split(", ")[0]), what] for columns, what in lines])

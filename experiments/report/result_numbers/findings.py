@@ -1,6 +1,6 @@
 """Sentences of the report page, as lists."""
 from .report import quoted, told
-from .words import bullets, table
+from .words import bullets, counted, table
 
 _MOST = 12  # the report page has the rest
 
@@ -9,7 +9,8 @@ def _listed(name, most=_MOST):
     def query(tables):
         sentences = told(tables, name)
         rest = len(sentences) - most
-        return bullets(sentences[:most] + ([f"{rest} more sentences are on the report page."] if rest > 0 else []))
+        more = f"{counted(rest, 'more sentence')} {'is' if rest == 1 else 'are'} on the report page."
+        return bullets(sentences[:most] + ([more] if rest > 0 else []))
 
     return query
 

@@ -43,16 +43,16 @@ def outcomes_table(tables):
 
 
 def million_steps(tables):
-    """Returns the steps at which `million_steps` counts whole, and how its shorter runs count."""
+    """Returns the steps at which `million_steps` runs to its end, and how its shorter runs count."""
     rows = counted(tables)
     rows = rows[rows["case"] == "million_steps"]
     cut = rows[rows["cut"] > 0]
     if cut.empty:
-        return "`million_steps` was run whole"
+        return "All runs of `million_steps` go to its end"
     whole = [duration(dt) for dt in rows[rows["cut"] == 0]["dt_s"].unique()]
-    where = f"whole at {' and '.join(whole)} only" if whole else "nowhere whole"
-    return (f"`million_steps` counts {where}: the other runs stop after {cut.iloc[0]['cut']} steps, and "
-            "count where they fail before that")
+    where = f"only at steps of {' and '.join(whole)}" if whole else "at no step"
+    return (f"The case `million_steps` runs to its end {where}. All its other runs stop after {cut.iloc[0]['cut']} steps, and count "
+            "only if they fail before")
 
 
 def super_helix(tables):
@@ -65,6 +65,21 @@ def super_helix(tables):
         words.append(f"{len(members) - len(lost)} of {len(members)} cases at steps of {duration(dt)}"
                      + (f" (not: {', '.join(lost)})" if lost else ""))
     return "; ".join(words)
+
+
+def _at_longest_step(tables, integrator):
+    rows = judged(tables)
+    rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
+    rows = rows[(rows["integrator"] == integrator) & (rows["dt_s"] == rows["dt_s"].max())]
+    return (f"survives {rows['survives'].sum()} of {len(rows)} pairs of case and model and is accurate in "
+            f"{(rows['outcome'] == 'stable and accurate').sum()}")
+
+
+def guarded(tables):
+    """Returns what `guarded` and `backward_euler` survive at the longest step, over all models."""
+    longest = duration(judged(tables)["dt_s"].max())
+    return (f"At steps of {longest}, `guarded` {_at_longest_step(tables, 'guarded')}; "
+            f"`backward_euler` {_at_longest_step(tables, 'backward_euler')}")
 
 
 # Cases of contact by a regularised law, and the same by the exact one: within the step of

@@ -1,6 +1,6 @@
 """Cost of grooms."""
 from .tables import groups, least, read_table, records
-from .words import number, percent, span, table
+from .words import counted, number, percent, span, table
 
 _PUBLISHED = "experiments/heads/published.csv"
 
@@ -66,18 +66,33 @@ def fastest(tables):
     for bits, precision in ((64, "double"), (32, "single")):
         row = least(rows[(rows["precision"] == bits) & (rows["threads"] <= cpus)], "cost_per_step_s")
         words.append(f"{number(1e3 * row['cost_per_step_s'])} ms in {precision} precision ({row['simd_width']} SIMD lanes, "
-                     f"{row['threads']} threads)")
+                     f"{counted(row['threads'], 'thread')})")
     return f"{', '.join(words)} on {cpus} processors"
 
 
-def per_element(tables):
-    """Returns the time per hair, element and step of the fastest runs of the largest groom."""
+def _element_times(tables, bits):
+    """Returns pairs of threads and time (s) per hair, element and step of the largest groom: of the
+    fastest run with one thread, and of the fastest run with no more threads than processors."""
     rows = _largest(tables)
-    rows = rows[rows["threads"] <= _processors(tables)]
-    cells = ((least(rows[rows["precision"] == bits], "cost_per_step_s"), precision)
-             for bits, precision in ((64, "double"), (32, "single")))
-    return ", ".join(f"{number(1e9 * row['cost_per_step_s'] / (row['strands'] * row['elements']))} ns in {precision} precision"
-                     for row, precision in cells)
+    rows = rows[(rows["precision"] == bits) & (rows["threads"] <= _processors(tables))]
+    runs = (least(some, "cost_per_step_s") for some in (rows[rows["threads"] == 1], rows))
+    return dict((row["threads"], row["cost_per_step_s"] / (row["strands"] * row["elements"])) for row in runs if row is not None)
+
+
+def _with_threads(times, text):
+    """Returns "1 s with one thread and 0.5 s with 2 threads"."""
+    return " and ".join(f"{text(time)} with {'one thread' if threads == 1 else f'{threads} threads'}" for threads, time in times.items())
+
+
+def per_element(tables):
+    """Returns the time per hair, element and step of the largest groom, by precision and threads."""
+    return " ".join(f"In {precision} precision it is {_with_threads(_element_times(tables, bits), lambda time: f'{number(1e9 * time)} ns')}."
+                    for bits, precision in ((64, "double"), (32, "single")))
+
+
+def frame_example(tables):
+    """Returns the time of a frame of 100 000 hairs of 10 elements in 5 steps, in double precision."""
+    return _with_threads(_element_times(tables, 64), lambda time: f"{number(100_000 * 10 * 5 * time)} s")
 
 
 def bytes_per_element(tables):
@@ -98,7 +113,7 @@ def oversubscribed(tables):
     odd = over.merge(full, on=["strands", "precision", "simd_width"], suffixes=("", "_full"))
     odd = odd[odd["cost_per_step_s_full"] > 1.1 * odd["cost_per_step_s"]]
     words = "; ".join(f"{row['strands']} hairs in {row['precision']}-bit precision take {number(1e3 * row['cost_per_step_s_full'])} ms "
-                      f"with {row['threads_full']} threads and {number(1e3 * row['cost_per_step_s'])} ms with {row['threads']}"
+                      f"with {counted(row['threads_full'], 'thread')} and {number(1e3 * row['cost_per_step_s'])} ms with {row['threads']}"
                       for row in records(odd))
     unreliable = f"; where the table has them so, the times are unreliable ({words})" if words else ""
     return (f"{len(over)} of {len(rows)} rows have more threads than the machine's {cpus} processors, to show that the states "
@@ -203,6 +218,6 @@ def published_table(tables):
             row = least(rows[(rows["strands"] == strands) & (rows["effects"] == effects)], "cost_per_frame_s")
             if row is not None:
                 lines.append(["here", f"super-helices of {row['elements']} elements, steps of {number(1e3 * row['dt_s'])} ms; "
-                              f"{computed}", f"{row['threads']} threads", strands, row["cost_per_frame_s"]])
+                              f"{computed}", counted(row["threads"], "thread"), strands, row["cost_per_frame_s"]])
     return table(["source", "what is computed", "on", "hairs", "a frame, s", "of a hair, µs"],
                  [[*line, strands, number(cost), number(1e6 * cost / strands)] for *line, strands, cost in lines])

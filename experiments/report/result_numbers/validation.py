@@ -1,7 +1,7 @@
 """Published tests of slender rods."""
 from .report import rows
 from .tables import groups, known, records
-from .words import is_number, number, table
+from .words import counted, is_number, number, table
 
 # Nobody cares how much less, unless less is accepted.
 _LEAST_PCT = 1e-3
@@ -62,11 +62,12 @@ def scores_table(tables):
 
 
 def scores(tables):
-    """Returns the best and the last of all models: "super clothoid meets 37 of 37 tests"."""
+    """Returns the best and the last of all models: "super clothoid meets 37 of the 37 tests"."""
     scored = _scored(tables)
     best, last = scored[0], scored[-1]
-    return (f"The best model, {best['name']}, meets {best['met']} of the {best['all']} tests that it can run; the last, "
-            f"{last['name']}, {last['met']} of {last['all']}. All {len(scored)} models and variants")
+    models = tables["validation"]["model"].nunique()
+    return (f"Of the {counted(models, 'model')} and {counted(len(scored) - models, 'variant')}, the best is {best['name']}. It meets "
+            f"{best['met']} of the {best['all']} tests that it can run. The last, {last['name']}, meets {last['met']} of {last['all']}")
 
 
 def order_points(tables):

@@ -80,6 +80,11 @@ def span(values, text=number):
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
+def counted(count, noun):
+    """Returns "1 thread", "2 threads"."""
+    return f"{count} {noun if count == 1 else noun + 's'}"
+
+
 def spaced(name):
     return name.replace("_", " ")
 

@@ -52,8 +52,7 @@ class ExactKernel {
   using Factors = typename Elimination::Factors;  // of an element, between sweeps
 
   /// `kernel` must outlive it.
-  ExactKernel(const Kernel& kernel, Instructions instructions)
-      : kernel_(kernel), instructions_(instructions) {}
+  ExactKernel(const Kernel& kernel) : kernel_(kernel) {}
 
   /// Motion at the state, for loads in `scratch`; returns what newton() and again() need.
   Motion move(const Material& m, const Motion& root, const Vec* q, const Vec* v,
@@ -71,7 +70,6 @@ class ExactKernel {
 
  private:
   const Kernel& kernel_;
-  Instructions instructions_;
 };
 
 }  // namespace tress::models

@@ -13,7 +13,7 @@ TRESS_FLATTEN auto ExactKernel<Kind>::move(const Material& m, const Motion& root
                                            Scratch* scratch, Factors* factors) const
     -> Motion {
   Motion at = root;
-  by(instructions_, [&] {
+  by_registers_of<T>([&] {
     for (int i = 0; i < kernel_.elements(); ++i) {
       factors[i].start = at;
       scratch[i].q = q[i];
@@ -31,7 +31,7 @@ TRESS_FLATTEN auto ExactKernel<Kind>::newton(const Material& m, const Motion& en
                                              Factors* factors) const -> T {
   const int n = kernel_.elements();
   T most;
-  by(instructions_, [&] {
+  by_registers_of<T>([&] {
     typename Elimination::Hanging hanging{};
     for (int i = n - 1; i >= 0; --i) {
       Factors& e = factors[i];
@@ -67,7 +67,7 @@ TRESS_FLATTEN auto ExactKernel<Kind>::again(const Material& m, const Motion& end
                                             Factors* factors) const -> T {
   const int n = kernel_.elements();
   T most;
-  by(instructions_, [&] {
+  by_registers_of<T>([&] {
     kernel_.residual(
         m, end, loads, [rest](int i) { return rest[i]; }, v, a, correction, scratch);
     Vec force, moment;

@@ -34,9 +34,8 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     std::vector<typename Kernel::Factor> factors;
   };
 
-  DerModel(const LaneOptions& options, const HeadUnits& units, Instructions instructions)
+  DerModel(const LaneOptions& options, const HeadUnits& units)
       : Base(options),
-        instructions_(instructions),
         turning_(options.rotary_inertia),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -84,7 +83,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
     Real size;
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       size = kernel_.newton(strand.material, elements, clamp, w, q, v, a, correction,
                             scratch.placed.data(), scratch.factors.data());
     });
@@ -94,7 +93,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
     Real size;
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a, correction,
                            scratch.placed.data(), scratch.factors.data(),
                            scratch.now.data());
@@ -109,7 +108,6 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   }
 
  private:
-  Instructions instructions_;
   bool turning_;
   Kernel kernel_;
 };

@@ -44,11 +44,9 @@ class QuaternionModel
   };
 
   /// `units`, which are whole with the first strand, must outlive it.
-  QuaternionModel(const LaneOptions& options, const HeadUnits& units,
-                  Instructions instructions)
+  QuaternionModel(const LaneOptions& options, const HeadUnits& units)
       : Base(options),
         units_(units),
-        instructions_(instructions),
         kind_(rod_kind<EdgeOf<double>>(options.model ? &*options.model : nullptr)),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -120,7 +118,7 @@ class QuaternionModel
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
     Real size;
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       size =
           kernel_.newton(strand.material, elements, clamp, w, q, v, a,
                          loads(strand, q, v, scratch), correction, scratch.factors.data(),
@@ -132,7 +130,7 @@ class QuaternionModel
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
     Real size;
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a,
                            loads(strand, q, v, scratch), correction,
                            scratch.factors.data(), scratch.forces.data());
@@ -158,7 +156,6 @@ class QuaternionModel
   }
 
   const HeadUnits& units_;
-  Instructions instructions_;
   QuaternionRodKind<EdgeOf<double>> kind_;
   Kernel kernel_;
 };

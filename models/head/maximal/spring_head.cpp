@@ -54,11 +54,9 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   using Scratch = std::conditional_t<exact, ExactScratch, StiffScratch>;
 
   /// `units`, which are whole with the first strand, must outlive it.
-  SpringModel(const LaneOptions& options, const HeadUnits& units,
-              Instructions instructions)
+  SpringModel(const LaneOptions& options, const HeadUnits& units)
       : Base(options),
         units_(units),
-        instructions_(instructions),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
 
@@ -119,7 +117,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
               Scratch& scratch) const {
     if constexpr (exact) find_loads(strand, q, v, scratch);
     Real size;
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       const auto solve = [&](auto*... tensions) {
         return kernel_.newton(strand.material, elements, clamp, w, q, v, a, scratch.loads,
                               correction, scratch.placed.data(), scratch.factors.data(),
@@ -138,7 +136,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
              Scratch& scratch) const {
     find_loads(strand, q, v, scratch);
     Real size;
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a, scratch.loads,
                            correction, scratch.placed.data(), scratch.factors.data(),
                            scratch.now.data());
@@ -159,7 +157,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
  private:
   void find_loads(const Strand& strand, std::span<const NearBody> bodies, const V& root,
                   double h, const Real* q, const Real* v, StiffScratch& scratch) const {
-    by(instructions_, [&] {
+    by_registers_of<Real>([&] {
       scratch.loads =
           scratch.node_loads.find(bodies, units_, h, root, strand.material.length,
                                   strand.material.drag, q, v, Kernel::per_element);
@@ -171,7 +169,6 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   }
 
   const HeadUnits& units_;
-  Instructions instructions_;
   Kernel kernel_;
 };
 

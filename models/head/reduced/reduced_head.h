@@ -27,9 +27,8 @@ class ReducedHead : public Head {
 
  public:
   /// Makes an empty batch. Throws InputError as stiff_helix_head().
-  ReducedHead(const LaneOptions& options, Instructions instructions)
+  explicit ReducedHead(const LaneOptions& options)
       : options_(with_uniform_effects(options)),
-        instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
         kernel_(options.elements, options.points, options.twist),
         energies_(kernel_),
@@ -103,7 +102,7 @@ class ReducedHead : public Head {
 
   std::unique_ptr<Scratch> scratch() const override {
     // Units are known from the first strand on.
-    return std::make_unique<Own>(kernel_, units_, instructions_);
+    return std::make_unique<Own>(kernel_, units_);
   }
 
   void step(std::size_t block, double t, double h, Scratch& given) override {
@@ -116,12 +115,12 @@ class ReducedHead : public Head {
     const double step = h / units_.time;
     auto* const elements = scratch.elements.data();
     ReducedMotion<T> end;
-    by(instructions_, [&] { end = kernel_.move(material, root, step, q, v, elements); });
+    by_registers_of<T>([&] { end = kernel_.move(material, root, step, q, v, elements); });
     const LoadSums<T>* const* loads = nullptr;
     if (const auto reached = reached_by_effects(block, h, scratch)) {
       loads = scratch.loads.find(*reached, v, elements);
     }
-    by(instructions_, [&] {
+    by_registers_of<T>([&] {
       kernel_.linearly_implicit_step(material, end, loads, &rest_[n_ * block], step, q, v,
                                      elements);
     });
@@ -197,7 +196,7 @@ class ReducedHead : public Head {
     const Root& root = roots_[block];
     const FrameOf<T> head{pose.frame.e0, pose.frame.e1, pose.frame.e2};
     LaneEnergies<T> sums;
-    by(instructions_, [&] {
+    by_registers_of<T>([&] {
       sums = energies_(
           materials_[block], root_of(root, pose), head * root.from, head * root.frame,
           [rest = &rest_[n_ * block]](int i) { return rest[i]; }, &q_[n_ * block],
@@ -247,11 +246,10 @@ class ReducedHead : public Head {
   /// Working memory of one thread.
   struct Own final : Scratch {
     /// Allocates for a block. `kernel` must outlive it.
-    Own(const ReducedKernel<Kind>& kernel, const HeadUnits& units,
-        Instructions instructions)
+    Own(const ReducedKernel<Kind>& kernel, const HeadUnits& units)
         : elements(static_cast<std::size_t>(kernel.elements())),
           before(elements.size()),
-          loads(kernel, units, instructions),
+          loads(kernel, units),
           others(width) {}
     /// Elements of a block between sweeps (elements).
     std::vector<typename ReducedKernel<Kind>::Scratch> elements;
@@ -365,7 +363,6 @@ class ReducedHead : public Head {
   }
 
   LaneOptions options_;
-  Instructions instructions_;
   std::size_t n_;
   ReducedKernel<Kind> kernel_;
   ReducedEnergies<Kind> energies_;
@@ -386,10 +383,9 @@ class ReducedHead : public Head {
 template <template <class> class Stepped>
 std::unique_ptr<Head> reduced_head(const LaneOptions& options, const HeadPack& pack) {
   check_for_reduced_head(options);
-  return on_pack<std::unique_ptr<Head>>(
-      pack, [&]<class T>(Instructions set) -> std::unique_ptr<Head> {
-        return std::make_unique<Stepped<T>>(options, set);
-      });
+  return on_pack<std::unique_ptr<Head>>(pack, [&]<class T>() -> std::unique_ptr<Head> {
+    return std::make_unique<Stepped<T>>(options);
+  });
 }
 
 }  // namespace tress::models

@@ -57,7 +57,7 @@ class ReducedModel {
     explicit Scratch(const ReducedModel& model)
         : elements(model.elements()),
           factors(model.elements()),
-          loads(model.kernel_, model.units_, model.instructions_) {}
+          loads(model.kernel_, model.units_) {}
     std::vector<typename Kernel::Scratch> elements;  // state of the elements
     /// Factors of the exact Jacobian (elements).
     std::vector<typename ExactKernel<Kind>::Factors> factors;
@@ -70,15 +70,13 @@ class ReducedModel {
   };
 
   /// `units`, which are whole with the first strand, must outlive it.
-  ReducedModel(const LaneOptions& options, const HeadUnits& units,
-               Instructions instructions)
+  ReducedModel(const LaneOptions& options, const HeadUnits& units)
       : options_(options),
         units_(units),
-        instructions_(instructions),
         n_(static_cast<std::size_t>(options.elements)),
         gravity_((units.time * units.time / units.length) * options.gravity),
         kernel_(options.elements, options.points, options.twist),
-        exact_(kernel_, instructions),
+        exact_(kernel_),
         energies_(kernel_) {}
 
   /// Returns the number of elements of a strand.
@@ -258,7 +256,6 @@ class ReducedModel {
 
   LaneOptions options_;
   const HeadUnits& units_;
-  Instructions instructions_;
   std::size_t n_;
   Vec gravity_;
   Kernel kernel_;

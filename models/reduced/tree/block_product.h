@@ -143,6 +143,33 @@ inline void multiply(const A& a, const B& b, C&& c) {
   }
 }
 
+/// Returns the scalar product of two columns of fixed size, in four partial sums.
+template <int rows>
+[[gnu::always_inline]] inline double product_of_columns(const double* a,
+                                                        const double* x) {
+  constexpr int whole = rows / 4 * 4;
+  double sum[4] = {};
+#pragma GCC unroll 1
+  for (int i = 0; i < whole; i += 4) {
+    for (int l = 0; l < 4; ++l) sum[l] += a[i + l] * x[i + l];
+  }
+  double all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  for (int i = whole; i < rows; ++i) all += a[i] * x[i];
+  return all;
+}
+/// Computes y (+)= sign a^T x for a column-major matrix a and columns x and y of fixed
+/// size.
+template <int sign, bool onto, class A, class X, class Y>
+inline void multiply_transposed(const A& a, const X& x, Y&& y) {
+  constexpr int rows = A::RowsAtCompileTime;
+  static_assert(rows == static_cast<int>(X::RowsAtCompileTime));
+  const auto stride = static_cast<int>(a.colStride());
+  for (int j = 0; j < A::ColsAtCompileTime; ++j) {
+    const double sum = product_of_columns<rows>(a.data() + stride * j, x.data());
+    y[j] = (onto ? y[j] : 0.0) + sign * sum;
+  }
+}
+
 /// c += a b
 template <class A, class B, class C>
 inline void add_product(const A& a, const B& b, C&& c) {

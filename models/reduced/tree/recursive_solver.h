@@ -185,23 +185,24 @@ class RecursiveSolver final : public TreeSolver<Shape> {
     for (std::size_t i = hanging_.size(); i-- > 0;) {
       Eliminated& e = eliminated_[i];
       Eigen::Matrix<Real, Shape::columns, 1> moved;
-      moved.noalias() = tangent.segments[i].transfer.transpose() * hanging_[i].state;
+      multiply_transposed<1, false>(tangent.segments[i].transfer, hanging_[i].state,
+                                    moved);
       for (int k = 0; k < n; ++k) e.u[k] = b[at(i, k)] + moved[states + k];
       const int parent = tangent.parent[i];
       State& onto =
           parent < 0 ? at_start : hanging_[static_cast<std::size_t>(parent)].state;
-      onto += moved.template head<states>();
-      onto.noalias() -= e.z.transpose() * e.u;
+      add(part<states, 1>(moved, 0, 0), onto);
+      multiply_transposed<-1, true>(e.z, e.u, onto);
     }
     Wrench at_root = Wrench::Zero();
     if (tangent.free_root) {
       const std::size_t first = Shape::dofs * hanging_.size();
-      const Eigen::Matrix<double, 6, 1> right =
-          Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]) +
-          tangent.root.transfer.transpose() * at_start;
+      Eigen::Matrix<double, 6, 1> right =
+          Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&b[first]);
+      multiply_transposed<1, true>(tangent.root.transfer, at_start, right);
       Eigen::Map<Eigen::Matrix<double, 6, 1>> y(&x[first]);
       y = root_.transpose().solve(right);
-      at_root.noalias() -= tangent.root.lift.transpose() * y;
+      multiply_transposed<-1, true>(tangent.root.lift, y, at_root);
     }
     for (std::size_t i = 0; i < hanging_.size(); ++i) {
       const int parent = tangent.parent[i];
@@ -209,13 +210,15 @@ class RecursiveSolver final : public TreeSolver<Shape> {
           parent < 0 ? at_root : hanging_[static_cast<std::size_t>(parent)].load;
       const Eliminated& e = eliminated_[i];
       Eigen::Matrix<Real, Shape::rows, 1> rows;
-      rows.template head<wrench>() = onto;
+      copy(onto, part<wrench, 1>(rows, 0, 0));
       Dofs rest;
-      rest.noalias() = e.inverse.transpose() * e.u;
-      rest.noalias() += e.response.transpose() * onto;
-      rows.template tail<n>() = -rest;
-      for (int k = 0; k < n; ++k) x[at(i, k)] = rest[k];
-      hanging_[i].load.noalias() = tangent.segments[i].lift.transpose() * rows;
+      multiply_transposed<1, false>(e.inverse, e.u, rest);
+      multiply_transposed<1, true>(e.response, onto, rest);
+      for (int k = 0; k < n; ++k) {
+        x[at(i, k)] = rest[k];
+        rows[wrench + k] = -rest[k];
+      }
+      multiply_transposed<1, false>(tangent.segments[i].lift, rows, hanging_[i].load);
     }
   }
 

@@ -23,26 +23,26 @@ class TransposedProduct {
     of_root_.setZero();
     at_root_.setZero();
     if (tangent.free_root) {
-      of_root_.noalias() =
-          tangent.root.lift.transpose() * Eigen::Map<const OfRoot>(&mu[root]);
+      multiply_transposed<1, false>(tangent.root.lift,
+                                    Eigen::Map<const OfRoot>(&mu[root]), of_root_);
     }
     rows_.resize(by_tip_.size());
     for (std::size_t i = 0; i < by_tip_.size(); ++i) {
       rows_[i] = rows(tangent, i, mu);
-      by_tip_[i].noalias() = tangent.segments[i].lift.transpose() * rows_[i];
+      multiply_transposed<1, false>(tangent.segments[i].lift, rows_[i], by_tip_[i]);
     }
     for (std::size_t i = by_tip_.size(); i-- > 0;) {
       const SegmentTangent<Shape>& segment = tangent.segments[i];
-      by_state_[i].noalias() += segment.tip.transpose() * by_tip_[i];
+      multiply_transposed<1, true>(segment.tip, by_tip_[i], by_state_[i]);
       Eigen::Matrix<double, Shape::columns, 1> all;
-      all.noalias() = segment.local.transpose() * rows_[i];
-      all.noalias() += segment.transfer.transpose() * by_state_[i];
+      multiply_transposed<1, false>(segment.local, rows_[i], all);
+      multiply_transposed<1, true>(segment.transfer, by_state_[i], all);
       for (int k = 0; k < Shape::dofs; ++k) {
         x[Shape::dofs * i + static_cast<std::size_t>(k)] = all[Shape::states + k];
       }
       const int parent = tangent.parent[i];
       State& start = parent < 0 ? at_root_ : by_state_[static_cast<std::size_t>(parent)];
-      start += all.template head<Shape::states>();
+      add(part<Shape::states, 1>(all, 0, 0), start);
     }
     if (!tangent.free_root) return;
     compute_root(tangent.root, mu.subspan(root), x.subspan(root));
@@ -51,8 +51,8 @@ class TransposedProduct {
   /// compute().
   void compute_root(const RootTangent<Shape>& root, In mu, Out x) const {
     Eigen::Map<OfRoot> to(x.data());
-    to.noalias() = root.local.transpose() * Eigen::Map<const OfRoot>(mu.data());
-    to.noalias() += root.transfer.transpose() * at_root_;
+    multiply_transposed<1, false>(root.local, Eigen::Map<const OfRoot>(mu.data()), to);
+    multiply_transposed<1, true>(root.transfer, at_root_, to);
   }
 
   /// State of a tip.
@@ -77,8 +77,8 @@ class TransposedProduct {
   Rows rows(const TreeTangent<Shape>& tangent, std::size_t i, In mu) const {
     Rows all;
     const int parent = tangent.parent[i];
-    all.template head<Shape::wrench>() =
-        parent < 0 ? of_root_ : by_tip_[static_cast<std::size_t>(parent)];
+    copy(parent < 0 ? of_root_ : by_tip_[static_cast<std::size_t>(parent)],
+         part<Shape::wrench, 1>(all, 0, 0));
     for (int k = 0; k < Shape::dofs; ++k) {
       all[Shape::wrench + k] = mu[Shape::dofs * i + static_cast<std::size_t>(k)];
     }

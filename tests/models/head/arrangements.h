@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "math/instructions.h"
 #include "models/head/head.h"
 
 namespace tress::testing_support {
@@ -14,18 +13,15 @@ struct Arrangement {
   std::size_t together = 100;  // blocks in one call
 };
 
-/// Every number of lanes by every set of instructions that there is, and two of them by
-/// few blocks in a call.
+/// Every number of lanes, of which the longest has other instructions where there are
+/// more, and two of them by few blocks in a call.
 inline std::vector<Arrangement> arrangements() {
-  std::vector<Arrangement> all;
-  for (const int lanes : {1, 4, 8}) {
-    for (const Instructions set : {Instructions::base, Instructions::avx512}) {
-      if (available(set)) all.push_back({{models::HeadNumber::float64, lanes, set}});
-    }
-  }
-  all.push_back({{models::HeadNumber::float64, 4, Instructions::base}, 1});
-  all.push_back({{models::HeadNumber::float64, 1, Instructions::base}, 2});
-  return all;
+  using enum models::HeadNumber;
+  return {{{float64, 1}},
+          {{float64, 4}},
+          {{float64, 8}},
+          {{float64, 4}, 1},
+          {{float64, 1}, 2}};
 }
 
 }  // namespace tress::testing_support

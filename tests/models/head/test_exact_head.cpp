@@ -68,7 +68,7 @@ TYPED_TEST(OfHair, CorrectionsAreThoseOfTheStrandAlone) {
   HeadUnits units = HeadUnits::of(of_head.longest);
   const Strand first = strand(c, 0);
   units.weigh(0, first.material.density * first.segments.front().section.area());
-  const Model model(of_head, units, Instructions::base);
+  const Model model(of_head, units);
   const std::size_t n = model.unknowns();
   typename Model::Strand of_strands;
   std::vector<typename Model::Element> elements(model.elements());

@@ -44,9 +44,7 @@ class Loaded {
   using State = std::array<std::vector<V>, 3>;
 
   Loaded(bool twist, bool loaded, double size)
-      : kernel_(elements, points, twist),
-        exact_(kernel_, Instructions::base),
-        loaded_(loaded) {
+      : kernel_(elements, points, twist), exact_(kernel_), loaded_(loaded) {
     Numbers any;
     material_ = {T(1.0 / elements), T(1),   T(0.7), {T(0.02), T(0.01), T(0.015)},
                  T(0.003),          T(1e-4)};

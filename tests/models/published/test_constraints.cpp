@@ -122,7 +122,7 @@ TEST_P(PublishedConstraints, ConstraintsAreIndependentAtTheStart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PublishedConstraints,
-                         testing::Values("andrews_squeezer", "slider_crank"),
+                         testing::Values("andrews_squeezer", "slider_crank", "car_axis"),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(SliderCrank, RigidStartIsConsistent) {

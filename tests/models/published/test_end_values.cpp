@@ -131,7 +131,8 @@ TEST_P(PublishedEndValues, AreReproduced) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PublishedEndValues,
-                         testing::Values("andrews_squeezer", "slider_crank", "beam"),
+                         testing::Values("andrews_squeezer", "slider_crank", "car_axis",
+                                         "beam"),
                          [](const auto& param) { return std::string(param.param); });
 
 class PublishedDae : public testing::TestWithParam<const char*> {};
@@ -160,6 +161,17 @@ TEST_P(PublishedDae, PrintedAccelerationsAndMultipliersBalanceTheForces) {
 INSTANTIATE_TEST_SUITE_P(All, PublishedDae,
                          testing::Values("andrews_squeezer", "slider_crank"),
                          [](const auto& param) { return std::string(param.param); });
+
+// Of the chassis and of the bar, which hold the axle at the end of the run.
+TEST(CarAxis, MultipliersAreThePublishedOnes) {
+  const auto system = make_model("car_axis");
+  const PublishedEnd* end = published_end("car_axis");
+  FirstOrder problem(*system);
+  const Vector y = integrate(*system, problem, end->t);
+  Vector y_dot(problem.size());
+  ASSERT_EQ(problem.rhs(end->t, y.data(), y_dot.data()), Status::ok);
+  EXPECT_GE(digits(problem.multipliers(), end->lambda, Vector::Zero(2)), 9);
+}
 
 TEST(SliderCrank, RigidAndLateralCoordinatesAgreeToSixDigits) {
   const auto system = make_model("slider_crank");

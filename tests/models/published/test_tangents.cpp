@@ -127,8 +127,8 @@ TEST_P(PublishedTangent, ResidualIsPure) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PublishedTangent,
-                         testing::Values("andrews_squeezer", "slider_crank", "beam",
-                                         "double_pendulum"),
+                         testing::Values("andrews_squeezer", "slider_crank", "car_axis",
+                                         "beam", "double_pendulum"),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(Beam, ShortChainsKeepTheirTangent) {

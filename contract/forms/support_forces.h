@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+#include "contract/system.h"
+
+namespace tress {
+
+/// Forces of the supports that hold points of a strand, an optional capability of
+/// systems.
+class SupportForces {
+ public:
+  virtual ~SupportForces() = default;
+  /// Returns the number of supports; fixed for life.
+  virtual std::size_t supports() const = 0;
+  /// Computes the force that each support exerts on the strand, (3 supports), N, world
+  /// components. The forces keep the points on their paths at this state, and are the
+  /// multipliers of g'' = 0.
+  virtual Status support_forces(double t, In q, In v, Out forces) = 0;
+  /// Writes the places (m) and the velocities (m/s) of the supports, (3 supports) each.
+  virtual void support_motion(double t, Out x, Out u) const = 0;
+};
+
+/// Returns the support forces of a system; null if it has no supports.
+inline SupportForces* support_forces(System& system) {
+  return dynamic_cast<SupportForces*>(&system);
+}
+
+}  // namespace tress

@@ -1,0 +1,48 @@
+#include <cmath>
+#include <memory>
+
+#include "contract/input_error.h"
+#include "integrators/entry.h"
+#include "integrators/one_step/one_step.h"
+#include "integrators/one_step/radau.h"
+
+namespace tress::integrators {
+namespace {
+
+constexpr int order = 5;
+/// The estimate falls as h^4. In the limit of short steps the error of a run is
+/// proportional to the tolerance with this power (EsdirkTable::power).
+constexpr int estimate_power = 4;
+constexpr double share = 0.3, power = 0.8;
+/// Newton's tolerance over that of the run.
+constexpr double newton_part = 1e-2;
+
+std::unique_ptr<Integrator> make_radau5(System& system, const Options& options) {
+  if (options.tolerance == 0) {
+    return std::make_unique<FixedOneStep<RadauStages>>(system, options);
+  }
+  if (options.formulation == Formulation::index3) {
+    throw InputError("no error control on index 3", "position_tol_rel",
+                     "use projection, or a fixed step");
+  }
+  Options within = options;
+  within.newton_tolerance = newton_part * options.tolerance;
+  within.refresh = Refresh::every_step;
+  return std::make_unique<ControlledOneStep<RadauStages>>(
+      system, options, estimate_power, share * std::pow(options.tolerance, power), within,
+      1.0);
+}
+
+}  // namespace
+
+IntegratorEntry radau5_entry() {
+  return {.id = "radau5",
+          .summary = "Radau IIA, L-stable, three stages at once with one real matrix",
+          .source = "Hairer-Wanner 1996, IV.8",
+          .error_controlled = true,
+          .tangent = true,
+          .formulations = of_order(order, stage_formulations),
+          .make = make_radau5};
+}
+
+}  // namespace tress::integrators

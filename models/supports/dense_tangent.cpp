@@ -1,0 +1,68 @@
+#include "models/supports/dense_tangent.h"
+
+#include <cmath>
+
+namespace tress::models {
+
+DenseTangent::DenseTangent(System& system) : system_(system) {
+  const int n = system.layout().coordinates;
+  const auto count = static_cast<std::size_t>(n);
+  full_.rows = full_.cols = n;
+  for (int k = 0; k <= n; ++k) full_.start.push_back(n * k);
+  for (int k = 0; k < n * n; ++k) full_.row.push_back(k % n);
+  for (auto* x : {&a_typ_, &zero_, &unit_, &ahead_}) x->assign(count, 0.0);
+  typical_.resize(n);
+  system.scale({typical_.data(), count}, a_typ_);
+  for (std::size_t i = 0; i < count; ++i) {
+    a_typ_[i] *= a_typ_[i] / typical_[static_cast<Eigen::Index>(i)];
+  }
+  compliance_.resize(n, n);
+  lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(n);
+}
+
+/// Forces cancel in the difference of two residuals. Accelerations of 1e9 times their
+/// typical size leave them below the rounding of the inertia.
+Status DenseTangent::mass(double t, In q, double factor, Out s) noexcept {
+  const std::size_t n = q.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double size = 1e9 * a_typ_[k];
+    const Out column = s.subspan(n * k, n);
+    unit_[k] = size;
+    Status status = system_.residual(t, q, zero_, unit_, column);
+    unit_[k] = -size;
+    if (status == Status::ok) status = system_.residual(t, q, zero_, unit_, ahead_);
+    unit_[k] = 0;
+    if (status != Status::ok) return status;
+    for (std::size_t i = 0; i < n; ++i) {
+      column[i] = factor * (column[i] - ahead_[i]) / (2 * size);
+    }
+  }
+  return Status::ok;
+}
+
+Status DenseTangent::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
+  if (w.vel == 0 && w.pos == 0) return mass(t, q, w.acc, s);
+  if (const Status status = system_.linearize(t, q, v, a, w); status != Status::ok) {
+    return status;
+  }
+  const Eigen::Index n = typical_.size();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    unit_[static_cast<std::size_t>(k)] = 1 / typical_[k];
+    const Out column(compliance_.col(k).data(), q.size());
+    const Status status = system_.solve(unit_, column);
+    unit_[static_cast<std::size_t>(k)] = 0;
+    if (status != Status::ok) return status;
+  }
+  // (D^-1 S^-1 D^-1)^-1 = D S D, with D the typical sizes.
+  compliance_ = typical_.cwiseInverse().asDiagonal() * compliance_;
+  lu_.compute(compliance_);
+  const double least = lu_.matrixLU().diagonal().cwiseAbs().minCoeff();
+  if (!(least > 0) || !std::isfinite(least)) return Status::retry;
+  Eigen::Map<Eigen::MatrixXd> matrix(s.data(), n, n);
+  matrix = lu_.inverse();
+  matrix = typical_.cwiseInverse().asDiagonal() * matrix *
+           typical_.cwiseInverse().asDiagonal();
+  return Status::ok;
+}
+
+}  // namespace tress::models

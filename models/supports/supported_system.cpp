@@ -1,0 +1,167 @@
+#include "models/supports/supported_system.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contract/input_error.h"
+#include "linear/vector_ops.h"
+
+namespace tress::models {
+
+SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
+                                 std::vector<Support> supports)
+    : strand_(std::move(strand)), rows_(*strand_, std::move(supports)) {
+  refuse_if(strand_->contact_form() != nullptr,
+            "supports of a strand with exact contact: the response of contacts to their "
+            "forces leaves supports out",
+            "support 0", "use law = \"regularised\" for bodies");
+  if (strand_->sparse_form() == nullptr) dense_.emplace(*strand_);
+  const auto n = static_cast<std::size_t>(strand_->layout().coordinates);
+  std::vector<double> q_typ(n);
+  for (auto* x : {&acceleration_, &zero_, &v_typ_}) x->assign(n, 0.0);
+  strand_->scale(q_typ, v_typ_);
+  short_time_ = strand_->traits().regular_mass ? 0 : 1;
+  for (std::size_t i = 0; i < n && short_time_ > 0; ++i) {
+    short_time_ = std::min(short_time_, 1e-4 * q_typ[i] / v_typ_[i]);
+  }
+  gradient_.resize(static_cast<std::size_t>(rows_.pattern().nonzeros()));
+  bias_.resize(static_cast<std::size_t>(rows_.rows()));
+}
+
+void SupportedSystem::begin_at(In q, In v) {
+  begin_q_.assign(q.begin(), q.end());
+  begin_v_.assign(v.begin(), v.end());
+  if (History* const past = strand_->history()) begin_memory_ = past->memory();
+}
+
+void SupportedSystem::initial_state(Out q, Out v) const {
+  if (begin_q_.empty()) return strand_->initial_state(q, v);
+  std::ranges::copy(begin_q_, q.begin());
+  std::ranges::copy(begin_v_, v.begin());
+}
+
+void SupportedSystem::reset() {
+  strand_->history()->reset();
+  if (!begin_memory_.empty()) strand_->history()->recall(begin_memory_);
+}
+
+double SupportedSystem::next_breakpoint(double t) const {
+  double next = strand_->next_breakpoint(t);
+  for (const Support& support : rows_.supports()) {
+    next = std::min(next, support.path.next_breakpoint(t));
+  }
+  return next;
+}
+
+/// Prepares multipliers() at a state. A singular mass matrix is replaced by that of a
+/// short step, as in Dynamics::accelerate.
+Status SupportedSystem::hold(double t, In q, In v) {
+  const auto n = static_cast<Eigen::Index>(q.size());
+  const Eigen::Index m = rows_.rows();
+  const Weights w{1, short_time_, short_time_ * short_time_};
+  for (const Status s : {rows_.gradient(t, q, gradient_), rows_.bias(t, q, v, bias_),
+                         strand_->residual(t, q, v, zero_, acceleration_),
+                         strand_->linearize(t, q, v, zero_, w)}) {
+    if (s != Status::ok) return s;
+  }
+  for (double& entry : acceleration_) entry = -entry;
+  if (const Status s = strand_->solve(acceleration_, acceleration_); s != Status::ok) {
+    return s;
+  }
+  const Pattern& pattern = rows_.pattern();
+  const auto product = [&](Eigen::Index row, const double* x) {
+    double sum = 0;
+    const auto k = static_cast<std::size_t>(row);
+    for (int p = pattern.start[k]; p < pattern.start[k + 1]; ++p) {
+      const auto entry = static_cast<std::size_t>(p);
+      sum += gradient_[entry] * x[pattern.row[entry]];
+    }
+    return sum;
+  };
+  responses_.setZero(n, m);
+  compliance_.resize(m, m);
+  needed_.resize(m);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    for (int p = pattern.start[row]; p < pattern.start[row + 1]; ++p) {
+      const auto entry = static_cast<std::size_t>(p);
+      responses_(pattern.row[entry], k) = gradient_[entry];
+    }
+    const Out column(responses_.col(k).data(), q.size());
+    if (const Status s = strand_->solve(column, column); s != Status::ok) return s;
+    needed_[k] = -bias_[row] - product(k, acceleration_.data());
+  }
+  for (Eigen::Index k = 0; k < m; ++k) {
+    for (Eigen::Index j = 0; j < m; ++j) {
+      compliance_(k, j) = product(k, responses_.col(j).data());
+    }
+  }
+  return Status::ok;
+}
+
+/// lambda of the first rows alone, others 0; of least norm where rows are redundant.
+void SupportedSystem::multipliers(int rows, std::vector<double>& lambda) const {
+  lambda.assign(bias_.size(), 0.0);
+  if (rows == 0) return;
+  const Eigen::VectorXd unit =
+      compliance_.diagonal().head(rows).cwiseAbs().cwiseSqrt().unaryExpr(
+          [](double x) { return x > 0 ? 1 / x : 1; });
+  const Eigen::MatrixXd scaled =
+      unit.asDiagonal() * compliance_.topLeftCorner(rows, rows) * unit.asDiagonal();
+  const Eigen::VectorXd found = unit.cwiseProduct(
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(scaled).solve(
+          unit.cwiseProduct(needed_.head(rows)).eval()));
+  Eigen::Map<Eigen::VectorXd>(lambda.data(), rows) = found;
+}
+
+Status SupportedSystem::support_forces(double t, In q, In v, Out forces) {
+  if (const Status s = hold(t, q, v); s != Status::ok) return s;
+  std::vector<double> lambda;
+  multipliers(rows_.rows(), lambda);
+  auto row = static_cast<std::size_t>(rows_.own());
+  for (std::size_t i = 0; i < supports(); ++i) {
+    Vec force;
+    for (const Vec& axis : rows_.supports()[i].axes) {
+      force = force + lambda[row++] * axis;
+    }
+    store3(force, &forces[3 * i]);
+  }
+  return Status::ok;
+}
+
+void SupportedSystem::support_motion(double t, Out x, Out u) const {
+  for (std::size_t i = 0; i < supports(); ++i) {
+    const RootPose pose = rows_.supports()[i].path.at(t);
+    store3(pose.x, &x[3 * i]);
+    store3(pose.v, &u[3 * i]);
+  }
+}
+
+double SupportedSystem::power(double t, In q, In v) {
+  const double alone = strand_->energetics()->power(t, q, v);
+  if (hold(t, q, v) != Status::ok) return std::nan("");
+  std::vector<double> lambda, own;
+  multipliers(rows_.rows(), lambda);
+  multipliers(rows_.own(), own);
+  for (std::size_t k = 0; k < own.size(); ++k) lambda[k] -= own[k];
+  const Eigen::VectorXd change =
+      responses_ * Eigen::Map<const Eigen::VectorXd>(lambda.data(), std::ssize(lambda));
+  double size = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    size = std::max(size, std::abs(change[static_cast<Eigen::Index>(i)]) / v_typ_[i]);
+  }
+  if (size == 0) return alone;
+  // Central differences of a quadratic function are exact; only rounding remains.
+  std::vector<double> moved(v.begin(), v.end());
+  const auto kinetic = [&](double time) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      moved[i] = v[i] + time * change[static_cast<Eigen::Index>(i)];
+    }
+    return strand_->energetics()->energy(t, q, moved).kinetic;
+  };
+  return alone + (kinetic(1 / size) - kinetic(-1 / size)) * size / 2;
+}
+
+}  // namespace tress::models

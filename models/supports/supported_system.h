@@ -1,0 +1,106 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contract/forms/energetics.h"
+#include "contract/forms/moving_history.h"
+#include "contract/forms/support_forces.h"
+#include "models/supports/dense_tangent.h"
+#include "models/supports/support_rows.h"
+
+namespace tress::models {
+
+/// A strand whose points are held by supports: the strand's own equations with the
+/// constraints of SupportRows. Methods drive it in every formulation that they have for
+/// systems with constraints. S is the strand's own sparse form, or a DenseTangent.
+///
+/// The power of supports belongs to Energetics::power. At a state, let a and a' be the
+/// accelerations with and without supports. Kinetic energy is quadratic in v, so
+///
+///     power = (power of the strand alone) + dT/dv . (a - a'),
+///
+/// which has the work of the supports and the change of the work of a moving root.
+class SupportedSystem final : public System,
+                              public SupportForces,
+                              private Energetics,
+                              private MovingHistory {
+ public:
+  /// Throws InputError naming the support if the strand cannot be held so.
+  SupportedSystem(std::unique_ptr<System> strand, std::vector<Support> supports);
+
+  /// The state from which runs begin, and what the strand remembers of its way there.
+  /// Without it: that of the strand.
+  void begin_at(In q, In v);
+  /// Returns the strand without its supports.
+  System& strand() { return *strand_; }
+  /// Returns the constraints.
+  SupportRows& rows() { return rows_; }
+
+  Layout layout() const override { return {strand_->layout().coordinates, rows_.rows()}; }
+  Traits traits() const override { return strand_->traits(); }
+  void initial_state(Out q, Out v) const override;
+  void scale(Out q_typ, Out v_typ) const override { strand_->scale(q_typ, v_typ); }
+  Status residual(double t, In q, In v, In a, Out r) noexcept override {
+    return strand_->residual(t, q, v, a, r);
+  }
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    return strand_->linearize(t, q, v, a, w);
+  }
+  Status solve(In b, Out x) noexcept override { return strand_->solve(b, x); }
+  double next_breakpoint(double t) const override;
+  std::string not_finite(double t, In q, In v) override {
+    return strand_->not_finite(t, q, v);
+  }
+  SparseForm* sparse_form() override {
+    return dense_ ? &*dense_ : strand_->sparse_form();
+  }
+  ConstraintForm* constraint_form() override { return &rows_; }
+  StressForm* stress_form() override { return strand_->stress_form(); }
+  Energetics* energetics() override {
+    return strand_->energetics() == nullptr ? nullptr : this;
+  }
+  MaterialPoints* material_points() override { return strand_->material_points(); }
+  History* history() override { return strand_->history() == nullptr ? nullptr : this; }
+
+  std::size_t supports() const override { return rows_.supports().size(); }
+  Status support_forces(double t, In q, In v, Out forces) override;
+  void support_motion(double t, Out x, Out u) const override;
+
+ private:
+  Energy energy(double t, In q, In v) override {
+    return strand_->energetics()->energy(t, q, v);
+  }
+  std::optional<Momentum> momentum(double t, In q, In v) override {
+    return strand_->energetics()->momentum(t, q, v);
+  }
+  double power(double t, In q, In v) override;
+
+  bool accept(double t, InOut q, InOut v) override {
+    return strand_->history()->accept(t, q, v);
+  }
+  void reset() override;
+  std::vector<double> memory() const override { return strand_->history()->memory(); }
+  void recall(In memory) override { strand_->history()->recall(memory); }
+  bool carry(double t, InOut q, InOut v, InOut a) const override {
+    return tress::carry(*strand_, t, q, v, a);
+  }
+  std::string not_smooth() const override { return tress::not_smooth(*strand_); }
+
+  Status hold(double t, In q, In v);
+  void multipliers(int rows, std::vector<double>& lambda) const;
+
+  std::unique_ptr<System> strand_;
+  SupportRows rows_;
+  std::optional<DenseTangent> dense_;  // none: the strand has a sparse form
+  std::vector<double> begin_q_, begin_v_, begin_memory_;
+  // Of hold(), at its state.
+  std::vector<double> gradient_, acceleration_, bias_, zero_, v_typ_;
+  double short_time_;           // s, of the step that replaces a singular mass matrix
+  Eigen::MatrixXd responses_;   // S^-1 G^T
+  Eigen::MatrixXd compliance_;  // G S^-1 G^T
+  Eigen::VectorXd needed_;      // change of g'' that the multipliers must cause
+};
+
+}  // namespace tress::models

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/system.h"
+#include "simulation/files/toml_text.h"
+#include "simulation/scene/scene.h"
+#include "simulation/scene/table.h"
+
+namespace tress::simulation {
+
+/// Returns the keys of [supports].
+std::span<const Parameter> support_table_parameters();
+/// Reads one [[supports]], whose `at` is a word or a number. Throws InputError with
+/// file:line:column.
+Table read_support(const toml::table& table, const std::string& file);
+
+/// The supports of a scene. Keeps no reference to it.
+class SceneSupports {
+ public:
+  /// Reads the scene's tables, model options and duration.
+  explicit SceneSupports(const Scene& scene);
+
+  /// Returns true if the scene has supports.
+  bool any() const { return !tables().empty(); }
+  /// Returns the names of all supports, strand after strand: strand_0_at_tip.
+  std::vector<std::string> names() const;
+  /// Returns true if a strand has supports.
+  bool hold(std::size_t strand) const { return !of(strand).empty(); }
+  /// Returns the location of the first support of a strand, which must have one.
+  const std::string& place(std::size_t strand) const {
+    return of(strand).front()->place();
+  }
+  /// Returns the strand with its supports, as a system; `system` itself if it has none. A
+  /// support without keyframes holds its point where `system` begins. Throws InputError
+  /// with the location of a support that the strand or its model does not admit.
+  std::unique_ptr<System> on(std::unique_ptr<System> system, const Strand& strand,
+                             std::size_t number) const;
+  /// Throws InputError with its location if a support refers to no strand, or the rest of
+  /// the scene does not admit supports.
+  void check(const Scene& scene) const;
+
+ private:
+  const std::vector<Table>& tables() const;
+  std::vector<const Table*> of(std::size_t strand) const;
+
+  std::shared_ptr<const StrandTables> tables_;
+  Parameters model_options_;
+  double duration_;
+};
+
+/// Returns the formulation that suits the scene's method: index 3 for methods of fixed
+/// step and few stages, projection for esdirk43 and error control, index 2 for IDA.
+Formulation formulation_of_supports(const Scene& scene);
+
+}  // namespace tress::simulation

@@ -1,0 +1,207 @@
+// Scenes with [[supports]]: the catenary, forces of supports among the columns, and what
+// is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "contract/input_error.h"
+#include "simulation/run/readout.h"
+#include "simulation/run/world.h"
+#include "simulation/scene/write_scene.h"
+#include "tests/support/refusal.h"
+
+namespace tress::test_supports {
+
+using namespace simulation;
+using testing_support::refusal;
+
+struct Text {
+  std::string model = "id = \"super_helix\"", integrator = "id = \"generalized_alpha\"";
+  std::string strand = "length_m = 1\nelements = 20", root = "motion = \"free\"";
+  std::string supports =
+      "[[supports]]\nat = \"root\"\n[[supports]]\nkeyframes = [[0, 0.5, 0, 0]]\n";
+  std::string top, rest;
+};
+
+std::string text_of(const Text& text) {
+  return "title = \"held\"\nduration_s = 0.1\n" + text.top + "[model]\n" + text.model +
+         "\n[integrator]\n" + text.integrator +
+         "\n[material]\nname = \"custom\"\nradius_m = 40e-6\nyoungs_modulus_pa = "
+         "3e5\npoisson_ratio = 0.45\ndensity_kg_m3 = 1300\n[strand]\n" +
+         text.strand + "\n[root]\n" + text.root + "\n" + text.supports +
+         "[effects.gravity]\n" + text.rest;
+}
+
+Scene scene_of(const Text& text) { return parse_scene(text_of(text), "held.toml"); }
+
+/// The horizontal force of a catenary of length 1 m over a span of `distance`, per weight
+/// of a metre: a with 2 a sinh(distance/(2 a)) = 1.
+double catenary(double distance) {
+  double low = 1e-3, high = 100;
+  for (int i = 0; i < 200; ++i) {
+    const double a = std::sqrt(low * high);
+    (2 * a * std::sinh(distance / (2 * a)) > 1 ? low : high) = a;
+  }
+  return low;
+}
+
+/// EI/(w L^3) = 9e-9: bending changes the force by its root times 1e-2. Elements of
+/// constant curvature err by order 2: 3e-5 with 20, 4e-6 with 40.
+TEST(Supports, HoldALimpStrandAsACatenary) {
+  const double weight = 1300 * 9.81 * std::numbers::pi * 40e-6 * 40e-6;
+  for (const double distance : {0.5, 0.9}) {
+    Text text;
+    text.strand = "length_m = 1\nelements = 40";
+    text.supports = "[[supports]]\nat = \"root\"\n[[supports]]\nkeyframes = [[0, " +
+                    std::to_string(distance) + ", 0, 0]]\n";
+    World world(scene_of(text));
+    const std::vector<double> force = world.support_forces();
+    ASSERT_EQ(force.size(), 6U);
+    const double expected = catenary(distance) * weight;
+    std::printf("distance %g: horizontal force %.2e off, vertical %.1e\n", distance,
+                force[3] / expected - 1, force[2] / (weight / 2) - 1);
+    EXPECT_NEAR(force[3] / expected, 1, 1e-5);
+    EXPECT_NEAR(force[0] / expected, -1, 1e-5);
+    EXPECT_NEAR(force[2] / (weight / 2), 1, 1e-9);
+    EXPECT_NEAR(force[5] / (weight / 2), 1, 1e-9);
+    ASSERT_EQ(world.supported_starts().size(), 1U);
+    EXPECT_NE(world.supported_starts().front().find("strand 0 begins at rest"),
+              std::string::npos);
+  }
+}
+
+/// The start is an equilibrium: a run leaves the points where they are, within what
+/// rounding of the balance moves a strand in 0.1 s, g t^2/2 times 1e-9.
+TEST(Supports, BeginInAnEquilibrium) {
+  World world(scene_of({}));
+  const std::vector<double> before = world.positions();
+  ASSERT_EQ(world.advance(0.1), Status::ok) << world.failure();
+  double moved = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    moved = std::max(moved, std::abs(world.positions()[i] - before[i]));
+  }
+  EXPECT_LE(moved, 1e-8);
+}
+
+/// Columns hold the force on the strand, and the point follows its keyframes.
+TEST(Supports, WriteTheirForcesAmongTheColumns) {
+  Text text;
+  text.supports =
+      "[[supports]]\nat = \"root\"\n[[supports]]\nkeyframes = [[0, 0.5, 0, 0], [0.1, "
+      "0.6, 0, 0.1]]\n";
+  const Scene scene = scene_of(text);
+  EXPECT_EQ(scene.options.formulation, Formulation::index3);
+  World world(scene);
+  Readout readout(scene, world);
+  ASSERT_EQ(world.advance(0.05), Status::ok) << world.failure();
+  // Halfway of a quintic.
+  const std::vector<double>& x = world.positions();
+  EXPECT_NEAR(x[60], 0.55, 1e-12);
+  EXPECT_NEAR(x[62], 0.05, 1e-12);
+  const Frame3d frame = readout.read(world);
+  ASSERT_EQ(frame.series.size(), readout.series().size());
+  const std::vector<double> force = world.support_forces();
+  const auto column =
+      std::ranges::find(readout.series(), "force_strand_0_at_tip_x_n", &Reading::name);
+  ASSERT_NE(column, readout.series().end());
+  EXPECT_EQ(frame.series[std::size_t(column - readout.series().begin())], force[3]);
+}
+
+/// Models whose points are coordinates, and one with constraints of its own.
+TEST(Supports, HoldEveryModelOfAStrand) {
+  for (const ModelEntry& model : model_catalogue()) {
+    // No accelerations of its points.
+    if (model.on_strand == nullptr || model.id == "kirchhoff_nodal") continue;
+    SCOPED_TRACE(model.id);
+    Text text;
+    text.model = "id = \"" + std::string(model.id) + "\"";
+    text.strand = "length_m = 1\nelements = 10";
+    text.root = "";
+    text.supports = "[[supports]]\nkeyframes = [[0, 0.7, 0, 0], [0.1, 0.6, 0, 0]]\n";
+    const Scene scene = scene_of(text);
+    World world(scene);
+    const Status status = world.advance(0.1);
+    EXPECT_EQ(status, Status::ok) << model.id << ": " << world.failure();
+    const std::size_t points = world.positions().size();
+    EXPECT_NEAR(world.positions()[points - 3], 0.6, 1e-9) << model.id;
+    const std::vector<double> force = world.support_forces();
+    EXPECT_GT(force[2], 0) << model.id;
+  }
+}
+
+TEST(Supports, AreWrittenBack) {
+  const Scene scene = scene_of({});
+  const Scene again = parse_scene(scene_text(scene), "again.toml");
+  World first(scene), second(again);
+  EXPECT_EQ(first.support_forces(), second.support_forces());
+}
+
+/// The line of a refusal, without the text of the scene.
+std::string refused(const Text& text) {
+  return refusal([&] { World{scene_of(text)}; });
+}
+
+TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
+  const auto with = [](const std::string& supports) {
+    Text text;
+    text.supports = supports;
+    return text;
+  };
+  EXPECT_EQ(refused(with("[[supports]]\nat = 0.33\n")),
+            "no point at 0.33 of strand 0 (held.toml:19:6): give at = 0.35, the nearest "
+            "end of an element, or other elements");
+  EXPECT_EQ(refused(with("[[supports]]\nat = 2\n")),
+            "no point at 2 of strand 0 (held.toml:19:6): give \"tip\", \"root\" or a "
+            "number of 0 to 1");
+  EXPECT_EQ(refused(with("[[supports]]\nstrand = 1\n")),
+            "a support of strand 1 (held.toml:19:10): the scene has 1 strand, the first "
+            "is 0");
+  EXPECT_EQ(refused(with("[[supports]]\nkeyframes = [[0, 0, 0, 0], [0, 1, 0, 0]]\n")),
+            "keyframes not ascending in time: 0 s after 0 s (held.toml:19:13): give each "
+            "a later time than the one before");
+  EXPECT_NE(refused(with("[[supports]]\nkeyframes = [[0, nan, 0, 0]]\n")), "");
+  EXPECT_NE(refused(with("[[supports]]\nkind = \"clamp\"\n")), "");
+  Text far;
+  far.root = "";
+  far.supports = "[[supports]]\nkeyframes = [[0, 0.5, 0, 0], [0.1, 1.2, 0, 0]]\n";
+  EXPECT_EQ(
+      refused(far),
+      "a support 1.2 m from the root at t = 0.1 s, where the strand between them is "
+      "1 m long (held.toml:19:13): move the support closer, or make the strand "
+      "longer");
+  far.supports = "[[supports]]\n";
+  EXPECT_EQ(
+      refused(far),
+      "an inextensible strand as long as its support is far from the root at t = 0 "
+      "s, 1 m, cannot move (held.toml:18:1): move the support closer, give slack, or "
+      "use [model] id = \"der\"");
+  far.model = "id = \"der\"";
+  EXPECT_EQ(refused(far), "");
+  Text planar;
+  planar.model = "id = \"super_helix\"\nmodes = \"bend_planar\"";
+  planar.root = "";
+  planar.supports = "[[supports]]\nkeyframes = [[0, 0.5, 0.1, 0]]\n";
+  EXPECT_EQ(refused(planar),
+            "a support 0.1 m outside the plane of the strand at t = 0 s "
+            "(held.toml:20:13): keep it in the plane, or give [model] modes = "
+            "\"bend_twist\"");
+  Text nodal;
+  nodal.model = "id = \"kirchhoff_nodal\"";
+  nodal.root = "";
+  nodal.supports = "[[supports]]\nkeyframes = [[0, 0.5, 0, 0]]\n";
+  EXPECT_NE(refused(nodal).find("does not compute the accelerations of its points"),
+            std::string::npos);
+  Text method;
+  method.integrator = "id = \"xpbd\"";
+  EXPECT_NE(refused(method).find("(held.toml:6:6)"), std::string::npos)
+      << refused(method);
+  Text rest;
+  rest.top = "rest = \"inverse\"\n";
+  EXPECT_NE(refused(rest).find("supports with rest = \"inverse\""), std::string::npos);
+}
+
+}  // namespace tress::test_supports
