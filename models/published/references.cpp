@@ -93,7 +93,7 @@ constexpr std::array<PublishedEnd, 4> ends = {{
      {},
      axis_lambda,
      11,
-     11,
+     10,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem caraxis"},
     {"beam",
      5,

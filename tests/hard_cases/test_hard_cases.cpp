@@ -414,9 +414,9 @@ TEST(HardCaseGrid, HasEveryCellOnce) {
     cases.insert(std::string(cell.attempt.hard->name));
   }
   EXPECT_EQ(cases.size(), hard_case_catalogue().size());
-  // Three integrators at two steps on each model and system of particles, bdf2 at one and
+  // Four integrators at two steps on each model and system of particles, bdf2 at one and
   // tr_bdf2 at one tolerance.
-  EXPECT_EQ(grid.cells.size(), 8 * grid.references);
+  EXPECT_EQ(grid.cells.size(), 10 * grid.references);
   line.set = {{"position_tol_rel", "1e-3"}};
   const Grid chosen = hard_grid(line, Settings(line, hard_case_settings()));
   EXPECT_EQ(chosen.cells.size(), grid.references);

@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "contract/forms/energetics.h"
 #include "contract/forms/material_points.h"
-#include "experiments/numerics/fit.h"
-#include "integrators/integrator_options.h"
 #include "tests/models/reduced/strand_cases.h"
+#include "tests/models/reduced/work_of_motion.h"
 #include "tests/support/tangent.h"
 
 namespace tress::test_clamp {
-
-using namespace experiments;
 
 using namespace testing_support;
 
@@ -23,40 +18,16 @@ class MovingClamp : public testing::TestWithParam<StrandCase> {};
 // time, of order 2 as the motion itself; terms of the next order are a few per cent of
 // it.
 TEST_P(MovingClamp, GivesItsWorkToTheStrand) {
-  std::vector<double> steps, errors;
-  for (const double step : {0.2e-3, 0.1e-3, 0.05e-3}) {
-    const auto system = GetParam().make({{"motion", "shake_rotate"},
-                                         {"elements", "5"},
-                                         {"radius_m", "1e-3"},
-                                         {"youngs_modulus_pa", "1e6"}});
-    Energetics& energetics = *system->energetics();
-    State start{zeros(*system), zeros(*system)};
-    system->initial_state(start.q, start.v);
-    Options options;
-    options.step = step;
-    apply(options, "rho_inf", "1", "test");
-    options.newton_tolerance = 1e-10;
-    if (system->layout().constraints > 0) options.formulation = Formulation::projection;
-    const double before = energetics.energy(0, start.q, start.v).total();
-    double work = 0, moved = 0, gained = 0, now = 0;
-    double power = energetics.power(0, start.q, start.v);
-    const Simulation run = simulate(
-        "generalized_alpha", *system, options, start, 0.05, [&](double t, In q, In v) {
-          const double next = energetics.power(t, q, v);
-          work += (t - now) * (power + next) / 2;
-          moved += (t - now) * std::abs(next);
-          power = next;
-          now = t;
-          gained = energetics.energy(t, q, v).total() - before;
-          return true;
-        });
-    EXPECT_EQ(run.status, Status::ok) << run.failure;
-    steps.push_back(step);
-    errors.push_back(std::abs(work - gained) / moved);
-    std::printf("%s, step %g s: work off by %.2e of %.2e J\n", GetParam().name.c_str(),
-                step, errors.back(), moved);
-  }
-  EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.1);
+  const double order =
+      order_of_work(GetParam().name,
+                    [] {
+                      return GetParam().make({{"motion", "shake_rotate"},
+                                              {"elements", "5"},
+                                              {"radius_m", "1e-3"},
+                                              {"youngs_modulus_pa", "1e6"}});
+                    },
+                    {0.2e-3, 0.1e-3, 0.05e-3});
+  EXPECT_NEAR(order, 2, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(

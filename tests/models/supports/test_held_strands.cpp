@@ -13,6 +13,7 @@
 #include "experiments/numerics/fit.h"
 #include "integrators/integrator_options.h"
 #include "simulation/rest/supported_start.h"
+#include "tests/models/reduced/work_of_motion.h"
 #include "tests/models/supports/held_strand.h"
 
 namespace tress::test_held_strands {
@@ -176,49 +177,28 @@ TEST(HeldStrands, KeepTheOrdersOfMethodsOnASupportThatMoves) {
   }
 }
 
-/// What the support does in 0.1 s is what the energy gains, by the trapezoidal rule in
+/// What the support does in 0.05 s is what the energy gains, by the trapezoidal rule in
 /// time, of order 2 as the motion itself. With a root that moves as well, its own work
 /// depends on the support.
 class MovingSupport : public testing::TestWithParam<StrandCase> {};
 
 TEST_P(MovingSupport, GivesItsWorkToTheStrand) {
-  auto strand = GetParam().make({{"elements", "5"},
-                                 {"radius_m", "1e-3"},
-                                 {"youngs_modulus_pa", "1e6"},
-                                 {"natural_curvature_per_m", "20"},
-                                 {"motion", "swing"},
-                                 {"amplitude_m", "0.005"}});
-  const std::vector<Vec> x = places_at_start(*strand);
-  SupportedSystem system(std::move(strand),
-                         {support(5, x.back(), {-0.01, 0.01, 0.02}, 0.05)});
-  const State start = start_of(system);
-  Energetics& energetics = *system.energetics();
-  std::vector<double> steps, errors;
-  for (const double step : {0.4e-3, 0.2e-3, 0.1e-3}) {
-    Options options;
-    options.step = step;
-    apply(options, "rho_inf", "1", "test");
-    options.formulation = Formulation::projection;
-    const double before = energetics.energy(0, start.q, start.v).total();
-    double work = 0, moved = 0, gained = 0, now = 0;
-    double power = energetics.power(0, start.q, start.v);
-    const Simulation run = simulate(
-        "generalized_alpha", system, options, start, 0.05, [&](double t, In q, In v) {
-          const double next = energetics.power(t, q, v);
-          work += (t - now) * (power + next) / 2;
-          moved += (t - now) * std::abs(next);
-          power = next;
-          now = t;
-          gained = energetics.energy(t, q, v).total() - before;
-          return true;
-        });
-    ASSERT_EQ(run.status, Status::ok) << run.failure;
-    steps.push_back(step);
-    errors.push_back(std::abs(work - gained) / moved);
-    std::printf("%s, step %g s: work off by %.2e of %.2e J\n", GetParam().name.c_str(),
-                step, errors.back(), moved);
-  }
-  EXPECT_NEAR(experiments::log_log_slope(steps, errors), 2, 0.3);
+  const double order =
+      order_of_work(GetParam().name,
+                    []() -> std::unique_ptr<System> {
+                      auto strand = GetParam().make({{"elements", "5"},
+                                                     {"radius_m", "1e-3"},
+                                                     {"youngs_modulus_pa", "1e6"},
+                                                     {"natural_curvature_per_m", "20"},
+                                                     {"motion", "swing"},
+                                                     {"amplitude_m", "0.005"}});
+                      const std::vector<Vec> x = places_at_start(*strand);
+                      return std::make_unique<SupportedSystem>(
+                          std::move(strand),
+                          std::vector{support(5, x.back(), {-0.01, 0.01, 0.02}, 0.05)});
+                    },
+                    {0.4e-3, 0.2e-3, 0.1e-3});
+  EXPECT_NEAR(order, 2, 0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(
