@@ -36,7 +36,8 @@ constexpr Column columns[] = {
     {"t_s", "time simulated"},
     {"steps", "steps done"},
     {"newton_iterations", "linear solves"},
-    {"replaced_steps", "steps that are backward Euler steps, of guarded and guarded_esdirk43"},
+    {"replaced_steps",
+     "steps that are backward Euler steps, of guarded and guarded_esdirk43"},
     {"wall_s", "wall time of the run, and of its reference in the row that made it",
      true},
 };

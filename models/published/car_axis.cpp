@@ -27,7 +27,7 @@ enum Coordinate { x_l, y_l, x_r, y_r, coordinates };
 
 // Data of the Test Set. The mass is eps^2 M/2, of weight eps^2 M/2.
 constexpr double eps = 1e-2, whole_mass = 10, mass = eps * eps * whole_mass / 2;
-constexpr double bar = 1, spring = 0.5;        // l, and l_0 of both springs
+constexpr double bar = 1, spring = 0.5;       // l, and l_0 of both springs
 constexpr double bump = 0.1, frequency = 10;  // r, omega
 
 /// The road's right end at a time, with two derivatives by the time.

@@ -10,7 +10,7 @@
 
 #include "contract/parameters.h"
 #include "simulation/scene/scene.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

@@ -10,7 +10,7 @@
 #include "simulation/groom/cap.h"
 #include "simulation/groom/frames.h"
 #include "simulation/groom/random.h"
-#include "simulation/scene/directions.h"
+#include "simulation/table/directions.h"
 #include "simulation/scene/file_groom.h"
 #include "simulation/scene/shapes.h"
 

@@ -5,7 +5,7 @@
 
 #include "contract/constants.h"
 #include "models/strand/material.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

@@ -4,7 +4,7 @@
 
 #include "contract/input_error.h"
 #include "models/motion/signals.h"
-#include "simulation/scene/directions.h"
+#include "simulation/table/directions.h"
 
 namespace tress::simulation {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "models/strand/strand.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

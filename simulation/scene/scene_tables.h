@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/catalogue.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

@@ -9,7 +9,7 @@
 #include "models/strand/strand.h"
 #include "simulation/groom/fitted_groom.h"
 #include "simulation/scene/groom.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

@@ -13,7 +13,7 @@
 #include "models/motion/signals.h"
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
-#include "simulation/scene/read_table.h"
+#include "simulation/table/read_table.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {

@@ -8,7 +8,7 @@
 #include "contract/system.h"
 #include "simulation/files/toml_text.h"
 #include "simulation/scene/scene.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

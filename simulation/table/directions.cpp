@@ -1,4 +1,4 @@
-#include "simulation/scene/directions.h"
+#include "simulation/table/directions.h"
 
 #include <cmath>
 #include <string>

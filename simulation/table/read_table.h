@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "simulation/files/toml_text.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

@@ -4,7 +4,7 @@
 
 #include "contract/layers.h"
 #include "math/vec3.h"
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 namespace tress::simulation {
 

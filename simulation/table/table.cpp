@@ -1,4 +1,4 @@
-#include "simulation/scene/table.h"
+#include "simulation/table/table.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/scene/read_table.h"
+#include "simulation/table/read_table.h"
 
 #include <fmt/format.h>
 
