@@ -14,13 +14,13 @@
 #include "models/strand/geometry.h"
 #include "simulation/scene/file_groom.h"
 #include "simulation/scene/gradient_table.h"
-#include "simulation/table/read_table.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/scene_check.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/table/read_table.h"
 
 namespace tress::simulation {
 namespace {

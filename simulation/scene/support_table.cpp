@@ -13,8 +13,8 @@
 #include "models/motion/signals.h"
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
-#include "simulation/table/read_table.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/table/read_table.h"
 
 namespace tress::simulation {
 

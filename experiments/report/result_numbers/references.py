@@ -10,6 +10,7 @@ _PUBLISHED = "results/other_simulators_published.csv"  # its column cited_as
 _BIBLIOGRAPHY = "docs/templates/references.txt"
 _YEAR = r"(?:1[6-9]|20)[0-9][0-9]"
 _LETTER = r"[^\W\d_]"
+_NAME = r"(?:(?:van der|von|de|den) )?[A-Z]"  # the start of an author's surname
 
 
 def _files(root):
@@ -32,7 +33,7 @@ def _cited(path, text):
     """Returns the citations of one file: in brackets in comments, as the source of a published test or scene,
     and in lines of a catalogue."""
     joined = re.sub(r'"\s*\n\s*"', "", re.sub(r"\n\s*///? ?", " ", text))
-    patterns = [] if path.endswith(".toml") else [rf"\[([A-Z][^\[\]]{{3,150}}{_YEAR}[^\[\]]{{0,80}})\]"]
+    patterns = [] if path.endswith(".toml") else [rf"\[({_NAME}[^\[\]]{{3,150}}{_YEAR}[^\[\]]{{0,80}})\]"]
     patterns.append(r'\bsource = "([^"]+)"')
     if path.endswith("catalogue.cpp"):
         patterns.append(rf'"([A-Z][^"]*\b{_YEAR}\b[^"]*)"')
@@ -42,7 +43,7 @@ def _cited(path, text):
 def citations(text):
     """Returns [(authors, year, place)]: two for "Bergou et al. 2008, 2010, eq. 3", none without author and
     year."""
-    authors = rf"(?:(?:van der|von|de|den) )?[A-Z](?:{_LETTER}|[.&,' -])*?"
+    authors = rf"{_NAME}(?:{_LETTER}|[.&,' -])*?"
     found = re.search(rf"({authors}),? ({_YEAR}(?:, {_YEAR})*)(.*)$", re.sub(r"\s+", " ", text).strip())
     if found is None:
         return []
