@@ -22,13 +22,13 @@ Instructions widest_instructions();
 /// "avx512" and so on; of `base` what the compiler was allowed, such as "avx2".
 const char* name(Instructions set);
 
-// TRESS_NARROW_PACKS, from the build: there are neither AVX-512 kernels nor packs of 512
-// bits, whose instances take time to compile.
+// TRESS_ONE_PACK, from the build: kernels exist for packs of four doubles only, since
+// their instances take time to compile.
 // Without fused products in the base, bits would depend on the machine. Clang inlines
 // less than is asked for, and then passes packs in registers that a callee does not look
 // at.
 #if defined(__x86_64__) && defined(__FMA__) && defined(__GNUC__) && \
-    !defined(__clang__) && !defined(TRESS_NARROW_PACKS)
+    !defined(__clang__) && !defined(TRESS_ONE_PACK)
 #define TRESS_HAS_AVX512 1
 #else
 #define TRESS_HAS_AVX512 0

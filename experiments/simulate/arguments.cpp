@@ -74,10 +74,12 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--precision", a.bits,
                  "floating-point precision of a batch in bits: 64 or 32 (default 64)")
       ->check(CLI::IsMember({64, 32}));
-  app.add_option("--simd-width", a.lanes,
-                 "strands per SIMD pack of a batch: 1, 4 or 8 with --precision 64, 8 or "
-                 "16 with --precision 32. The default is the largest of the build: 8 and "
-                 "16, or 4 and 8 without TRESS_WIDE_PACKS. Results are bitwise identical")
+  app.add_option(
+         "--simd-width", a.lanes,
+         "strands per SIMD pack of a batch: 1, 4 or 8 with --precision 64, 8 or "
+         "16 with --precision 32. The default is the largest: 8 and 16. The first "
+         "build of ./tress simulate has 4 with --precision 64 only. Results are "
+         "bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
                  "device for the time steps of a batch: cpu, gpu or auto (default cpu). "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "contract/parameters.h"
 #include "math/instructions.h"
 #include "models/effects/effect.h"
+#include "models/head/packs.h"
 #include "models/motion/root_motion.h"
 #include "models/strand/strand.h"
 
@@ -71,16 +73,16 @@ inline HeadPack pack_as_long_as(int doubles, HeadNumber number) {
 inline HeadPack widest_pack(HeadNumber number) {
   return pack_as_long_as(widest_instructions() == Instructions::avx512 ? 8 : 4, number);
 }
-/// Lanes of the longest pack of doubles in this build. One of floats has twice that.
-#ifdef TRESS_NARROW_PACKS
-inline constexpr int longest_lanes = 4;
-#else
-inline constexpr int longest_lanes = 8;
-#endif
 /// Returns the longest pack of this build, which also runs on machines with narrower
 /// registers.
 inline HeadPack longest_pack(HeadNumber number) {
-  return pack_as_long_as(longest_lanes, number);
+  constexpr int doubles = std::max({
+#define TRESS_PACK(Number, width) \
+  static_cast<int>(width * sizeof(Number) / sizeof(double)),
+      TRESS_EACH_PACK(TRESS_PACK)
+#undef TRESS_PACK
+  });
+  return pack_as_long_as(doubles, number);
 }
 
 /// A strand without a solution: it stays where it was, the others go on.

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "contract/input_error.h"
@@ -73,26 +76,38 @@ inline double largest_bulge(std::span<const double> x, double length) {
   return 0.5 * std::sqrt(square);
 }
 
+/// The packs of this build in words, such as "4 of 64 bits, 8 of 32 bits".
+inline constexpr std::string_view packs_of_build =
+#define TRESS_PACK(Number, width) ", " #width " of " TRESS_BITS_OF_##Number " bits"
+#define TRESS_BITS_OF_double "64"
+#define TRESS_BITS_OF_float "32"
+    TRESS_EACH_PACK(TRESS_PACK);
+#undef TRESS_PACK
+#undef TRESS_BITS_OF_double
+#undef TRESS_BITS_OF_float
+
 /// Returns made<T>() for the number type T of this pack. Throws InputError if the pack
 /// does not exist. `short_numbers`: whether single precision is supported.
 template <class Result, bool short_numbers = true, class Made>
 Result on_pack(const HeadPack& pack, Made made) {
-  if (pack.number == HeadNumber::float64) {
-    if (pack.lanes == 1) return made.template operator()<PackOf<double, 1>>();
-    if (pack.lanes == 4) return made.template operator()<PackOf<double, 4>>();
-    if constexpr (longest_lanes == 8) {
-      if (pack.lanes == 8) return made.template operator()<PackOf<double, 8>>();
-    }
-  } else if constexpr (short_numbers) {
-    if (pack.lanes == 8) return made.template operator()<PackOf<float, 8>>();
-    if constexpr (longest_lanes == 8) {
-      if (pack.lanes == 16) return made.template operator()<PackOf<float, 16>>();
-    }
+  const std::size_t bytes = pack.number == HeadNumber::float64 ? 8 : 4;
+#define TRESS_PACK(Number, width)                               \
+  if constexpr (short_numbers || sizeof(Number) == 8) {         \
+    if (bytes == sizeof(Number) && pack.lanes == (width)) {     \
+      return made.template operator()<PackOf<Number, width>>(); \
+    }                                                           \
   }
-  throw InputError(
-      std::to_string(pack.lanes) + " lanes", place_of_head,
-      "use 1 or 4 of 64 bits, 8 of 32 bits; built with TRESS_WIDE_PACKS also 8 "
-      "of 64 bits, 16 of 32 bits");
+  TRESS_EACH_PACK(TRESS_PACK)
+#undef TRESS_PACK
+  throw InputError(fmt::format("{} lanes of {} bits", pack.lanes, 8 * bytes),
+                   place_of_head,
+                   fmt::format("use {}{}", packs_of_build.substr(2),
+#ifdef TRESS_ONE_PACK
+                               "; ./tress build compiles the other packs"
+#else
+                                ""
+#endif
+                               ));
 }
 
 }  // namespace tress::models

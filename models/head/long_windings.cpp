@@ -2,12 +2,8 @@
 
 namespace tress::models {
 
-template class LaneFunctions<PackOf<double, 1>>;
-template class LaneFunctions<PackOf<double, 4>>;
-template class LaneFunctions<PackOf<float, 8>>;
-#ifndef TRESS_NARROW_PACKS
-template class LaneFunctions<PackOf<double, 8>>;
-template class LaneFunctions<PackOf<float, 16>>;
-#endif
+#define TRESS_PACK(Number, width) template class LaneFunctions<PackOf<Number, width>>;
+TRESS_EACH_PACK(TRESS_PACK)
+#undef TRESS_PACK
 
 }  // namespace tress::models

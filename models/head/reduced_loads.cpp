@@ -279,17 +279,10 @@ void ReducedLoads<Kind>::put(std::size_t i, int lane) {
   some_[i].set(lane, 1);
 }
 
-template class ReducedLoads<HelixKind<PackOf<double, 1>>>;
-template class ReducedLoads<HelixKind<PackOf<double, 4>>>;
-template class ReducedLoads<HelixKind<PackOf<float, 8>>>;
-template class ReducedLoads<ChainKind<PackOf<double, 1>>>;
-template class ReducedLoads<ChainKind<PackOf<double, 4>>>;
-template class ReducedLoads<ChainKind<PackOf<float, 8>>>;
-#ifndef TRESS_NARROW_PACKS
-template class ReducedLoads<HelixKind<PackOf<double, 8>>>;
-template class ReducedLoads<HelixKind<PackOf<float, 16>>>;
-template class ReducedLoads<ChainKind<PackOf<double, 8>>>;
-template class ReducedLoads<ChainKind<PackOf<float, 16>>>;
-#endif
+#define TRESS_PACK(Number, width)                                \
+  template class ReducedLoads<HelixKind<PackOf<Number, width>>>; \
+  template class ReducedLoads<ChainKind<PackOf<Number, width>>>;
+TRESS_EACH_PACK(TRESS_PACK)
+#undef TRESS_PACK
 
 }  // namespace tress::models

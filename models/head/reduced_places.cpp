@@ -35,17 +35,10 @@ TRESS_FLATTEN void ReducedPlaces<Kind>::write(std::size_t strands, std::span<dou
   }
 }
 
-template struct ReducedPlaces<HelixKind<PackOf<double, 1>>>;
-template struct ReducedPlaces<HelixKind<PackOf<double, 4>>>;
-template struct ReducedPlaces<HelixKind<PackOf<float, 8>>>;
-template struct ReducedPlaces<ChainKind<PackOf<double, 1>>>;
-template struct ReducedPlaces<ChainKind<PackOf<double, 4>>>;
-template struct ReducedPlaces<ChainKind<PackOf<float, 8>>>;
-#ifndef TRESS_NARROW_PACKS
-template struct ReducedPlaces<HelixKind<PackOf<double, 8>>>;
-template struct ReducedPlaces<HelixKind<PackOf<float, 16>>>;
-template struct ReducedPlaces<ChainKind<PackOf<double, 8>>>;
-template struct ReducedPlaces<ChainKind<PackOf<float, 16>>>;
-#endif
+#define TRESS_PACK(Number, width)                                  \
+  template struct ReducedPlaces<HelixKind<PackOf<Number, width>>>; \
+  template struct ReducedPlaces<ChainKind<PackOf<Number, width>>>;
+TRESS_EACH_PACK(TRESS_PACK)
+#undef TRESS_PACK
 
 }  // namespace tress::models

@@ -3,12 +3,9 @@
 
 namespace tress::models {
 
-template class ExactKernel<HelixKind<PackOf<double, 1>>>;
-template class ExactKernel<HelixKind<PackOf<double, 4>>>;
-template class ExactKernel<HelixKind<PackOf<float, 8>>>;
-#ifndef TRESS_NARROW_PACKS
-template class ExactKernel<HelixKind<PackOf<double, 8>>>;
-template class ExactKernel<HelixKind<PackOf<float, 16>>>;
-#endif
+#define TRESS_PACK(Number, width) \
+  template class ExactKernel<HelixKind<PackOf<Number, width>>>;
+TRESS_EACH_PACK(TRESS_PACK)
+#undef TRESS_PACK
 
 }  // namespace tress::models

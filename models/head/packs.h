@@ -1,0 +1,14 @@
+#pragma once
+
+/// Applies PACK(Number, lanes) to each pack for which kernels of batches are compiled.
+/// TRESS_ONE_PACK, from the build, leaves packs of four doubles only.
+#ifdef TRESS_ONE_PACK
+#define TRESS_EACH_PACK(PACK) PACK(double, 4)
+#else
+#define TRESS_EACH_PACK(PACK) \
+  PACK(double, 1)             \
+  PACK(double, 4)             \
+  PACK(double, 8)             \
+  PACK(float, 8)              \
+  PACK(float, 16)
+#endif
