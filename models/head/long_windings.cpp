@@ -1,5 +1,7 @@
 #include "models/head/long_windings.h"
 
+#include "models/head/packs.h"
+
 namespace tress::models {
 
 #define TRESS_PACK(Number, width) template class LaneFunctions<PackOf<Number, width>>;

@@ -6,6 +6,7 @@
 #include "math/instructions.h"
 #include "models/head/chain_strand.h"
 #include "models/head/helix_strand.h"
+#include "models/head/packs.h"
 #include "models/head/semidefinite.h"
 
 namespace tress::models {

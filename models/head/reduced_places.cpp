@@ -4,6 +4,7 @@
 #include "math/lanes.h"
 #include "models/head/chain_strand.h"
 #include "models/head/helix_strand.h"
+#include "models/head/packs.h"
 
 namespace tress::models {
 

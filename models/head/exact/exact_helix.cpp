@@ -1,5 +1,6 @@
 #include "models/head/exact/exact_sweeps.h"
 #include "models/head/exact/varied_helix.h"
+#include "models/head/packs.h"
 
 namespace tress::models {
 
