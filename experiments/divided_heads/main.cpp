@@ -27,6 +27,15 @@
 namespace tress::experiments::divided_heads {
 namespace {
 
+/// A part of the time of a step: its name in outcomes of simulate, and its column.
+struct Part {
+  std::string_view outcome;
+  std::string_view column;
+};
+constexpr Part ghost_search{"claim_s", "ghost_search_per_element_s"},
+    halo_exchange{"exchange_s", "halo_exchange_per_element_s"},
+    ghost_contact{"meet_s", "ghost_contact_per_element_s"};
+
 constexpr Column columns[] = {
     {"kind", "measured, or predicted by the model alone"},
     {"effects",
@@ -39,15 +48,15 @@ constexpr Column columns[] = {
     {"cost_per_step_s", "wall time of a step, mean of a run; median of runs", true},
     {"ghosts_per_strand",
      "strands of other ranks that may touch a rank's own, over these"},
-    {"ghost_search_per_element_s",
+    {ghost_search.column,
      "time per step to find the strands of other ranks that may touch own ones, "
      "per own element",
      true},
-    {"halo_exchange_per_element_s",
+    {halo_exchange.column,
      "time per step to send and receive these strands, waiting included, per own "
      "element",
      true},
-    {"ghost_contact_per_element_s",
+    {ghost_contact.column,
      "time per step to list the contacts with strands of other ranks, per own "
      "element",
      true},
@@ -130,8 +139,8 @@ void fill(Row& row, const nlohmann::json& outcome) {
   row.set("state_hash", outcome.at("state_hash").get<std::string>());
   if (!outcome.contains("ghosts_per_step")) return;
   row.set("ghosts_per_strand", number("ghosts_per_step") / own);
-  for (const std::string part : {"claim", "exchange", "meet"}) {
-    row.set(part + "_per_element_s", number(part + "_s") / (own * elements));
+  for (const Part& part : {ghost_search, halo_exchange, ghost_contact}) {
+    row.set(part.column, number(std::string(part.outcome)) / (own * elements));
   }
 }
 
@@ -235,8 +244,8 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
     if (row.has("held_out_off_rel")) {
       held_out = std::max(held_out, std::abs(row.number("held_out_off_rel")));
     }
-    if (row.has("halo_exchange_per_element_s")) {
-      exchange = std::max(exchange, row.number("halo_exchange_per_element_s"));
+    if (row.has(halo_exchange.column)) {
+      exchange = std::max(exchange, row.number(halo_exchange.column));
     }
   }
   const std::string bits = "results are bitwise equal for any number of ranks";

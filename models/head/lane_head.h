@@ -86,6 +86,14 @@ inline constexpr std::string_view packs_of_build =
 #undef TRESS_BITS_OF_double
 #undef TRESS_BITS_OF_float
 
+/// The remedy where packs are missing, empty if none is.
+#ifdef TRESS_ONE_PACK
+inline constexpr std::string_view other_packs =
+    "; ./tress build compiles the other packs";
+#else
+inline constexpr std::string_view other_packs;
+#endif
+
 /// Returns made<T>() for the number type T of this pack. Throws InputError if the pack
 /// does not exist. `short_numbers`: whether single precision is supported.
 template <class Result, bool short_numbers = true, class Made>
@@ -101,13 +109,7 @@ Result on_pack(const HeadPack& pack, Made made) {
 #undef TRESS_PACK
   throw InputError(fmt::format("{} lanes of {} bits", pack.lanes, 8 * bytes),
                    place_of_head,
-                   fmt::format("use {}{}", packs_of_build.substr(2),
-#ifdef TRESS_ONE_PACK
-                               "; ./tress build compiles the other packs"
-#else
-                                ""
-#endif
-                               ));
+                   fmt::format("use {}{}", packs_of_build.substr(2), other_packs));
 }
 
 }  // namespace tress::models
