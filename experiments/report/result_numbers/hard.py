@@ -25,7 +25,8 @@ def pairs(tables):
     return len(judged(tables)[["case", "model"]].drop_duplicates())
 
 
-def _pace(row):
+def pace(row):
+    """Returns the step of a row, or its tolerance."""
     return row["pace"] if row["by_tolerance"] else duration(row["dt_s"])
 
 
@@ -35,7 +36,7 @@ def outcomes_table(tables):
     lines = []
     for _, members in groups(rows, ["pace", "integrator"]):
         count = members["outcome"].value_counts()
-        lines.append([_pace(members.iloc[0]), members.iloc[0]["integrator"], len(members) - count.get("refused", 0),
+        lines.append([pace(members.iloc[0]), members.iloc[0]["integrator"], len(members) - count.get("refused", 0),
                       *(count.get(outcome, 0) for outcome in
                         ("stable and accurate", "stable", "stable, not compared", "unstable", "not finished"))])
     return table(["step or tolerance", "integrator", "pairs that can run", "stable and accurate", "stable, inaccurate",
@@ -167,7 +168,7 @@ def rising_table(tables):
     step."""
     models = {}
     for row, exact in _fallen(tables):
-        line = (f"`{row['case']}`", row["integrator"], _pace(row), _ending(row, exact))
+        line = (f"`{row['case']}`", row["integrator"], pace(row), _ending(row, exact))
         models.setdefault(line, {})[row["model"]] = None
     return table(["fails by a regularised law", "integrator", "step or tolerance", "by the exact law", "models"],
                  [[*line, ", ".join(names)] for line, names in models.items()])

@@ -1,4 +1,4 @@
-"""Sources that headers, catalogues, tests and scenes cite."""
+"""Sources that headers, catalogues, tests, scenes and pages of theory cite."""
 import re
 import unicodedata
 
@@ -10,10 +10,11 @@ _PUBLISHED = "results/other_simulators_published.csv"  # its column cited_as
 _BIBLIOGRAPHY = "docs/templates/references.txt"
 _YEAR = r"(?:1[6-9]|20)[0-9][0-9]"
 _LETTER = r"[^\W\d_]"
+_PARTICLE = "(?:van der|von|de|den)"
 
 
 def _files(root):
-    """Yields headers, sources, scenes and the report's programs, relative to the repository."""
+    """Yields headers, sources, scenes, the report's programs and pages of theory, relative to the repository."""
     def listing(folder, endings):
         for path in sorted((root / folder).iterdir()):
             if path.is_dir():
@@ -26,13 +27,16 @@ def _files(root):
         yield from listing(folder, (".h", ".cpp"))
     yield from listing("scenes", (".toml",))
     yield from listing("experiments/report/src", (".mjs",))
+    yield from listing("docs/theory", (".md",))
 
 
 def _cited(path, text):
-    """Returns the citations of one file: in brackets in comments, as the source of a published test or scene,
-    and in lines of a catalogue."""
+    """Returns the citations of one file: in brackets in comments and pages, as the source of a published test or
+    scene, and in lines of a catalogue."""
     joined = re.sub(r'"\s*\n\s*"', "", re.sub(r"\n\s*///? ?", " ", text))
-    patterns = [] if path.endswith(".toml") else [rf"\[([A-Z][^\[\]]{{3,150}}{_YEAR}[^\[\]]{{0,80}})\]"]
+    if path.endswith(".md"):
+        joined = text.replace("\n", " ")
+    patterns = [] if path.endswith(".toml") else [rf"\[((?:{_PARTICLE} )?[A-Z][^\[\]]{{3,150}}{_YEAR}[^\[\]]{{0,80}})\](?!\()"]
     patterns.append(r'\bsource = "([^"]+)"')
     if path.endswith("catalogue.cpp"):
         patterns.append(rf'"([A-Z][^"]*\b{_YEAR}\b[^"]*)"')
@@ -42,7 +46,7 @@ def _cited(path, text):
 def citations(text):
     """Returns [(authors, year, place)]: two for "Bergou et al. 2008, 2010, eq. 3", none without author and
     year."""
-    authors = rf"(?:(?:van der|von|de|den) )?[A-Z](?:{_LETTER}|[.&,' -])*?"
+    authors = rf"(?:{_PARTICLE} )?[A-Z](?:{_LETTER}|[.&,' -])*?"
     found = re.search(rf"({authors}),? ({_YEAR}(?:, {_YEAR})*)(.*)$", re.sub(r"\s+", " ", text).strip())
     if found is None:
         return []
