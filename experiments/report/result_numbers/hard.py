@@ -68,6 +68,19 @@ def super_helix(tables):
     return "; ".join(words)
 
 
+def survivors(tables):
+    """Returns the models that survive most cases with `backward_euler` at its longest step, and `super_helix`."""
+    rows = judged(tables)
+    rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused") & (rows["integrator"] == "backward_euler")]
+    longest = rows["dt_s"].max()
+    counts = [(model, members["survives"].sum(), len(members)) for model, members in groups(rows[rows["dt_s"] == longest], "model")
+              if len(members) > _FEW]
+    counts.sort(key=lambda one: -one[1] / one[2])
+    shown = [one for k, one in enumerate(counts) if k < _BEST or one[0] == "super_helix"]
+    return (f"at steps of {duration(longest)}, "
+            + ", ".join(f"`{model}` survives {kept} of {of} cases" for model, kept, of in shown))
+
+
 def _at_longest_step(tables, integrator):
     rows = judged(tables)
     rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
@@ -82,6 +95,9 @@ def guarded(tables):
     return (f"At steps of {longest}, `guarded` {_at_longest_step(tables, 'guarded')}; "
             f"`backward_euler` {_at_longest_step(tables, 'backward_euler')}")
 
+
+# Models of fewer cases are not compared. So many are named.
+_FEW, _BEST = 10, 3
 
 # Cases of contact by a regularised law, and the same by the exact one: within the step of
 # the strand, and by impulses after it.
