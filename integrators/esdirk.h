@@ -22,7 +22,7 @@ struct EsdirkTable {
   std::array<double, most_stages> embedded{};  // weights of the comparison solution
   /// The estimate allowed in one step is share tolerance^power. In the limit of short
   /// steps the error of a whole run is proportional to the tolerance with power =
-  /// k/order, where the estimate falls as h^k [Soederlind, Wang 2006, J. Comput. Appl.
+  /// k/order, where the estimate falls as h^k [Söderlind, Wang 2006, J. Comput. Appl.
   /// Math. 185, 244].
   double share = 1, power = 1;  // factor and power of the tolerance
 

@@ -166,7 +166,10 @@ const Field fields[] = {
       .min = 0,
       .max = 1},
      number<&Options::newton_coefficient>},
-    {{.name = "linear", .help = "linear solver", .choices = "automatic|klu|banded|dense"},
+    {{.name = "linear",
+      .help = "linear solver of systems with constraints, of ida and of adjoint "
+              "gradients; other steps use [model] solver",
+      .choices = "automatic|klu|banded|dense"},
      choice<&Options::linear>},
 };
 

@@ -145,9 +145,7 @@ int main(int argc, char** argv) {
   using namespace tress::experiments::calibrate;
   const Experiment experiment{
       .name = "calibrate",
-      .question =
-          "which internal friction, air drag and stiffness follow from a measured "
-          "oscillation?",
+      .question = "which parameters of a scene follow from a record?",
       .example = "--set data=measured.csv --set length_m=0.15 --set fit=gamma",
       .timed = false,
       .columns = columns,

@@ -63,7 +63,7 @@ constexpr Column table_columns[] = {
     {"asked_s", "time that was to be compared: duration_s, or horizon_s of --set"},
     {"duration_s", "duration of the scene"},
     {"parted_rel", "rms distance of the references from there on, over the length"},
-    {"references", "models of the references of an own scene, and how fine they are"},
+    {"references", "models of the references of your own scene, and how fine they are"},
     {"wall_s_per_sim_s",
      "wall time per simulated second on one thread, nothing else running", true},
     {"ms_per_frame", "wall time per frame", true},

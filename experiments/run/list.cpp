@@ -136,7 +136,9 @@ std::string catalogue_text(std::span<const ModelEntry> models,
     text += fmt::format("  {:<20} {} ({})\n", model.id, model.summary, model.source);
     text += parameter_lines(model.parameters);
   }
-  text += "\nKEYS OF ALL MODELS OF A STRAND (the strand, its clamp, gravity and drag)\n";
+  text +=
+      "\nKEYS OF ALL MODELS OF A STRAND (strand, clamp, gravity and drag, with the "
+      "defaults of studies; scenes/README.md has those of scene files)\n";
   text += parameter_lines(strand_parameters());
   text += "\nINTEGRATORS (options of one alone by --set key=value, [default])\n";
   for (const IntegratorEntry& entry : integrators) {

@@ -14,8 +14,8 @@ std::vector<Parameter> own_parameters(std::span<const Parameter> of_helices) {
   std::vector<Parameter> own(of_helices.begin(), of_helices.end());
   const auto points = std::ranges::find(own, "quadrature", &Parameter::name);
   points->help =
-      "Gauss-Legendre points a segment, of mass and kinematics, at least 4, 0: by the "
-      "angle it winds";
+      "Gauss-Legendre points per element for mass and kinematics, at least 4; 0: chosen "
+      "by the angle that the element winds";
   points->max = most_clothoid_points;
   return own;
 }

@@ -97,11 +97,12 @@ inline constexpr Parameter air_viscosity_parameter{
     .min = 1e-9,
     .max = 1e3};
 /// Parameter for the radius of the strand.
-inline constexpr Parameter strand_radius_parameter{.name = "strand_radius_m",
-                                                   .help = "radius of the strand (m)",
-                                                   .number = 40e-6,
-                                                   .min = 0,
-                                                   .max = 1e3};
+inline constexpr Parameter strand_radius_parameter{
+    .name = "strand_radius_m",
+    .help = "radius of the strand, not taken from [material] (m)",
+    .number = 40e-6,
+    .min = 0,
+    .max = 1e3};
 /// Parameter that selects the drag coefficient.
 inline constexpr Parameter coefficients_parameter{
     .name = "coefficients",

@@ -88,7 +88,9 @@ constexpr Parameter parameters_of_body[] = {
      .min = 1e-12,
      .max = 1e3},
     {.name = "strand_radius_m",
-     .help = "distance from the surface at which contact begins (m)",
+     .help =
+         "distance from the surface at which contact begins, usually the radius of the "
+         "strand; not taken from [material] (m)",
      .number = 40e-6,
      .min = 0,
      .max = 1e3}};

@@ -132,7 +132,7 @@ ModelEntry kirchhoff_nodal_entry() {
   return {.id = "kirchhoff_nodal",
           .summary =
               "Kirchhoff's equations by finite differences; 3n curvatures and twists of "
-              "inextensible edges",
+              "inextensible edges: our reconstruction",
           .source = "Hou, Klapper & Si 1998",
           .parameters = kirchhoff_nodal_parameters(),
           .make = on_described_strand<make_kirchhoff_nodal>,

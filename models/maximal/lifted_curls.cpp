@@ -64,7 +64,7 @@ ModelEntry lifted_curls_entry() {
   return {.id = "lifted_curls",
           .summary =
               "point masses, energies of lengths, angles and dihedral angles; 3n: "
-              "our reconstruction",
+              "from the code of its authors",
           .source = "Shi 2023",
           .parameters = lifted_curls_parameters(),
           .make = on_described_strand<make_lifted_curls>,

@@ -15,7 +15,10 @@ namespace {
 
 constexpr Parameter own_parameters[] = {
     {.name = "modes",
-     .help = "unknowns a segment: two curvatures and twist, two curvatures, one",
+     .help =
+         "unknowns of an element. bend_twist: bending about e1 and e2, and twist. bend: "
+         "without twist. bend_planar: bending about e1 alone, in the plane of tangent "
+         "and e2",
      .choices = "bend_twist|bend|bend_planar"},
     {.name = "solver",
      .help = "linear solver; recursive_plain is the textbook update (loses digits)",
@@ -23,13 +26,14 @@ constexpr Parameter own_parameters[] = {
     {.name = "jacobian",
      .help = "terms of dr/dq and dr/dv. exact: all. elastic: mass, friction and elastic "
              "stiffness. elastic_local: as elastic, without the stiffness of distal "
-             "segments in the recursion",
+             "elements in the recursion",
      .choices = "exact|elastic|elastic_local"},
     {.name = "rotary_inertia",
      .help = "rotational inertia of the section about the tangent",
      .choices = "on|off"},
     {.name = "quadrature",
-     .help = "Gauss-Legendre points a segment, 0: by the angle it winds",
+     .help = "Gauss-Legendre points per element; 0: chosen by the angle that the element "
+             "winds",
      .number = 0,
      .min = 0,
      .max = 64,

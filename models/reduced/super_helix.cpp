@@ -25,10 +25,12 @@ std::span<const Parameter> super_helix_tree_parameters() {
   static const std::vector<Parameter> all = [] {
     const std::span<const Parameter> material = material_parameters();
     std::vector<Parameter> own(material.begin(), material.end());
-    own.push_back({.name = "tree", .help = "which", .choices = tree_choices});
+    own.push_back({.name = "tree", .help = "shape of the tree", .choices = tree_choices});
     // Branches leave the plane.
     own.push_back({.name = "modes",
-                   .help = "unknowns a segment: two curvatures and twist, two curvatures",
+                   .help =
+                       "unknowns of an element. bend_twist: two curvatures and twist. "
+                       "bend: two curvatures",
                    .choices = "bend_twist|bend"});
     for (const Parameter& p : reduced_parameters()) {
       if (p.name != "modes") own.push_back(p);

@@ -54,7 +54,7 @@ class Scene:
         """The scene with other values: {"strand.elements": 40, "effects.wind": {...}}.
 
         Keys are paths; None removes what is there; a number in a path is the index of one of
-        several tables, as in "groom.0.strands". InputError as when reading.
+        several tables, as in "groom.0.count". InputError as when reading.
         """
         tables = self.tables
         for path, value in changes.items():

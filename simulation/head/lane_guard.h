@@ -62,7 +62,7 @@ class LaneGuard final : public HeadGuard {
   static constexpr std::string_view too_fast = "it was faster than its energy allows";
   /// Verdict of the bound of stretch.
   static constexpr std::string_view off_length =
-      "a piece was off its length by more than half of it";
+      "a segment was off its length by more than half of it";
 
  private:
   struct OfStrand {

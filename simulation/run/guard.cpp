@@ -190,10 +190,11 @@ bool Guard::stretched(double t, In q) {
     }
     first += strand.rest.size();
   }
-  broken(Breach::Kind::stretch,
-         fmt::format("unstable: a piece is off its length by {:.3g} of it (at most {:g})",
-                     *most, most_stretch),
-         worst > 0 ? place(worst, "element") : "", t);
+  broken(
+      Breach::Kind::stretch,
+      fmt::format("unstable: a segment is off its length by {:.3g} of it (at most {:g})",
+                  *most, most_stretch),
+      worst > 0 ? place(worst, "element") : "", t);
   return true;
 }
 

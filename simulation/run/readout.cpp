@@ -52,7 +52,7 @@ Readout::Readout(const Scene& scene, const World& world)
       add(names[i] + "_j", "potential energy of the effect");
     }
   }
-  add("stretch_rel", "largest |length/rest - 1| of a piece");
+  add("stretch_rel", "largest |length/rest - 1| of a segment");
   add("penetration_m",
       "largest depth of a strand in a body since the last frame, over the ends of all "
       "steps; strands are straight between their points");

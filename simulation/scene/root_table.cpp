@@ -67,8 +67,11 @@ constexpr Parameter parameters[] = {
      .min = 1e-9,
      .max = largest_number},
     {.name = "keyframes",
-     .help = "rows of t, x, y, z, angle (s, m, rad) relative to the place at rest, t "
-             "ascending. The motion is smooth in between, at rest before and after",
+     .help =
+         "rows of t, x, y, z, angle (s, m, rad) relative to the place at rest, t "
+         "ascending. Each column follows a cubic spline through its rows, with "
+         "continuous acceleration. The root is at rest before the first row and after "
+         "the last. It does not stop at the rows in between",
      .min = -largest_number,
      .max = largest_number,
      .components = 5,

@@ -40,12 +40,13 @@ constexpr Parameter top[] = {
      .min = 0,
      .max = 1e6},
     {.name = "guard",
-     .help = "end the run at a state that physics rules out. These are a piece stretched "
-             "by half, a point faster than the energy allows, or too much energy. The "
-             "energy may exceed its initial value by m g L and a tenth of the initial "
-             "kinetic and elastic energy. The work of loads and root, times 1.1, adds to "
-             "this limit. Coarse but sound steps need that margin. A run prints the "
-             "energy that the method created within it. See failed_strands",
+     .help =
+         "end the run at a state that physics rules out. These are a segment stretched "
+         "or compressed by more than half, a point faster than the energy allows, or "
+         "too much energy. The energy may exceed its initial value by m g L and a tenth "
+         "of the initial kinetic and elastic energy. The work of loads and root, times "
+         "1.1, adds to this limit. Coarse but sound steps need that margin. A run prints "
+         "the energy that the method created within it. See failed_strands",
      .choices = "true|false"},
     {.name = "failed_strands",
      .help = "outcome of a strand that fails, or that the guard stops. It ends the run, "

@@ -42,10 +42,12 @@ constexpr std::string_view page_head =
 A scene is a TOML file: what moves (`[model]`, and `[strand]` or `[groom]`), how time advances
 (`[integrator]`), what drives it (`[root]`) and which effects act (`[effects.*]`). An effect that a
 scene does not name is not built and costs nothing. Everything else has the default of this page;
-`simulate --print-defaults` writes a short scene to start from.
+`simulate --print-defaults` writes a short scene to start from. That scene is an example: it sets
+`tr_bdf2` and steps of 2 ms. A key that you delete has the default of this page.
 
-Numbers are in SI units, named at the end of the key. Vectors are lists, `[x, y, z]`; rows are lists of
-lists. z is up, a head faces x. Several strands, grooms or effects of one kind are written
+Numbers are in SI units. Most keys end with their unit, without signs; the description has the exact
+unit in parentheses. `stiffness_n_m` is in N m at `[root]`, but in N/m at a tether. Vectors are lists,
+`[x, y, z]`; rows are lists of lists. z is up, a head faces x. Several strands, grooms or effects of one kind are written
 `[[strand]]`, `[[groom]]`, `[[effects.body]]`. Files are named relative to the scene's folder. What is
 misspelt, out of range, of no effect or refused by a model or an integrator is reported with
 file:line:column.
@@ -67,7 +69,7 @@ void add_keys(std::string& page, std::span<const Parameter> parameters,
 
 void add_uses(std::string& page, const TableEntry& entry) {
   if (entry.uses.empty()) return;
-  page += "\nKeys of one word only:\n\n";
+  page += "\nKeys that apply to one choice only:\n\n";
   for (const Use& use : entry.uses) {
     fmt::format_to(std::back_inserter(page), "- `{} = \"{}\"`: `{}`\n", entry.choice,
                    use.word, fmt::join(words_of(use.keys), "`, `"));

@@ -39,8 +39,10 @@ constexpr Parameter support_parameters[] = {
      .max = 1e6,
      .whole = true},
     {.name = "at",
-     .help = "point that is held: tip, root (motion = \"free\"), or the arc length from "
-             "the root over the length, 0 to 1, of an element's end",
+     .help =
+         "point that is held: \"tip\", \"root\" (motion = \"free\"), or a number such as "
+         "0.5. The number is the arc length from the root over the length, 0 to 1, of "
+         "an element's end",
      .text = true,
      .fallback = "tip"},
     {.name = "kind",

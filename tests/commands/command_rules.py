@@ -93,6 +93,7 @@ RULES = (
     Rule("docs/player.md", FILM + "'scene=full_head&colour=hair' print --size 3840,2160 --scale 2 --from 1 --to 1",
          more="--size 160,120 --from 0 --to 0"),
     Rule("docs/plugins.md", "", left_out="its own test", by="tests/plugin/test_plugin.sh"),
+    Rule("docs/start/own_force.md", "", left_out="builds", by="tests/commands/test_new.sh"),
     Rule("docs/python.md", "./tress python", left_out="builds, and runs its own tests"),
     Rule("docs/python.md", "PYTHONPATH=", left_out="its own test", by="python/tests/test_examples.py"),
     Rule("docs/python.md", "/usr/bin/python3 -m venv", left_out="for the next line"),

@@ -72,6 +72,11 @@ if command -v clang-format >/dev/null; then
   find "$house" -name '*.cpp' -exec clang-format --dry-run -Werror {} +
 fi
 
+# The force of docs/start/own_force.md.
+sed -n '/^```cpp/,/^```/{/^```/!p}' "$repository/docs/start/own_force.md" >"$work/trap.cpp"
+"$compiler" -std=c++20 -fsyntax-only -I"$repository" -Wall -Wextra -Wpedantic -Wno-psabi -Werror "$work/trap.cpp" ||
+  fail "the force of docs/start/own_force.md does not compile"
+
 before=$(files)
 refused() { # PATTERN ARGUMENT...
   expect 2 "$1" "$house/tress" new "${@:2}"

@@ -266,14 +266,14 @@ class Queries(Made):
     def test_settings_of_a_kind_of_hair_keep_the_target_for_every_motion(self):
         def row(scene, **more):
             return {"scene": scene, "kind": "cheapest", "target_error_rel": 0.01, "strands": 100, "guides": 20,
-                    "elements": 8, "dt_s": 0.004, "status": "ok", **more}
+                    "elements": 8, "dt_s": 0.004, "precision": 32, "status": "ok", **more}
 
         said = self.say("head_accuracy.by_hair", head_accuracy=[
             row("full_head"), row("wavy_alike_released"), row("wavy_alike_shaken", guides=30, elements=9, dt_s=0.002),
             row("curly_varied_released"), row("curly_varied_shaken", status="gave_up")])
         self.assertEqual(said.split("\n")[2:], [
-            "| wavy | equal | 1 % | 20 % to 30 % | 9 | 2 ms |",
-            "| curly | different | 1 % | no tried run keeps it |  |  |"])
+            "| wavy | equal | 1 % | 20 % to 30 % | 9 | 2 ms | single |",
+            "| curly | different | 1 % | no tried run keeps it |  |  |  |"])
 
     def test_a_bound_of_tolerances_is_stated_where_the_table_keeps_it(self):
         def said(tolerance):
@@ -356,9 +356,9 @@ class Queries(Made):
                          "Tables behind this page, from `a`, `b` at commit aaaaaaa.")
         manifest("b", "bbbbbbbbbb", 2.8)
         self.assertIn("come from 2 commits, not from one run (1 from aaaaaaa, 1 from bbbbbbb)", self.say("machine.one_run"))
-        self.assertRegex(self.say("machine.made_table"), r"`b` \| bbbbbbb .* 2\.8, 1 \| 1 \| uncertain \|")
+        self.assertRegex(self.say("machine.made_table"), r"`b` \| bbbbbbb .* 2\.80, 1\.00 \| 1 \| uncertain \|")
         self.assertRegex(machine.provenance(Tables(self.root), ["a", "b"]),
-                         r"from 2 commits, not one run: .*`b` \(times uncertain: loaded machine\) at commit bbbbbbb")
+                         r"from 2 commits, not one run: .*`b` \(times uncertain: other programs were running\) at commit bbbbbbb")
 
 
 if __name__ == "__main__":

@@ -172,7 +172,7 @@ TEST(Guard, EndsAStrandThatIsStretchedApart) {
                   "[effects.gravity]\n[effects.tether]\npull_n = 0.1\n"
                   "target_m = [1, 0, 0]\n"};
   const std::string why = ending(scene(torn));
-  EXPECT_TRUE(says(why, "a piece is off its length by")) << why;
+  EXPECT_TRUE(says(why, "a segment is off its length by")) << why;
   EXPECT_TRUE(says(why, "strand 0, element 4")) << why;  // the one that is pulled
 }
 

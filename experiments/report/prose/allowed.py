@@ -43,7 +43,7 @@ _PATTERNS = [
     (r"\bmore than a tenth of\b", "calls at which the family gives up a comparison"),
     (r"\bhalf the step\b", "a refined run"),
     (r"(?i:\bdouble[- ]precision\b)", "numbers of 64 bits"),
-    (r"\bdouble (pendulum|slash)\b", "a name"),
+    (r"\bdouble (pendulum|slash|dogleg)\b", "a name"),
     (r"\btwo (independent )?methods\b", "the references of the family"),
     (r"\bby halves\b|\btwice\s+as\s+short\b", "how the family searches steps"),
     (r"\bthree of its hairs\b|\bof which +has three\b", "the hairs of family --quick"),

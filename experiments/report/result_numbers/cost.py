@@ -134,8 +134,8 @@ def step_rule(tables):
     bound = (" No tolerance is looser than a tenth of the length: a looser one does not control the error."
              if adaptive.max() <= _LOOSEST else "")
     return (f"{len(adaptive)} of these {len(rows)} winners adapt their steps, at tolerances of {span(adaptive)} of the length."
-            f"{bound} The search varies the tolerance as it varies the number of elements. It is no bound of the error: the "
-            "column of errors has what it leaves")
+            f"{bound} The search varies the tolerance as it varies the number of elements. The tolerance does not "
+            "bound the error: the error column gives the resulting error")
 
 
 _CHOICES = {

@@ -112,8 +112,8 @@ def exact_step(tables):
         return f"{number(1e3 * x)} ms"
 
     return _sentence(
-        tables, f"stable at every step tried up to 100 ms for {_held(twisted)} ({_spread(twisted, ms)}), and without twist for "
-        f"{_share(bent)} (median {ms(bent['median'])})", twisted)
+        tables, f"stable at every step tried up to 100 ms for {_held(twisted)}, and without twist for {_share(bent)}. The largest "
+        f"stable step: {_spread(twisted, ms)}; without twist: median {ms(bent['median'])}", twisted)
 
 
 def model_steps(tables):
@@ -124,13 +124,13 @@ def model_steps(tables):
 
 def twist_straight(tables):
     row = claim(tables, "twist_straight_negligible")
-    return _sentence(tables, f"moves the tip of a straight hair by less than 1 % of its length for {_held(row)} "
+    return _sentence(tables, f"moves the tip of a hair straightened at rest by less than 1 % of its length for {_held(row)} "
                      f"({_spread(row, _change)})", row)
 
 
 def twist_curly(tables):
     row = claim(tables, "twist_curly_matters")
-    return f"with its curls, by more than that for {_held(row)} ({_spread(row, _change)})"
+    return f"with its own curls, by more than that for {_held(row)} ({_spread(row, _change)})"
 
 
 def bdf(tables):

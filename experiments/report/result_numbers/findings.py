@@ -1,6 +1,8 @@
 """Sentences of the report page, as lists."""
+import re
+
 from .report import quoted, told
-from .words import bullets, counted, table
+from .words import bullets, counted, markdown, table
 
 _MOST = 12  # the report page has the rest
 
@@ -9,8 +11,24 @@ def _listed(name, most=_MOST):
     def query(tables):
         sentences = told(tables, name)
         rest = len(sentences) - most
-        more = f"{counted(rest, 'more sentence')} {'is' if rest == 1 else 'are'} on the report page."
+        more = f"The report page has {counted(rest, 'further finding')}."
         return bullets(sentences[:most] + ([more] if rest > 0 else []))
+
+    return query
+
+
+def _with_table(name, start, head):
+    """Returns a query whose sentences are a list, except the one that begins with `start`: "start: a 1; b 2." is a
+    table with the columns `head`, a row for each part and its last words, from the first digit on."""
+    def query(tables):
+        sentences = told(tables, name)
+        long = [one for one in sentences if one.startswith(start)]
+        shown = bullets([one for one in sentences if one not in long])
+        for one in long:
+            what, _, parts = one.rstrip(".").partition(": ")
+            rows = (re.match(r"(.*?),? (\d.*)$", part).groups() for part in parts.split("; "))
+            shown += f"\n\n{what}:\n\n{markdown(table(head, rows))}"
+        return shown
 
     return query
 
@@ -24,8 +42,8 @@ cosserat_map = _listed("map")
 models = _listed("models")
 nodal = _listed("nodal")
 recovery = _listed("recovery")
-scaling = _listed("scaling")
-stability = _listed("stability")
+scaling = _with_table("scaling", "Cost of one step on a straight strand", ["method", "exponent"])
+stability = _with_table("stability", "Stable at 33 ms", ["method", "stable cases"])
 swing = _listed("swing")
 transport = _listed("transport")
 # Sorted by success: without its end the list would leave out the models that fail.

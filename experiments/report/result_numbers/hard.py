@@ -25,7 +25,8 @@ def pairs(tables):
     return len(judged(tables)[["case", "model"]].drop_duplicates())
 
 
-def _pace(row):
+def pace(row):
+    """Returns the step of a row, or its tolerance."""
     return row["pace"] if row["by_tolerance"] else duration(row["dt_s"])
 
 
@@ -35,7 +36,7 @@ def outcomes_table(tables):
     lines = []
     for _, members in groups(rows, ["pace", "integrator"]):
         count = members["outcome"].value_counts()
-        lines.append([_pace(members.iloc[0]), members.iloc[0]["integrator"], len(members) - count.get("refused", 0),
+        lines.append([pace(members.iloc[0]), members.iloc[0]["integrator"], len(members) - count.get("refused", 0),
                       *(count.get(outcome, 0) for outcome in
                         ("stable and accurate", "stable", "stable, not compared", "unstable", "not finished"))])
     return table(["step or tolerance", "integrator", "pairs that can run", "stable and accurate", "stable, inaccurate",
@@ -67,6 +68,19 @@ def super_helix(tables):
     return "; ".join(words)
 
 
+def survivors(tables):
+    """Returns the models that survive most cases with `backward_euler` at its longest step, and `super_helix`."""
+    rows = judged(tables)
+    rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused") & (rows["integrator"] == "backward_euler")]
+    longest = rows["dt_s"].max()
+    counts = [(model, members["survives"].sum(), len(members)) for model, members in groups(rows[rows["dt_s"] == longest], "model")
+              if len(members) > _FEW]
+    counts.sort(key=lambda one: -one[1] / one[2])
+    shown = [one for k, one in enumerate(counts) if k < _BEST or one[0] == "super_helix"]
+    return (f"at steps of {duration(longest)}, "
+            + ", ".join(f"`{model}` survives {kept} of {of} cases" for model, kept, of in shown))
+
+
 def _at_longest_step(tables, integrator):
     rows = judged(tables)
     rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
@@ -81,6 +95,9 @@ def guarded(tables):
     return (f"At steps of {longest}, `guarded` {_at_longest_step(tables, 'guarded')}; "
             f"`backward_euler` {_at_longest_step(tables, 'backward_euler')}")
 
+
+# Models of fewer cases are not compared. So many are named.
+_FEW, _BEST = 10, 3
 
 # Cases of contact by a regularised law, and the same by the exact one: within the step of
 # the strand, and by impulses after it.
@@ -167,7 +184,7 @@ def rising_table(tables):
     step."""
     models = {}
     for row, exact in _fallen(tables):
-        line = (f"`{row['case']}`", row["integrator"], _pace(row), _ending(row, exact))
+        line = (f"`{row['case']}`", row["integrator"], pace(row), _ending(row, exact))
         models.setdefault(line, {})[row["model"]] = None
     return table(["fails by a regularised law", "integrator", "step or tolerance", "by the exact law", "models"],
                  [[*line, ", ".join(names)] for line, names in models.items()])

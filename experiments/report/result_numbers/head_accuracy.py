@@ -2,6 +2,8 @@
 from .tables import first, groups, known, records
 from .words import must, number, percent, span, spaced, table
 
+_PRECISIONS = {32: "single", 64: "double"}
+
 
 def answers(tables):
     """Returns the cheapest way to each target error. Where the status is not ok, there is none."""
@@ -71,11 +73,12 @@ def by_hair(tables):
     for (shape, variation, target), all_of in of_hair:
         head = [shape, {"alike": "equal", "varied": "different"}[variation], percent(target)]
         if (all_of["status"] != "ok").any():
-            lines.append([*head, "no tried run keeps it", "", ""])
+            lines.append([*head, "no tried run keeps it", "", "", ""])
             continue
         share = "all" if all_of.apply(_every, axis=1).any() else span(all_of["guides"] / all_of["strands"], percent)
-        lines.append([*head, share, f"{all_of['elements'].max():.0f}", f"{number(1e3 * all_of['dt_s'].min())} ms"])
-    return table(["hair", "lengths and curls", "target", "simulated", "elements", "step"], lines)
+        lines.append([*head, share, f"{all_of['elements'].max():.0f}", f"{number(1e3 * all_of['dt_s'].min())} ms",
+                      " or ".join(_PRECISIONS[bits] for bits in sorted(all_of["precision"].unique()))])
+    return table(["hair", "lengths and curls", "target", "simulated", "elements", "step", "precision"], lines)
 
 
 def findings(tables):

@@ -153,9 +153,9 @@ def two_threads(tables):
     rows = _heads(tables)
     rows = rows[rows["simd_width"] == 8]
     cost = {(row["strands"], row["precision"], row["threads"]): row["cost_per_step_s"] for row in reversed(records(rows))}
-    words = (f"{' and '.join(number(cost[strands, bits, 1] / cost[strands, bits, 2]) for bits in (64, 32))} for {strands} hairs"
+    words = (f"{', '.join(number(cost[strands, bits, 1] / cost[strands, bits, 2]) for bits in (64, 32))} for {strands} hairs"
              for strands in rows["strands"].unique())
-    return f"{', '.join(words)} (double and single precision)"
+    return "; ".join(words)
 
 
 def effect_noise(tables):

@@ -54,7 +54,7 @@ def made_table(tables):
     return table(
         ["table", "commit", "date", "processor", "load before, after", "SUNDIALS check", "times"],
         [[f"`{name}`", _commit(one), str(one.get("start") or "")[:10],
-          f"{_machine(one).get('cpu')}, {_machine(one).get('cpus')} processors", ", ".join(map(number, _loads(one))),
+          f"{_machine(one).get('cpu')}, {_machine(one).get('cpus')} processors", ", ".join(f"{load:.2f}" for load in _loads(one)),
           number(one.get("sundials_speed_ratio")),
           "" if not one.get("timings") else "uncertain" if _times_uncertain(one) else "load within limit"]
          for name, one in tables.manifests.items()])
@@ -82,7 +82,7 @@ def provenance(tables, names):
     all_of = {name: one for name, one in tables.manifests.items() if name in names}
     commits = {}
     for name, one in all_of.items():
-        words = f"`{name}`{' (times uncertain: loaded machine)' if _times_uncertain(one) else ''}"
+        words = f"`{name}`{' (times uncertain: other programs were running)' if _times_uncertain(one) else ''}"
         commits.setdefault(_commit(one), []).append(words)
     if not commits:
         return ""

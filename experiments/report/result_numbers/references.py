@@ -1,4 +1,4 @@
-"""Sources that headers, catalogues, tests and scenes cite."""
+"""Sources that headers, catalogues, tests, scenes and pages of theory cite."""
 import re
 import unicodedata
 
@@ -14,7 +14,7 @@ _NAME = r"(?:(?:van der|von|de|den) )?[A-Z]"  # the start of an author's surname
 
 
 def _files(root):
-    """Yields headers, sources, scenes and the report's programs, relative to the repository."""
+    """Yields headers, sources, scenes, the report's programs and pages of theory, relative to the repository."""
     def listing(folder, endings):
         for path in sorted((root / folder).iterdir()):
             if path.is_dir():
@@ -27,13 +27,16 @@ def _files(root):
         yield from listing(folder, (".h", ".cpp"))
     yield from listing("scenes", (".toml",))
     yield from listing("experiments/report/src", (".mjs",))
+    yield from listing("docs/theory", (".md",))
 
 
 def _cited(path, text):
-    """Returns the citations of one file: in brackets in comments, as the source of a published test or scene,
-    and in lines of a catalogue."""
+    """Returns the citations of one file: in brackets in comments and pages, as the source of a published test or
+    scene, and in lines of a catalogue."""
     joined = re.sub(r'"\s*\n\s*"', "", re.sub(r"\n\s*///? ?", " ", text))
-    patterns = [] if path.endswith(".toml") else [rf"\[({_NAME}[^\[\]]{{3,150}}{_YEAR}[^\[\]]{{0,80}})\]"]
+    if path.endswith(".md"):
+        joined = text.replace("\n", " ")
+    patterns = [] if path.endswith(".toml") else [rf"\[({_NAME}[^\[\]]{{3,150}}{_YEAR}[^\[\]]{{0,80}})\](?!\()"]
     patterns.append(r'\bsource = "([^"]+)"')
     if path.endswith("catalogue.cpp"):
         patterns.append(rf'"([A-Z][^"]*\b{_YEAR}\b[^"]*)"')

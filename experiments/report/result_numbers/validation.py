@@ -75,5 +75,5 @@ def order_points(tables):
     points = groups(rows(tables, "validation_orders"), ["test", "name"])["points"].first()
     few = 2
     two = (points == few).sum()
-    return (f"Curves with more than {few} numbers of elements: {len(points) - two} of {len(points)}. "
-            f"The other {two} are dashed, and their slope is no evidence of an order")
+    return (f"Of {len(points)} curves, {len(points) - two} {'has' if len(points) - two == 1 else 'have'} more than {few} element counts. The other {two} "
+            f"are dashed, and their slope is no evidence of an order")
