@@ -76,15 +76,16 @@ inline double largest_bulge(std::span<const double> x, double length) {
   return 0.5 * std::sqrt(square);
 }
 
-/// The packs of this build in words, such as "4 of 64 bits, 8 of 32 bits".
+/// The packs of this build in words, such as "4 in double precision, 8 in single
+/// precision".
 inline constexpr std::string_view packs_of_build =
-#define TRESS_PACK(Number, width) ", " #width " of " TRESS_BITS_OF_##Number " bits"
-#define TRESS_BITS_OF_double "64"
-#define TRESS_BITS_OF_float "32"
+#define TRESS_PACK(Number, width) ", " #width " in " TRESS_NAME_OF_##Number " precision"
+#define TRESS_NAME_OF_double "double"
+#define TRESS_NAME_OF_float "single"
     TRESS_EACH_PACK(TRESS_PACK);
 #undef TRESS_PACK
-#undef TRESS_BITS_OF_double
-#undef TRESS_BITS_OF_float
+#undef TRESS_NAME_OF_double
+#undef TRESS_NAME_OF_float
 
 /// The remedy where packs are missing, empty if none is.
 #ifdef TRESS_ONE_PACK
@@ -107,7 +108,8 @@ Result on_pack(const HeadPack& pack, Made made) {
   }
   TRESS_EACH_PACK(TRESS_PACK)
 #undef TRESS_PACK
-  throw InputError(fmt::format("{} lanes of {} bits", pack.lanes, 8 * bytes),
+  throw InputError(fmt::format("{} lanes in {} precision", pack.lanes,
+                               bytes == 8 ? "double" : "single"),
                    place_of_head,
                    fmt::format("use {}{}", packs_of_build.substr(2), other_packs));
 }
