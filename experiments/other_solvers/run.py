@@ -123,14 +123,18 @@ def _cpu():
     return names[0] if names else platform.machine()
 
 
-def manifest(rows, begin, load_before):
+def _sources():
+    return {"commit": _output("git", "rev-parse", "HEAD"), "dirty": bool(_output("git", "status", "--porcelain", "-uno"))}
+
+
+def manifest(rows, git, begin, load_before):
     """The record of a run in the form that the experiments write."""
     count = {status: sum(row["status"] == status for row in rows) for status in sorted({row["status"] for row in rows})}
     return {
         "experiment": "other_solvers", "question": "what do other solver packages reach on published problems?", "schema": 1,
         "argv": ["experiments/other_solvers/run.py"], "settings": "", "quick": False, "full": False, "checks": [],
         "start": begin, "end": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "git": {"commit": _output("git", "rev-parse", "HEAD"), "dirty": bool(_output("git", "status", "--porcelain", "-uno"))},
+        "git": git,
         "build": {"compiler": _output("cc", "--version").split("\n")[0], "flags": "-O2", "type": ""},
         "machine": {"cpu": _cpu(), "cpus": os.cpu_count(), "kernel": platform.platform(), "load_before": load_before,
                     "load_after": list(os.getloadavg())},
@@ -159,7 +163,7 @@ def parsed():
 
 def main():
     options = parsed()
-    begin, load = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), list(os.getloadavg())
+    git, begin, load = _sources(), datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), list(os.getloadavg())
     rows = []
     for row in rows_of(options):
         print(line(row), flush=True)
@@ -169,7 +173,7 @@ def main():
             table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             table.writeheader()
             table.writerows(rows)
-        options.out.with_suffix(".meta.json").write_text(json.dumps(manifest(rows, begin, load), indent=2) + "\n")
+        options.out.with_suffix(".meta.json").write_text(json.dumps(manifest(rows, git, begin, load), indent=2) + "\n")
     return 0
 
 
