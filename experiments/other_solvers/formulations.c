@@ -139,7 +139,7 @@ void right_side(double t, const double *y, double *dy) {
   double lambda[max_constraints];
   ++evaluations;
   memcpy(dy, y + n, sizeof(double) * (size_t)n);
-  if (form == ode) {
+  if (form != mass_form) {
     accelerate(t, y, y + n, dy + n, lambda);
     return;
   }

@@ -163,7 +163,8 @@ def parsed():
 
 def main():
     options = parsed()
-    git, begin, load = _sources(), datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), list(os.getloadavg())
+    git = _sources() if options.out else None
+    begin, load = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), list(os.getloadavg())
     rows = []
     for row in rows_of(options):
         print(line(row), flush=True)
