@@ -139,8 +139,8 @@ def tress_rows(program, problem, methods, folder):
     """Returns rows of work_precision for the problem: three tolerances of ida, two of the methods that control
     the error of a point, and two fixed steps."""
     out = Path(folder) / f"{problem}.csv"
-    command = [str(program), "--set", f"scene={problem}", "--integrators", ",".join(methods), "--jobs", "1", "--repeat", "1", "--progress",
-               "none", "--out", str(out)]
+    command = [str(program), "--set", f"scene={problem}", "--integrators", ",".join(methods), "--jobs", "1",
+               "--repeat", "1", "--progress", "none", "--out", str(out)]
     try:
         done = subprocess.run(command, capture_output=True, text=True)
     except FileNotFoundError:

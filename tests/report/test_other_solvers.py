@@ -1,4 +1,4 @@
-"""Other solver packages: definitions of the problems, rows and page, without the packages: /usr/bin/python3 tests/report/test_other_solvers.py"""
+"""Other solver packages, without the packages: /usr/bin/python3 tests/report/test_other_solvers.py"""
 import csv
 import ctypes
 import math
