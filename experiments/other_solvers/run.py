@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Solves the four published problems with other solver packages and with tress, and prints one line per run.
 
-Without arguments, all runs also become results/other_solvers.csv."""
+Without arguments, all runs also become results/other_solvers.csv. With --update, the runs replace those of this table."""
 import argparse
 import csv
 import json
@@ -127,9 +127,33 @@ def _sources():
     return {"commit": _output("git", "rev-parse", "HEAD"), "dirty": bool(_output("git", "status", "--porcelain", "-uno"))}
 
 
+def _key(row):
+    return tuple(str(row[key]) for key in ("problem", "package", "solver", "max_order", "formulation", "tolerance",
+                                           "position_tol_rel", "dt_s"))
+
+
+def updated(path, rows, record):
+    """Returns the rows of an existing table with these in place of the same runs, and its record, which keeps commit,
+    machine and times of the first run and lists this one."""
+    with path.open(newline="") as file:
+        fresh = {_key(row): row for row in rows}
+        merged = [fresh.pop(_key(row), row) for row in csv.DictReader(file)]
+    first = json.loads(path.with_suffix(".meta.json").read_text())
+    kept = {key: first[key] for key in ("git", "machine", "start", "end", "build")}
+    git = record["git"]
+    this = f"{len(rows)} runs replaced at commit {git['commit'][:7]}{' with uncommitted changes' if git['dirty'] else ''}"
+    merged += fresh.values()
+    return merged, {**record, **kept, "rows": tallied(merged), "libraries": {**first["libraries"], **record["libraries"]},
+                    "merged_from": [*first.get("merged_from", []), this]}
+
+
+def tallied(rows):
+    return {"total": len(rows), "by_status": {status: sum(row["status"] == status for row in rows)
+                                              for status in sorted({row["status"] for row in rows})}}
+
+
 def manifest(rows, git, begin, load_before):
     """The record of a run in the form that the experiments write."""
-    count = {status: sum(row["status"] == status for row in rows) for status in sorted({row["status"] for row in rows})}
     return {
         "experiment": "other_solvers", "question": "what do other solver packages reach on published problems?", "schema": 1,
         "argv": ["experiments/other_solvers/run.py"], "settings": "", "quick": False, "full": False, "checks": [],
@@ -139,7 +163,7 @@ def manifest(rows, git, begin, load_before):
         "machine": {"cpu": _cpu(), "cpus": os.cpu_count(), "kernel": platform.platform(), "load_before": load_before,
                     "load_after": list(os.getloadavg())},
         "libraries": {row["package"]: row["version"] for row in rows if row["version"]},
-        "rows": {"total": len(rows), "by_status": count}, "columns": COLUMNS, "timings": ["wall_s"], "glossary": {}}
+        "rows": tallied(rows), "columns": COLUMNS, "timings": ["wall_s"], "glossary": {}}
 
 
 def parsed():
@@ -152,11 +176,12 @@ def parsed():
     parser.add_argument("--programs", metavar="FOLDER", type=Path, default=REPOSITORY / "build/release/experiments",
                         help="folder of work_precision (default: build/release/experiments)")
     parser.add_argument("--out", metavar="FILE", type=Path, help="table (default, for all runs: results/other_solvers.csv)")
+    parser.add_argument("--update", action="store_true", help="replace the same runs of the existing table")
     options = parser.parse_args()
     unknown = [one for one in options.problem if one not in PROBLEMS]
     if unknown:
         parser.error(f"unknown problem '{unknown[0]}'; there are: {', '.join(PROBLEMS)}")
-    if not options.out and not (options.problem or options.solver or options.tolerance):
+    if not options.out and (options.update or not (options.problem or options.solver or options.tolerance)):
         options.out = REPOSITORY / "results/other_solvers.csv"
     return options
 
@@ -170,11 +195,14 @@ def main():
         print(line(row), flush=True)
         rows.append(row)
     if options.out:
+        record = manifest(rows, git, begin, load)
+        if options.update:
+            rows, record = updated(options.out, rows, record)
         with options.out.open("w", newline="") as file:
             table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             table.writeheader()
             table.writerows(rows)
-        options.out.with_suffix(".meta.json").write_text(json.dumps(manifest(rows, git, begin, load), indent=2) + "\n")
+        options.out.with_suffix(".meta.json").write_text(json.dumps(record, indent=2) + "\n")
     return 0
 
 

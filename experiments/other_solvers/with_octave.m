@@ -7,7 +7,8 @@ all = gateway(str2double(words{2}), str2double(words{4}), 0, 0);
 n = all(1);
 t_end = all(2);
 parts = reshape(all(3:end), [], 3);
-options = odeset("RelTol", tolerance, "AbsTol", tolerance * parts(:, 3));
+% The own first step of ode15s is too long for tight tolerances: the first error test fails.
+options = odeset("InitialStep", 1e-6 * t_end, "RelTol", tolerance, "AbsTol", tolerance * parts(:, 3));
 if (! isempty(words{5}) && ! strcmp(words{5}, "0"))
   options = odeset(options, "MaxOrder", str2double(words{5}));
 end
