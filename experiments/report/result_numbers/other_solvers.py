@@ -1,11 +1,16 @@
 """Other solver packages on published problems: digits and costs of their runs."""
 from .machine import minutes_of
 from .tables import groups, known, records
-from .words import code, counted, duration, must, number, spaced, span, table
+from .words import code, counted, duration, is_number, must, number, spaced, span, table
 
 
 def _tolerances(rows):
     return sorted(rows["tolerance"][known(rows["tolerance"])].unique(), reverse=True)
+
+
+def _whole(count):
+    """Returns a count with all digits; "": unknown."""
+    return str(int(count)) if is_number(count) else ""
 
 
 def _name(row):
@@ -34,7 +39,7 @@ def problem_table(tables, problem):
     for _, members in groups(rows, ["package", "solver", "formulation", "max_order"]):
         row = records(members)[0]
         cost = [one for one in records(members) if one["tolerance"] == middle and one["status"] == "ok"]
-        steps = [number(cost[0]["steps"], 6), number(cost[0]["evaluations"], 6), number(cost[0]["jacobians"], 6),
+        steps = [_whole(cost[0]["steps"]), _whole(cost[0]["evaluations"]), _whole(cost[0]["jacobians"]),
                  duration(cost[0]["wall_s"])] if cost else [""] * 4
         lines.append([_name(row), row["formulation"], *(_digits(members, level) for level in levels), *steps])
     return table(["solver", "formulation", *(f"digits at {number(level)}" for level in levels), "steps", "evaluations", "Jacobians",
@@ -46,8 +51,8 @@ def own_table(tables):
     rows = tables["other_solvers"]
     lines = [[spaced(row["problem"]), f"`{row['solver']}`", row["formulation"],
               f"step {duration(row['dt_s'], 3)}" if number(row["dt_s"]) else f"error {number(row['position_tol_rel'])}",
-              number(row["digits"]) if row["status"] == "ok" else spaced(row["status"]), number(row["steps"], 6),
-              number(row["evaluations"], 6), duration(row["wall_s"])]
+              number(row["digits"]) if row["status"] == "ok" else spaced(row["status"]), _whole(row["steps"]),
+              _whole(row["evaluations"]), duration(row["wall_s"])]
              for row in records(rows[~known(rows["tolerance"])])]
     return table(["problem", "method", "formulation", "drive", "digits", "steps", "evaluations", "time"], lines)
 
@@ -104,7 +109,7 @@ def beam_orders(tables):
     rows = rows[(rows["problem"] == "beam") & known(rows["max_order"]) & (rows["tolerance"] == middle)]
     lines = []
     for (package, solver), members in groups(rows, ["package", "solver"]):
-        cells = {number(row["max_order"]): number(row["steps"], 6) if row["status"] == "ok" else spaced(row["status"])
+        cells = {number(row["max_order"]): _whole(row["steps"]) if row["status"] == "ok" else spaced(row["status"])
                  for row in records(members)}
         lines.append([f"{package} `{solver}`", *(cells.get(str(order), "") for order in range(1, 6))])
     return table([f"steps at {number(middle)}", *(f"order at most {order}" for order in range(1, 6))], lines)
@@ -125,3 +130,9 @@ def index3(tables):
     rows = rows[(rows["formulation"] == "index3") & (rows["package"] != "tress")]
     return (f"Here, {code(dict.fromkeys(rows['solver']))} reached the end in {(rows['status'] == 'ok').sum()} of "
             f"{counted(len(rows), 'run')} on `index3`.")
+
+
+def replaced(tables):
+    """Returns which runs were made later than the others, from the record of the table."""
+    later = tables.manifest("other_solvers").get("merged_from", [])
+    return f"Later runs are part of the table: {'; '.join(later)}." if later else ""
