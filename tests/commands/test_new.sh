@@ -73,6 +73,7 @@ if command -v clang-format >/dev/null; then
 fi
 
 # The force of docs/start/own_force.md.
+# shellcheck disable=SC2016  # the expression has backquotes, not commands
 sed -n '/^```cpp/,/^```/{/^```/!p}' "$repository/docs/start/own_force.md" >"$work/trap.cpp"
 "$compiler" -std=c++20 -fsyntax-only -I"$repository" -Wall -Wextra -Wpedantic -Wno-psabi -Werror "$work/trap.cpp" ||
   fail "the force of docs/start/own_force.md does not compile"
