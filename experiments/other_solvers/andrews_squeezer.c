@@ -1,5 +1,5 @@
-/* Source: Mazzia & Magherini, Test Set for IVP Solvers, release 2.4, problem andrews; differences
- * from it: models/published/andrews_squeezer.cpp. */
+/* Source: Mazzia & Magherini, Test Set for IVP Solvers, release 2.4, problem andrews;
+ * differences from it: models/published/andrews_squeezer.cpp. */
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ static const double d = .028, da = .0115, e = .02, ea = .01421, rr = .007, ra = 
                     fa = .01421;
 static const double spring_stiffness = 4530, spring_length = .07785, drive_torque = .033;
 
-static void start(double *q, double *v) {
+static void start(double* q, double* v) {
   static const double start[7] = {
       -0.0617138900142764496358948458001, 0,
       0.455279819163070380255912382449,   0.222668390165885884674473185609,
@@ -30,7 +30,7 @@ static void start(double *q, double *v) {
   memset(v, 0, sizeof start);
 }
 
-static void mass(const double *q, double *m) {
+static void mass(const double* q, double* m) {
   const double h1 = -m2 * da * rr * cos(q[1]), h2 = m4 * zt * (e - ea) * sin(q[3]),
                h3 = -m6 * u * (zf - fa) * sin(q[5]);
   memset(m, 0, 49 * sizeof *m);
@@ -40,13 +40,15 @@ static void mass(const double *q, double *m) {
   m[16] = m3 * (square(sa) + square(sb)) + i3;
   m[24] = m4 * square(e - ea) + i4;
   m[25] = m[31] = m[24] + h2;
-  m[32] = m4 * (square(zt) + square(e - ea)) + m5 * (square(ta) + square(tb)) + i4 + i5 + 2 * h2;
+  m[32] = m4 * (square(zt) + square(e - ea)) + m5 * (square(ta) + square(tb)) + i4 + i5 +
+          2 * h2;
   m[40] = m6 * square(zf - fa) + i6;
   m[41] = m[47] = m[40] + h3;
-  m[48] = m6 * (square(zf - fa) + square(u)) + m7 * (square(ua) + square(ub)) + i6 + i7 + 2 * h3;
+  m[48] = m6 * (square(zf - fa) + square(u)) + m7 * (square(ua) + square(ub)) + i6 + i7 +
+          2 * h3;
 }
 
-static void force(double t, const double *q, const double *v, double *f) {
+static void force(double t, const double* q, const double* v, double* f) {
   const double x = sd * cos(q[2]) + sc * sin(q[2]) + xb - xc;
   const double y = sd * sin(q[2]) - sc * cos(q[2]) + yb - yc;
   const double length = hypot(x, y);
@@ -56,14 +58,15 @@ static void force(double t, const double *q, const double *v, double *f) {
   (void)t;
   f[0] = drive_torque - s1 * v[1] * (v[1] + 2 * v[0]);
   f[1] = s1 * v[0] * v[0];
-  f[2] = pull * (x * (sc * cos(q[2]) - sd * sin(q[2])) + y * (sd * cos(q[2]) + sc * sin(q[2])));
+  f[2] = pull *
+         (x * (sc * cos(q[2]) - sd * sin(q[2])) + y * (sd * cos(q[2]) + sc * sin(q[2])));
   f[3] = s2 * v[4] * v[4];
   f[4] = -s2 * v[3] * (v[3] + 2 * v[4]);
   f[5] = s3 * v[6] * v[6];
   f[6] = -s3 * v[5] * (v[5] + 2 * v[6]);
 }
 
-static void constraint(double t, const double *q, double *g) {
+static void constraint(double t, const double* q, double* g) {
   const double x = rr * cos(q[0]) - d * cos(q[0] + q[1]);
   const double y = rr * sin(q[0]) - d * sin(q[0] + q[1]);
   (void)t;
@@ -75,7 +78,7 @@ static void constraint(double t, const double *q, double *g) {
   g[5] = y - zf * sin(q[5] + q[6]) + u * cos(q[6]) - ya;
 }
 
-static void gradient(double t, const double *q, double *g) {
+static void gradient(double t, const double* q, double* g) {
   const double b = q[0] + q[1], p = q[3] + q[4], o = q[5] + q[6];
   (void)t;
   memset(g, 0, 42 * sizeof *g);
@@ -97,8 +100,9 @@ static void gradient(double t, const double *q, double *g) {
   g[41] = -zf * cos(o) - u * sin(q[6]);
 }
 
-static void bias(double t, const double *q, const double *v, double *r) {
-  const double vb = square(v[0] + v[1]), vp = square(v[3] + v[4]), vo = square(v[5] + v[6]);
+static void bias(double t, const double* q, const double* v, double* r) {
+  const double vb = square(v[0] + v[1]), vp = square(v[3] + v[4]),
+               vo = square(v[5] + v[6]);
   const double x = -rr * cos(q[0]) * v[0] * v[0] + d * cos(q[0] + q[1]) * vb;
   const double y = -rr * sin(q[0]) * v[0] * v[0] + d * sin(q[0] + q[1]) * vb;
   (void)t;
@@ -113,5 +117,18 @@ static void bias(double t, const double *q, const double *v, double *r) {
 static const double q_size[7] = {1, 1, .5, .5, .5, .5, 1};
 static const double v_size[7] = {1e3, 1e3, 20, 20, 20, 20, 20};
 
-const Problem andrews_squeezer = {"andrews_squeezer", 7, 6, .03, 100, 1e3, q_size, v_size,
-                         start, mass, force, constraint, gradient, no_rate, bias};
+const Problem andrews_squeezer = {"andrews_squeezer",
+                                  7,
+                                  6,
+                                  .03,
+                                  100,
+                                  1e3,
+                                  q_size,
+                                  v_size,
+                                  start,
+                                  mass,
+                                  force,
+                                  constraint,
+                                  gradient,
+                                  no_rate,
+                                  bias};

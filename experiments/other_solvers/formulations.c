@@ -3,10 +3,10 @@
  *     ode      y = (q, v)                q' = v, v' = a; multipliers eliminated
  *     index1   y = (q, v, lambda)        q' = v, M v' = f + G^T lambda, G v' + bias = 0
  *     index2   y = (q, v, lambda, mu)    q' = v + G^T mu, M v' = f + G^T lambda,
- *                                        G v + rate = 0, g = 0 (Gear, Gupta, Leimkuhler 1985)
- *     index3   y = (q, v, lambda)        q' = v, M v' = f + G^T lambda, g = 0
- *     mass     y = (q, v, w, lambda)     q' = v, v' = w, 0 = M w - f - G^T lambda, 0 = g;
- *                                        index 3 with a constant mass matrix
+ *                                        G v + rate = 0, g = 0 (Gear, Gupta, Leimkuhler
+ * 1985) index3   y = (q, v, lambda)        q' = v, M v' = f + G^T lambda, g = 0 mass y =
+ * (q, v, w, lambda)     q' = v, v' = w, 0 = M w - f - G^T lambda, 0 = g; index 3 with a
+ * constant mass matrix
  */
 #include <math.h>
 #include <string.h>
@@ -16,29 +16,29 @@
 enum { ode, index1, index2, index3, mass_form };
 enum { most = max_coordinates + max_constraints, most_y = 3 * max_coordinates };
 
-static const Problem *p = &beam;
+static const Problem* p = &beam;
 static int form;
 static long evaluations, jacobians;
 
-void no_rate(double t, const double *q, double *rate) {
+void no_rate(double t, const double* q, double* rate) {
   (void)t, (void)q;
   memset(rate, 0, max_constraints * sizeof *rate);
 }
 
 /* Selects problem and formulation and sets the counters to zero. */
-void choose(const int *problem, const int *formulation) {
-  const Problem *const all[] = {&andrews_squeezer, &slider_crank, &car_axis, &beam};
+void choose(const int* problem, const int* formulation) {
+  const Problem* const all[] = {&andrews_squeezer, &slider_crank, &car_axis, &beam};
   p = all[*problem];
   form = *formulation;
   evaluations = jacobians = 0;
 }
 
-void counts(double *both) {
+void counts(double* both) {
   both[0] = (double)evaluations;
   both[1] = (double)jacobians;
 }
 
-void sizes(int *n_m_y, double *t_end) {
+void sizes(int* n_m_y, double* t_end) {
   const int tails[] = {0, p->m, 2 * p->m, p->m, p->n + p->m};
   n_m_y[0] = p->n;
   n_m_y[1] = p->m;
@@ -47,7 +47,7 @@ void sizes(int *n_m_y, double *t_end) {
 }
 
 /* Gaussian elimination with row exchanges; 0: the matrix is singular. */
-static int eliminate(int n, double *a, double *b) {
+static int eliminate(int n, double* a, double* b) {
   for (int k = 0; k < n; ++k) {
     int best = k;
     for (int i = k + 1; i < n; ++i)
@@ -76,7 +76,8 @@ static int eliminate(int n, double *a, double *b) {
 }
 
 /* Accelerations and multipliers from (M, -G^T; G, 0) (a, lambda) = (f, -bias). */
-static void accelerate(double t, const double *q, const double *v, double *a, double *lambda) {
+static void accelerate(double t, const double* q, const double* v, double* a,
+                       double* lambda) {
   const int n = p->n, m = p->m, all = n + m;
   if (m == 0) {
     p->force(t, q, v, a);
@@ -104,7 +105,7 @@ static void accelerate(double t, const double *q, const double *v, double *a, do
 }
 
 /* y and y' at the start, consistent, and the size of every entry of y. */
-void start(double *y, double *yp, double *size) {
+void start(double* y, double* yp, double* size) {
   const int n = p->n, m = p->m;
   double a[max_coordinates], lambda[max_constraints];
   p->start(y, y + n);
@@ -134,7 +135,7 @@ void start(double *y, double *yp, double *size) {
 }
 
 /* Right side: y' of `ode`, or K y' of `mass`. */
-void right_side(double t, const double *y, double *dy) {
+void right_side(double t, const double* y, double* dy) {
   const int n = p->n, m = p->m;
   double lambda[max_constraints];
   ++evaluations;
@@ -159,7 +160,7 @@ void right_side(double t, const double *y, double *dy) {
 }
 
 /* F(t, y, y') = 0. */
-void residual(double t, const double *y, const double *yp, double *r) {
+void residual(double t, const double* y, const double* yp, double* r) {
   const int n = p->n, m = p->m;
   double mass[max_coordinates * max_coordinates], g[max_coordinates * max_constraints];
   if (form == ode || m == 0) {
@@ -182,20 +183,21 @@ void residual(double t, const double *y, const double *yp, double *r) {
     r[n + i] = balance;
     r[i] = kinematics;
   }
-  double *const tail = r + 2 * n;
+  double* const tail = r + 2 * n;
   if (form == index3) p->constraint(t, y, tail);
   if (form == index2) p->constraint_rate(t, y, tail), p->constraint(t, y, tail + m);
   if (form == index1) p->bias(t, y, v, tail);
   if (form == index3) return;
-  const double *const rate = form == index1 ? yp + n : v;
+  const double* const rate = form == index1 ? yp + n : v;
   for (int k = 0; k < m; ++k)
     for (int j = 0; j < n; ++j) tail[k] += g[n * k + j] * rate[j];
 }
 
 /* dF/dy + shift dF/dy' by one-sided differences, row-major. */
-void jacobian(double t, const double *y, const double *yp, double shift, double *matrix) {
+void jacobian(double t, const double* y, const double* yp, double shift, double* matrix) {
   int ny[3];
-  double t_end, x[most_y], xp[most_y], at[most_y], moved[most_y], unused[most_y], size[most_y];
+  double t_end, x[most_y], xp[most_y], at[most_y], moved[most_y], unused[most_y],
+      size[most_y];
   sizes(ny, &t_end);
   const int count = ny[2];
   start(x, unused, size);
@@ -215,15 +217,16 @@ void jacobian(double t, const double *y, const double *yp, double shift, double 
 }
 
 /* a - acceleration(t, q, v), and its derivative with v = shift_v q, a = shift_a q. */
-void second_order(double t, const double *q, const double *v, const double *a, double *r) {
+void second_order(double t, const double* q, const double* v, const double* a,
+                  double* r) {
   double lambda[max_constraints];
   ++evaluations;
   accelerate(t, q, v, r, lambda);
   for (int i = 0; i < p->n; ++i) r[i] = a[i] - r[i];
 }
 
-void second_order_jacobian(double t, const double *q, const double *v, const double *a,
-                           double shift_v, double shift_a, double *matrix) {
+void second_order_jacobian(double t, const double* q, const double* v, const double* a,
+                           double shift_v, double shift_a, double* matrix) {
   const int n = p->n;
   double x[most_y], y[most_y], z[most_y], at[most_y], moved[most_y];
   memcpy(x, q, sizeof(double) * (size_t)n);
@@ -245,7 +248,7 @@ void second_order_jacobian(double t, const double *q, const double *v, const dou
 }
 
 /* Largest constraint in modulus. */
-double drift(double t, const double *q) {
+double drift(double t, const double* q) {
   double g[max_constraints], largest = 0;
   if (p->m > 0) p->constraint(t, q, g);
   for (int k = 0; k < p->m; ++k) largest = fmax(largest, fabs(g[k]));
@@ -253,13 +256,13 @@ double drift(double t, const double *q) {
 }
 
 /* The entry points of compiled models of deSolve. */
-void derivs(int *count, double *t, double *y, double *dy, double *out, int *ip) {
+void derivs(int* count, double* t, double* y, double* dy, double* out, int* ip) {
   (void)count, (void)out, (void)ip;
   right_side(*t, y, dy);
 }
 
-void res(double *t, double *y, double *yp, double *cj, double *delta, int *ires, double *out,
-         int *ip) {
+void res(double* t, double* y, double* yp, double* cj, double* delta, int* ires,
+         double* out, int* ip) {
   (void)cj, (void)ires, (void)out, (void)ip;
   residual(*t, y, yp, delta);
 }

@@ -25,7 +25,7 @@ COLUMNS = {
     "max_order": "largest order of a multistep method",
     "formulation": "formulation of the constraints",
     "jacobian": "source of the Jacobian",
-    "tolerance": "relative tolerance; absolute tolerance over the size of each entry",
+    "rtol": "relative tolerance; absolute tolerance over the size of each entry",
     "position_tol_rel": "error of a point over the length for which tress controls the step",
     "dt_s": "fixed step",
     "digits": "correct digits of the positions at the end, the worst entry; at most those of the reference",
@@ -62,7 +62,7 @@ def ended(row, end, problem, drift):
 def foreign_row(solver, command, library, problem, tolerance):
     row = identity(problem, solver.package, solver.method, solver.formulation_of(problem), solver.jacobian)
     found = run(solver, command, library, problem, tolerance)
-    row.update(max_order=solver.order, tolerance=tolerance)
+    row.update(max_order=solver.order, rtol=tolerance)
     row.update({key: found.get(key, "") for key in ("version", "steps", "evaluations", "jacobians", "wall_s")})
     if "end" not in found:
         return {**row, "status": found.get("status", "solver_error"), "reason": found["failure"]}
@@ -71,7 +71,7 @@ def foreign_row(solver, command, library, problem, tolerance):
 
 def tress_row(found, version):
     row = identity(found["scene"], "tress", found["integrator"], found["formulation"], "exact")
-    row.update(version=version, max_order=found["max_order"], tolerance=found["rtol"], position_tol_rel=found["position_tol_rel"],
+    row.update(version=version, max_order=found["max_order"], rtol=found["rtol"], position_tol_rel=found["position_tol_rel"],
                dt_s=found["dt_s"], steps=found["steps"], evaluations=found["residuals"], jacobians=found["linearizations"],
                wall_s=found["wall_s"], status=found["status"], reason=found["reason"])
     if found["scd"]:
@@ -83,7 +83,7 @@ def tress_row(found, version):
 
 def line(row):
     """One run as a line."""
-    drive = next(f"{key}={row[key]}" for key in ("tolerance", "position_tol_rel", "dt_s") if row[key])
+    drive = next(f"{key}={row[key]}" for key in ("rtol", "position_tol_rel", "dt_s") if row[key])
     order = f" max_order={row['max_order']}" if row["max_order"] else ""
     end = f"{row['digits']} digits, {row['steps']} steps, {row['evaluations']} evaluations" if row["status"] == "ok" else \
         f"{row['status']}: {row['reason']}"
@@ -128,7 +128,7 @@ def _sources():
 
 
 def _key(row):
-    return tuple(str(row[key]) for key in ("problem", "package", "solver", "max_order", "formulation", "tolerance",
+    return tuple(str(row[key]) for key in ("problem", "package", "solver", "max_order", "formulation", "rtol",
                                            "position_tol_rel", "dt_s"))
 
 

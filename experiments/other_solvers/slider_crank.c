@@ -1,5 +1,5 @@
-/* Source: Mazzia & Magherini, Test Set for IVP Solvers, release 2.4, problem crank; differences
- * from it: models/published/slider_crank.cpp. */
+/* Source: Mazzia & Magherini, Test Set for IVP Solvers, release 2.4, problem crank;
+ * differences from it: models/published/slider_crank.cpp. */
 #include <math.h>
 #include <string.h>
 
@@ -9,12 +9,14 @@ static double square(double x) { return x * x; }
 
 /* Slider crank with a flexible connecting rod. */
 #define PI 3.14159265358979323846
-static const double l1 = .15, l2 = .30, crank_inertia = .002727, rod_inertia = .0045339259;
+static const double l1 = .15, l2 = .30, crank_inertia = .002727,
+                    rod_inertia = .0045339259;
 static const double rod_mass2 = .151104, block_mass = .075552, youngs_modulus = .20e12,
                     section = .0080 * .0080, height = .0080, density = 7870,
                     drive_rate = 150;
 
-/* Elastic mass (kg), stiffness (N/m), gyroscopic coupling (m^3) and the vectors of the rod. */
+/* Elastic mass (kg), stiffness (N/m), gyroscopic coupling (m^3) and the vectors of the
+ * rod. */
 typedef struct {
   double mass[4][4], stiffness[4][4], gyroscopic[4][4], c1[4], c2[4], c12[4], c21[4];
 } Rod;
@@ -39,13 +41,13 @@ static Rod rod(void) {
   return r;
 }
 
-static double dot4(const double *a, const double *b) {
+static double dot4(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
-static void start(double *q, double *v) {
+static void start(double* q, double* v) {
   const double q0[7] = {0, 0, 0, 0, 0, .103339863e-4, .169327969e-4};
-  const double v0[7] = {drive_rate, 0, 0, .444896105, .463434311e-2, -.178591076e-5,
+  const double v0[7] = {drive_rate,    0, 0, .444896105, .463434311e-2, -.178591076e-5,
                         -.268938672e-5};
   memcpy(q, q0, sizeof q0);
   memcpy(v, v0, sizeof v0);
@@ -54,7 +56,7 @@ static void start(double *q, double *v) {
   v[2] = v[6];
 }
 
-static void mass(const double *q, double *m) {
+static void mass(const double* q, double* m) {
   const Rod b = rod();
   const double *x = q + 3, c = cos(q[0] - q[1]), s = sin(q[0] - q[1]);
   memset(m, 0, 49 * sizeof *m);
@@ -71,7 +73,7 @@ static void mass(const double *q, double *m) {
   }
 }
 
-static void force(double t, const double *q, const double *v, double *f) {
+static void force(double t, const double* q, const double* v, double* f) {
   const Rod b = rod();
   const double *x = q + 3, *y = v + 3, c = cos(q[0] - q[1]), s = sin(q[0] - q[1]);
   const double lever = (.5 * l1 * l2 * rod_mass2 + density * l1 * dot4(b.c1, x)) * s -
@@ -91,14 +93,14 @@ static void force(double t, const double *q, const double *v, double *f) {
   }
 }
 
-static void constraint(double t, const double *q, double *g) {
+static void constraint(double t, const double* q, double* g) {
   const double reach = l2 + q[6];
   g[0] = l1 * sin(q[0]) + reach * sin(q[1]);
   g[1] = q[2] - l1 * cos(q[0]) - reach * cos(q[1]);
   g[2] = q[0] - drive_rate * t;
 }
 
-static void gradient(double t, const double *q, double *g) {
+static void gradient(double t, const double* q, double* g) {
   const double reach = l2 + q[6];
   (void)t;
   memset(g, 0, 21 * sizeof *g);
@@ -112,13 +114,13 @@ static void gradient(double t, const double *q, double *g) {
   g[14] = 1;
 }
 
-static void drive(double t, const double *q, double *rate) {
+static void drive(double t, const double* q, double* rate) {
   (void)t, (void)q;
   rate[0] = rate[1] = 0;
   rate[2] = -drive_rate;
 }
 
-static void bias(double t, const double *q, const double *v, double *r) {
+static void bias(double t, const double* q, const double* v, double* r) {
   const double reach = l2 + q[6];
   (void)t;
   r[0] = -l1 * sin(q[0]) * v[0] * v[0] - reach * sin(q[1]) * v[1] * v[1] +
@@ -131,5 +133,6 @@ static void bias(double t, const double *q, const double *v, double *r) {
 static const double q_size[7] = {1, .5, .3, 2e-4, 2e-5, 2e-5, 2e-5};
 static const double v_size[7] = {150, 75, 50, .5, .01, 2e-3, 2e-3};
 
-const Problem slider_crank = {"slider_crank", 7, 3, .1, 100, 150, q_size, v_size,
-                         start, mass, force, constraint, gradient, drive, bias};
+const Problem slider_crank = {"slider_crank", 7,      3,     .1,   100,   150,
+                              q_size,         v_size, start, mass, force, constraint,
+                              gradient,       drive,  bias};

@@ -71,6 +71,7 @@ FILM = "./tress film results/report.html "
 RULES = (
     Rule("README.md", "./tress", left_out="builds, for which a copy of the sources has no tree",
          by="tests/commands/test_quick_start.py"),
+    Rule("docs/other_solvers.md", "", left_out="needs R, Octave and PETSc; tests/report/test_other_solvers.py tries the program"),
     Rule("docs/start/own_scene.md", f"{SIMULATE} --print-defaults > my.toml", instead=MY_SCENE, why="a shorter scene"),
     Rule("docs/start/own_scene.md", f"{experiment('cost_of_accuracy')} --advise",
          more="--models super_helix --integrators tr_bdf2"),

@@ -90,7 +90,7 @@ class Runs(unittest.TestCase):
         fails = [sys.executable, "-c", "import sys; print('version 1'); sys.exit('no memory')"]
         row = run.foreign_row(solver, fails, "problems.so", "beam", "1e-6")
         self.assertEqual((row["status"], row["reason"], row["version"]), ("solver_error", "no memory", "1"))
-        self.assertEqual(run.line(row), "beam scipy.Radau ode tolerance=1e-6: solver_error: no memory")
+        self.assertEqual(run.line(row), "beam scipy.Radau ode rtol=1e-6: solver_error: no memory")
 
     def test_a_missing_package_ends_in_one_line_with_the_remedy(self):
         done = subprocess.run([sys.executable, str(PLACE / "run.py"), "beam", "--solver", "deSolve"], capture_output=True, text=True,
@@ -115,9 +115,9 @@ class Page(Made):
            "max_order": "", "reference_digits": 11, "status": "ok"}
 
     def rows(self):
-        return [{**self.ROW, "tolerance": tolerance, "digits": digits, "steps": 10, "evaluations": 20, "jacobians": 1, "wall_s": .5}
+        return [{**self.ROW, "rtol": tolerance, "digits": digits, "steps": 10, "evaluations": 20, "jacobians": 1, "wall_s": .5}
                 for tolerance, digits in (("1e-4", 3.14), ("1e-6", 5))] + [
-                {**self.ROW, "tolerance": "1e-8", "status": "timeout", "reason": "not finished"}]
+                {**self.ROW, "rtol": "1e-8", "status": "timeout", "reason": "not finished"}]
 
     def test_a_line_has_digits_and_the_cost_at_the_middle_tolerance(self):
         self.say("other_solvers.counts", other_solvers=self.rows())

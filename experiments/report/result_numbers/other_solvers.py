@@ -5,7 +5,7 @@ from .words import code, counted, duration, is_number, must, number, spaced, spa
 
 
 def _tolerances(rows):
-    return sorted(rows["tolerance"][known(rows["tolerance"])].unique(), reverse=True)
+    return sorted(rows["rtol"][known(rows["rtol"])].unique(), reverse=True)
 
 
 def _whole(count):
@@ -22,11 +22,11 @@ def _name(row):
 def _common(tables):
     """Returns the runs that have a relative tolerance."""
     rows = tables["other_solvers"]
-    return rows[known(rows["tolerance"])]
+    return rows[known(rows["rtol"])]
 
 
 def _digits(rows, tolerance):
-    found = records(rows[rows["tolerance"] == tolerance])
+    found = records(rows[rows["rtol"] == tolerance])
     return "" if not found else number(found[0]["digits"]) if found[0]["status"] == "ok" else spaced(found[0]["status"])
 
 
@@ -38,7 +38,7 @@ def problem_table(tables, problem):
     lines = []
     for _, members in groups(rows, ["package", "solver", "formulation", "max_order"]):
         row = records(members)[0]
-        cost = [one for one in records(members) if one["tolerance"] == middle and one["status"] == "ok"]
+        cost = [one for one in records(members) if one["rtol"] == middle and one["status"] == "ok"]
         steps = [_whole(cost[0]["steps"]), _whole(cost[0]["evaluations"]), _whole(cost[0]["jacobians"]),
                  duration(cost[0]["wall_s"])] if cost else [""] * 4
         lines.append([_name(row), row["formulation"], *(_digits(members, level) for level in levels), *steps])
@@ -53,7 +53,7 @@ def own_table(tables):
               f"step {duration(row['dt_s'], 3)}" if number(row["dt_s"]) else f"error {number(row['position_tol_rel'])}",
               number(row["digits"]) if row["status"] == "ok" else spaced(row["status"]), _whole(row["steps"]),
               _whole(row["evaluations"]), duration(row["wall_s"])]
-             for row in records(rows[~known(rows["tolerance"])])]
+             for row in records(rows[~known(rows["rtol"])])]
     return table(["problem", "method", "formulation", "drive", "digits", "steps", "evaluations", "time"], lines)
 
 
@@ -61,7 +61,7 @@ def failures(tables):
     """Returns every run without an end state, and its reason."""
     rows = tables["other_solvers"]
     lines = [[spaced(row["problem"]), _name(row), row["formulation"],
-              next(number(row[key]) for key in ("tolerance", "position_tol_rel", "dt_s") if number(row[key])), row["reason"]]
+              next(number(row[key]) for key in ("rtol", "position_tol_rel", "dt_s") if number(row[key])), row["reason"]]
              for row in records(rows[rows["status"] != "ok"])]
     return table(["problem", "solver", "formulation", "tolerance or step", "reason"], lines)
 
@@ -106,7 +106,7 @@ def beam_orders(tables):
     """Returns the steps of BDF methods on the Beam at the middle tolerance, by largest order."""
     rows = _common(tables)
     middle = _tolerances(rows)[1]
-    rows = rows[(rows["problem"] == "beam") & known(rows["max_order"]) & (rows["tolerance"] == middle)]
+    rows = rows[(rows["problem"] == "beam") & known(rows["max_order"]) & (rows["rtol"] == middle)]
     lines = []
     for (package, solver), members in groups(rows, ["package", "solver"]):
         cells = {number(row["max_order"]): _whole(row["steps"]) if row["status"] == "ok" else spaced(row["status"])
@@ -118,7 +118,7 @@ def beam_orders(tables):
 def beam_ratio(tables):
     """Returns how often the steps of order 2 orders 3 to 5 of CVODE took."""
     rows = _common(tables)
-    rows = rows[(rows["problem"] == "beam") & (rows["solver"] == "cvode_bdf") & (rows["tolerance"] == _tolerances(rows)[1])]
+    rows = rows[(rows["problem"] == "beam") & (rows["solver"] == "cvode_bdf") & (rows["rtol"] == _tolerances(rows)[1])]
     steps = {row["max_order"]: row["steps"] for row in records(rows)}
     high = [steps[order] / steps[2] for order in (3, 4, 5)]
     return must(min(high) > 1, f"{span(high)} times")
