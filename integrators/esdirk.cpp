@@ -31,9 +31,7 @@ class FixedEsdirk final : public FixedStep {
   Status step(double t, double h) override {
     // By so much what rests falls in a step, and makes no impact.
     const Status s = stages_.step(t, h, q_, v_, a_, lambda_, h * earth_gravity);
-    take(stages_.q(), stages_.v());
-    std::ranges::copy(stages_.a(), a_.begin());
-    std::ranges::copy(stages_.lambda(), lambda_.begin());
+    take_end(stages_);
     return s;
   }
 
@@ -108,10 +106,7 @@ class ControlledEsdirk final : public ErrorControlled {
     const Status s = stages_.step(from.t, h, from.q, from.v, from.a, from.lambda,
                                   unseen_part * seen_speed(), effort);
     if (s != Status::ok) return s;
-    std::ranges::copy(stages_.q(), to.q.begin());
-    std::ranges::copy(stages_.v(), to.v.begin());
-    std::ranges::copy(stages_.a(), to.a.begin());
-    std::ranges::copy(stages_.lambda(), to.lambda.begin());
+    to.take_end(stages_);
     stages_.difference(h, error_q, error_v);
     return s;
   }

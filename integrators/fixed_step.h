@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,13 @@ class FixedStep : public Integrator {
 
   /// q_ = q, v_ = v.
   void take(In q, In v);
+  /// Takes the state at the end of a step of `stages`: q(), v(), a() and lambda().
+  template <class Stages>
+  void take_end(const Stages& stages) {
+    take(stages.q(), stages.v());
+    std::ranges::copy(stages.a(), a_.begin());
+    std::ranges::copy(stages.lambda(), lambda_.begin());
+  }
   /// Sets q_ = q, v_ = v between steps, after another caller has used the system.
   Status replace(In q, In v);
 

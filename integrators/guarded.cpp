@@ -63,9 +63,7 @@ class Guarded final : public FixedStep, public Impulsive {
       dynamics_.reached = 0;
       s = stages_.backward_euler(t, h, q_, v_);
     }
-    take(stages_.q(), stages_.v());
-    std::ranges::copy(stages_.a(), a_.begin());
-    std::ranges::copy(stages_.lambda(), lambda_.begin());
+    take_end(stages_);
     return s;
   }
 

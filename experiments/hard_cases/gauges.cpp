@@ -7,6 +7,7 @@
 #include "experiments/numerics/drift_monitor.h"
 #include "math/closest.h"
 #include "models/effects/effect.h"
+#include "models/strand/arc_lengths.h"
 
 namespace tress::experiments::hard_cases {
 namespace {
@@ -189,12 +190,8 @@ OverlapGauge::OverlapGauge(const Situation& s, double touch, double separation)
       touch_(touch),
       separation_(separation),
       nearest_(touch),
-      arc_{0},
-      x_(3 * static_cast<std::size_t>(points_.count())) {
-  for (const Segment& segment : s.strand.segments) {
-    arc_.push_back(arc_.back() + segment.length);
-  }
-}
+      arc_(models::arc_lengths(s.strand)),
+      x_(3 * static_cast<std::size_t>(points_.count())) {}
 
 void OverlapGauge::see(double t, In q, In) {
   points_.positions(t, q, x_);

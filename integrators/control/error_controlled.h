@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,6 +55,14 @@ class ErrorControlled : public Integrator, public Rewindable {
     double t = 0;                 // time, s
     std::vector<double> q, v, a;  // coordinates, rates, accelerations
     std::vector<double> lambda;   // multipliers
+    /// Copies the end of a step of `stages`: q(), v(), a() and lambda().
+    template <class Stages>
+    void take_end(const Stages& stages) {
+      std::ranges::copy(stages.q(), q.begin());
+      std::ranges::copy(stages.v(), v.begin());
+      std::ranges::copy(stages.a(), a.begin());
+      std::ranges::copy(stages.lambda(), lambda.begin());
+    }
   };
 
   /// Takes a trial step from `from` over h to `to`, with the estimated errors of q and v.

@@ -50,9 +50,7 @@ class FixedOneStep final : public FixedStep {
     }
     const Status s = method_.step(t, h, q_, v_, a_, lambda_, Effort::whole);
     if (s != Status::ok) return s;
-    take(method_.q(), method_.v());
-    std::ranges::copy(method_.a(), a_.begin());
-    std::ranges::copy(method_.lambda(), lambda_.begin());
+    take_end(method_);
     return s;
   }
 
@@ -88,10 +86,7 @@ class ControlledOneStep final : public ErrorControlled {
         method_.step(from.t, h, from.q, from.v, restart ? restart_.a : from.a,
                      restart ? restart_.lambda : from.lambda, effort);
     if (s != Status::ok) return s;
-    std::ranges::copy(method_.q(), to.q.begin());
-    std::ranges::copy(method_.v(), to.v.begin());
-    std::ranges::copy(method_.a(), to.a.begin());
-    std::ranges::copy(method_.lambda(), to.lambda.begin());
+    to.take_end(method_);
     return method_.difference(error_q, error_v);
   }
   void forget_steps() override {

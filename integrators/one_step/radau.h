@@ -75,9 +75,10 @@ class RadauStages {
   In a() const { return x_.back().a; }
   /// Returns the multipliers at the end of the last step.
   In lambda() const { return x_.back().lambda; }
-  /// Writes the estimated errors of the last step: (I - g J)^-1 times the difference to
-  /// the formula of order 3 with weight T_ii at the start of the step [Hairer, Wanner
-  /// 1996, Solving ODEs II, eq. IV.8.19]. Zero where it cannot be evaluated.
+  /// Writes the estimated errors of the last step. The formula of order 3 has the weight
+  /// T_ii at the start of the step. The estimate is (I - g J)^-1 times the difference to
+  /// it [Hairer, Wanner 1996, Solving ODEs II, eq. IV.8.19]. Zero where it cannot be
+  /// evaluated.
   Status difference(Out dq, Out dv) noexcept;
 
  private:

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "contract/input_error.h"
+#include "models/motion/root_motion.h"
 #include "models/motion/signals.h"
 
 namespace tress::models {
@@ -112,15 +114,19 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
 
 Signal rests(const std::vector<double>& times, const std::vector<double>& values) {
   check(times, values, 1);
-  const auto value = [times, values](double t) -> SignalValue {
+  std::vector<Signal> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(
+        smooth_step(values[i] - values[i - 1], times[i - 1], times[i] - times[i - 1]));
+  }
+  const auto value = [times, values, steps = std::move(steps)](double t) -> SignalValue {
     if (t <= times.front()) return {values.front(), 0, 0};
     if (t >= times.back()) return {values.back(), 0, 0};
     const auto after = std::ranges::upper_bound(times, t);
-    const auto j = static_cast<std::size_t>(after - times.begin()), i = j - 1;
-    const double h = times[j] - times[i], x = (t - times[i]) / h;
-    const double height = values[j] - values[i], y = 1 - x;
-    return {values[i] + height * x * x * x * (10 - 15 * x + 6 * x * x),
-            height / h * 30 * x * x * y * y, height / (h * h) * 60 * x * y * (1 - 2 * x)};
+    const auto before = static_cast<std::size_t>(after - times.begin()) - 1;
+    SignalValue moved = steps[before](t);
+    moved.value += values[before];
+    return moved;
   };
   return {value, times};
 }

@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
+#include "models/strand/arc_lengths.h"
 #include "simulation/errors/halved_step.h"
 #include "simulation/run/remedy.h"
 #include "simulation/run/timing.h"
@@ -46,11 +47,7 @@ Places by_length(const Strand& strand, std::size_t points) {
     throw InputError("the model's points are not the ends of its elements", "space error",
                      "compare runs of two numbers of elements by their tips");
   }
-  Places places{0};
-  for (const Segment& segment : strand.segments) {
-    places.push_back(places.back() + segment.length);
-  }
-  return places;
+  return models::arc_lengths(strand);
 }
 
 /// Point between those of another run, by the cubic through the nearest four. Its error

@@ -20,9 +20,9 @@ struct SupportedStart {
 ///
 /// A strand whose points are on their supports keeps its shape; its velocity alone is
 /// projected onto the supports' motion. Any other strand begins at rest in an
-/// equilibrium. The search bends the strand a little, and leads its points to their
-/// places in steps of backward Euler at t = 0, each from rest (pseudo-transient
-/// continuation [Kelley & Keyes 1998, SIAM J. Numer. Anal. 35, 508]). Springs from the
+/// equilibrium. The search bends the strand a little. Steps of backward Euler at t = 0,
+/// each from rest, lead its points to their places: pseudo-transient continuation [Kelley
+/// & Keyes 1998, SIAM J. Numer. Anal. 35, 508]. Springs from the
 /// shape before each step spread the change over the strand; they fade at the end. Cost:
 /// 30 to 100 steps, each with about four matrices.
 ///

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "integrators/error_indicator.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -21,12 +22,6 @@ constexpr int most_shortened = 100;
 /// done that already.
 bool has_fixed_step(const IntegratorEntry& method, const Options& options) {
   return !method.adaptive && options.tolerance == 0;
-}
-
-/// A strand without constraints, next to others on supports, has no formulation of them.
-Options options_for(System& system, Options options) {
-  if (system.layout().constraints == 0) options.formulation = Formulation::parametric;
-  return options;
 }
 
 }  // namespace
@@ -63,7 +58,8 @@ SteppedSystem::State SteppedSystem::initial_state() const {
 }
 
 void SteppedSystem::take_method(std::string_view method, const Options& options) {
-  integrator = make_integrator(method, *system, options_for(*system, options));
+  integrator =
+      make_integrator(method, *system, options_beside_supports(*system, options));
 }
 
 void SteppedSystem::start(double begin, State state) {
@@ -115,7 +111,7 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
   const double begin = t;
   const std::vector<double> old_q = q, old_v = v, memory = system->memory();
   const auto gathered = guard ? guard->memory() : Guards::Memory{};
-  Options shorter = options_for(*system, options);
+  Options shorter = options_beside_supports(*system, options);
   for (int k = 0; k < halvings && work_left(options) > 0; ++k) {
     ++before_.rejected;
     if (options.max_work > 0) shorter.max_work = work_left(options);

@@ -151,14 +151,11 @@ Signal head_angle(const Parameters& p) {
 }
 
 void add_keyframes(RootMotion& motion, const Parameters& p, Vec axis) {
-  const auto numbers = p.numbers("keyframes");
-  std::vector<double> columns[5];
-  for (std::size_t i = 0; i < numbers.size(); ++i) columns[i % 5].push_back(numbers[i]);
-  const Vec directions[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    motion.translations.push_back({directions[k], keyframes(columns[0], columns[k + 1])});
-  }
-  motion.rotations.push_back({axis, keyframes(columns[0], columns[4])});
+  const auto [t, x, y, z, angle] = columns<5>(p.numbers("keyframes"));
+  motion.translations.push_back({{1, 0, 0}, keyframes(t, x)});
+  motion.translations.push_back({{0, 1, 0}, keyframes(t, y)});
+  motion.translations.push_back({{0, 0, 1}, keyframes(t, z)});
+  motion.rotations.push_back({axis, keyframes(t, angle)});
 }
 
 void add_parts(RootMotion& motion, const Parameters& p, Vec along, Vec axis) {

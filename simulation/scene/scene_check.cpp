@@ -86,11 +86,9 @@ void check_friction(const Scene& scene, const ScenePlaces& places) {
 
 void check_integrator(const Scene& scene, System& system, const ScenePlaces& places) {
   const IntegratorEntry& entry = find_integrator(scene.integrator);
-  Options options = scene.options;
-  // Strands without supports, next to others that have them.
-  if (SceneSupports(scene).any() && system.layout().constraints == 0) {
-    options.formulation = Formulation::parametric;
-  }
+  const Options options = SceneSupports(scene).any()
+                              ? options_beside_supports(system, scene.options)
+                              : scene.options;
   const std::string reason = refusal(entry, system, options.formulation);
   if (reason.empty()) {
     at_place(places.integrator, [&] { return entry.make(system, options); });

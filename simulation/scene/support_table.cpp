@@ -11,9 +11,11 @@
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "models/motion/signals.h"
+#include "models/strand/arc_lengths.h"
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_reach.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
@@ -24,12 +26,6 @@ using models::SupportedSystem;
 namespace {
 
 constexpr double farthest_place = 1e6;
-/// Distances are compared at this number of instants of the run.
-constexpr int instants = 1000;
-/// Share of the length below which slack is rounding.
-constexpr double rounding = 1e-13;
-/// Largest distance over the length for models whose strands stretch.
-constexpr double most_stretch = 1.1;
 
 constexpr Parameter support_parameters[] = {
     {.name = "strand",
@@ -60,18 +56,10 @@ constexpr Parameter support_parameters[] = {
      .rows = true},
 };
 
-/// Arc lengths of root and ends of elements.
-std::vector<double> arcs(const Strand& strand) {
-  std::vector<double> all{0};
-  for (const Segment& segment : strand.segments)
-    all.push_back(all.back() + segment.length);
-  return all;
-}
-
 /// Index of the material point that `at` names.
 int point_of(const Table& table, const Strand& strand) {
   const std::string_view at = table.values().word("at");
-  const std::vector<double> s = arcs(strand);
+  const std::vector<double> s = models::arc_lengths(strand);
   const auto last = static_cast<int>(s.size()) - 1;
   if (at == "tip") return last;
   if (at == "root") return 0;
@@ -93,15 +81,8 @@ int point_of(const Table& table, const Strand& strand) {
           : "give \"tip\", \"root\" or a number of 0 to 1");
 }
 
-/// Times, and places of x, y and z.
-std::array<std::vector<double>, 4> columns(std::span<const double> rows) {
-  std::array<std::vector<double>, 4> all;
-  for (std::size_t i = 0; i < rows.size(); ++i) all[i % 4].push_back(rows[i]);
-  return all;
-}
-
 RootMotion path_of(const Table& table, const Vec& start) {
-  const auto [t, x, y, z] = columns(table.values().numbers("keyframes"));
+  const auto [t, x, y, z] = columns<4>(table.values().numbers("keyframes"));
   RootMotion path;
   path.position = t.empty() ? start : Vec{x[0], y[0], z[0]};
   for (std::size_t i = 1; i < t.size(); ++i) {
@@ -121,67 +102,6 @@ RootMotion path_of(const Table& table, const Vec& start) {
   move({0, 1, 0}, y);
   move({0, 0, 1}, z);
   return path;
-}
-
-/// A support, or a clamped root, as one end of a part of the strand.
-struct End {
-  std::string name;
-  double arc;
-  const RootMotion* path;
-};
-
-/// Refuses ends of a part of the strand that the part does not reach.
-void check_reach(const End& a, const End& b, bool inextensible, double duration,
-                 const Table& table) {
-  const double arc = std::abs(b.arc - a.arc);
-  double farthest = 0, at = 0;
-  for (int i = 0; i <= instants; ++i) {
-    const double t = duration * i / instants;
-    const double distance = norm(b.path->at(t).x - a.path->at(t).x);
-    if (!(distance <= farthest)) {
-      farthest = distance;
-      at = t;
-    }
-  }
-  const std::string where =
-      table.given("keyframes") ? table.place("keyframes") : table.place();
-  if (farthest > (inextensible ? 1 + rounding : most_stretch) * arc) {
-    throw InputError(
-        fmt::format(
-            "a support {:g} m from the {} at t = {:g} s, where the strand between "
-            "them is {:g} m long",
-            farthest, a.name, at, arc),
-        where, "move the support closer, or make the strand longer");
-  }
-  if (inextensible && farthest >= (1 - rounding) * arc) {
-    throw InputError(
-        fmt::format("an inextensible strand as long as its support is far from the {} at "
-                    "t = {:g} s, {:g} m, cannot move",
-                    a.name, at, farthest),
-        where, "move the support closer, give slack, or use [model] id = \"der\"");
-  }
-}
-
-/// Models in a plane are held in its two directions.
-void stay_in_plane(const Parameters& options, double duration, const Strand& strand,
-                   const Table& table, Support& support) {
-  if (!options.knows("modes") || options.word("modes") != "bend_planar") return;
-  const Frame& plane = strand.root.frame;
-  support.axes = {plane.e0, plane.e2};
-  for (int i = 0; i <= instants; ++i) {
-    const double t = duration * i / instants;
-    const auto root = strand.root.at(t);
-    const double off = dot(plane.e1, support.path.at(t).x - root.x);
-    if (std::abs(off) <= 1e-9 * strand.length() &&
-        norm(root.frame.e1 - plane.e1) <= 1e-9) {
-      continue;
-    }
-    throw InputError(
-        fmt::format("a support {:.3g} m outside the plane of the strand at t = {:g} s",
-                    std::abs(off), t),
-        table.given("keyframes") ? table.place("keyframes") : table.place(),
-        "keep it in the plane, or give [model] modes = \"bend_twist\"");
-  }
 }
 
 void refuse_kind(const Table& table) {
@@ -262,9 +182,9 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
   points->positions(0, q, x);
   const bool inextensible =
       system->sparse_form() == nullptr || system->layout().constraints > 0;
-  const std::vector<double> s = arcs(strand);
+  const std::vector<double> s = models::arc_lengths(strand);
   std::vector<Support> supports;
-  std::vector<End> ends;
+  std::vector<SupportedEnd> ends;
   supports.reserve(tables.size());
   if (!strand.free_root) ends.push_back({"root", 0, &strand.root});
   for (const Table* table : tables) {
@@ -280,9 +200,9 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
     support.path = path_of(*table, load3(&x[3 * point]));
     stay_in_plane(model_options_, duration_, strand, *table, support);
     supports.push_back(std::move(support));
-    const End end{fmt::format("support at {}", table->values().word("at")), s[point],
-                  &supports.back().path};
-    for (const End& other : ends) {
+    const SupportedEnd end{fmt::format("support at {}", table->values().word("at")),
+                           s[point], &supports.back().path};
+    for (const SupportedEnd& other : ends) {
       check_reach(other, end, inextensible, duration_, *table);
     }
     ends.push_back(end);
@@ -296,8 +216,9 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
 
 Formulation formulation_of_supports(const Scene& scene) {
   const IntegratorEntry& entry = find_integrator(scene.integrator);
-  const bool projected = scene.options.tolerance > 0 || entry.id == "esdirk43";
   using enum Formulation;
+  const bool projected =
+      scene.options.tolerance > 0 || entry.order(index3).value_or(0) < entry.order();
   const std::array preferred =
       entry.adaptive ? std::array{index2_ggl, projection, index3, baumgarte}
       : projected    ? std::array{projection, index3, index2_ggl, baumgarte}
@@ -306,6 +227,11 @@ Formulation formulation_of_supports(const Scene& scene) {
     if (entry.order(one)) return one;
   }
   return projection;
+}
+
+Options options_beside_supports(const System& system, Options options) {
+  if (system.layout().constraints == 0) options.formulation = Formulation::parametric;
+  return options;
 }
 
 void SceneSupports::check(const Scene& scene) const {

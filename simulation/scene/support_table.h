@@ -52,8 +52,13 @@ class SceneSupports {
   double duration_;
 };
 
-/// Returns the formulation that suits the scene's method: index 3 for methods of fixed
-/// step and few stages, projection for esdirk43 and error control, index 2 for IDA.
+/// Returns the formulation that suits the scene's method. It is index 3 for a method of
+/// fixed step that keeps its order there, and index 2 for IDA. Others, and runs with a
+/// tolerance, have projection.
 Formulation formulation_of_supports(const Scene& scene);
+
+/// Returns the options of one strand of a scene: a strand without constraints, next to
+/// others on supports, has no formulation of them.
+Options options_beside_supports(const System& system, Options options);
 
 }  // namespace tress::simulation

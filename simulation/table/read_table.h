@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "simulation/files/toml_text.h"
 #include "simulation/table/table.h"
@@ -21,6 +24,14 @@ Table read_table(const toml::table& table, std::span<const Parameter> declared,
 /// Sets this key in `read` if the table has the key.
 void read_key(const toml::table& table, std::string_view key, const std::string& file,
               Table& read);
+
+/// Returns the columns of rows of `count` numbers.
+template <std::size_t count>
+std::array<std::vector<double>, count> columns(std::span<const double> rows) {
+  std::array<std::vector<double>, count> all;
+  for (std::size_t i = 0; i < rows.size(); ++i) all[i % count].push_back(rows[i]);
+  return all;
+}
 
 /// Throws InputError unless the node is a table.
 const toml::table& as_table(const toml::node& node, const std::string& name,

@@ -52,7 +52,7 @@ class ExactKernel {
   using Factors = typename Elimination::Factors;  // of an element, between sweeps
 
   /// `kernel` must outlive it.
-  ExactKernel(const Kernel& kernel) : kernel_(kernel) {}
+  explicit ExactKernel(const Kernel& kernel) : kernel_(kernel) {}
 
   /// Motion at the state, for loads in `scratch`; returns what newton() and again() need.
   Motion move(const Material& m, const Motion& root, const Vec* q, const Vec* v,
