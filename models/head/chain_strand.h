@@ -30,7 +30,11 @@ struct ChainKind {
   using Hanging = ArticulatedInertia<T>;
 
  public:
-  using Real = T;  // scalar: a number, or a pack of SIMD lanes
+  using Real = T;                          // scalar: a number, or a pack of SIMD lanes
+  using Unknowns = Vec;                    // of an element
+  using Rule = NoRule;                     // points need no numbers of their own
+  using Loads = LoadSums<T>;               // sums of loads of effects
+  using Inertia = UneliminatedInertia<T>;  // what carry() fills
 
   /// Geometry and loads of a link that the sweeps share.
   struct Kept {
@@ -64,7 +68,7 @@ struct ChainKind {
   /// Replaces the motion of the tip before by that of the tip, and fills e. Reads
   /// `acceleration` only if accelerated.
   template <bool accelerated>
-  static void move(const Material& m, const Vec& q, const Vec& rate,
+  static void move(const Rule& /*rule*/, const Material& m, const Vec& q, const Vec& rate,
                    const Vec& acceleration, Motion& at, Kept& e) {
     const auto joint = turn_of(q, rate);
     e.rotation = joint.rotation;
@@ -174,10 +178,10 @@ struct ChainKind {
 
   /// The unknowns of a turn y: x_k = of[k].y and y = sum x_k w_k, w_k the rows of W.
   /// Without twist the sum has the last two terms and y is normal to `normal`.
-  struct Unknowns {
-    Unknowns() = default;
+  struct OfTurn {
+    OfTurn() = default;
     /// Computes D from W.
-    Unknowns(const Matrix& w, bool twist) {
+    OfTurn(const Matrix& w, bool twist) {
       const Vec across = cross(w.row[1], w.row[2]), first = twist ? w.row[0] : across;
       const T by = T(1) / dot(first, across);
       of[0] = by * across;
@@ -191,7 +195,7 @@ struct ChainKind {
 
   /// Factors of eliminate().
   struct Joint {
-    Unknowns of;              // turn y by the unknowns
+    OfTurn of;                // turn y by the unknowns
     Symmetric3<T> stiffness;  // D^T K D
     Vec about;                // m_n
   };
@@ -221,8 +225,8 @@ struct ChainKind {
   static Hanging eliminate(const Vec& tangent, bool twist,
                            const UneliminatedInertia<T>& from, Element& e, Joint& joint) {
     const Hanging& all = from.sum;
-    joint.of = Unknowns(e.kept.turn, twist);
-    const Unknowns& x = joint.of;
+    joint.of = OfTurn(e.kept.turn, twist);
+    const OfTurn& x = joint.of;
     const T first = twist ? tangent.x : T(0);
     const Matrix stiffer{{first * x.of[0], tangent.y * x.of[1], tangent.z * x.of[2]}};
     const Symmetric3<T> k =
@@ -294,14 +298,16 @@ struct ChainKind {
   class Shape {
    public:
     /// Computes the turn of the joint.
-    Shape(const Vec& q, const Vec& rate, const T& length)
+    Shape(const Rule& /*rule*/, const Vec& q, const Vec& rate, const T& length)
         : joint_(turn_of(q, rate)),
           along_(joint_.rotation.column(0)),
           moving_(cross(joint_.velocity, along_)),
           length_(length) {}
 
-    /// Returns position and velocity of the point at arc length `arc`.
-    SeenPoint<T> at(const T& arc) const { return {arc * along_, arc * moving_}; }
+    /// Returns position and velocity of a point.
+    SeenPoint<T> at(const PointPlace<T>& point) const {
+      return {point.arc * along_, point.arc * moving_};
+    }
     /// Returns position, velocity and turn of the tip.
     [[gnu::always_inline]] SeenTip<T> tip() const {
       return {length_ * along_, length_ * moving_, joint_.rotation, joint_.velocity};
@@ -328,22 +334,22 @@ struct ChainKind {
     Points(const Kept& e, const Vec& /*q*/, const Vec& /*rate*/, const T& /*length*/)
         : e_(e) {}
 
-    /// Returns the position of the point at arc length `arc`.
-    Vec position(const T& arc) const { return {arc, T(0), T(0)}; }
+    /// Returns the position of a point.
+    Vec position(const PointPlace<T>& at) const { return {at.arc, T(0), T(0)}; }
     /// Returns the velocity of the point at `position`.
-    Vec velocity(const T& /*arc*/, const Vec& position) const {
+    Vec velocity(const PointPlace<T>& /*at*/, const Vec& position) const {
       return e_.v + cross(e_.omega, position);
     }
     /// Returns the tangent at any point.
-    Vec tangent(const T& /*arc*/) const { return {T(1), T(0), T(0)}; }
+    Vec tangent(const PointPlace<T>& /*at*/) const { return {T(1), T(0), T(0)}; }
     /// Adds a force on a point. The unknowns move the point as a turn of the link does.
-    void add_force(const T& /*arc*/, const Vec& position, const Vec& force,
+    void add_force(const PointPlace<T>& /*at*/, const Vec& position, const Vec& force,
                    LoadSums<T>& sums) const {
       sums.add_force(position, force);
     }
     /// Adds the derivatives B of the load on a point (PointLoad).
-    void add_block(const T& /*arc*/, const Vec& position, const Symmetric3<T>& block,
-                   LoadSums<T>& sums) const {
+    void add_block(const PointPlace<T>& /*at*/, const Vec& position,
+                   const Symmetric3<T>& block, LoadSums<T>& sums) const {
       sums.add_block(position, block);
     }
 

@@ -218,5 +218,9 @@ class Head {
 std::unique_ptr<Head> stiff_helix_head(const LaneOptions& options, const HeadPack& pack);
 /// Makes chains of rigid links; see stiff_helix_head().
 std::unique_ptr<Head> stiff_chain_head(const LaneOptions& options, const HeadPack& pack);
+/// Makes super-clothoids (models/head/clothoid_strand.h), 6 coordinates per element: the
+/// mean Darboux vector and half its difference between the ends; see stiff_helix_head().
+std::unique_ptr<Head> stiff_clothoid_head(const LaneOptions& options,
+                                          const HeadPack& pack);
 
 }  // namespace tress::models

@@ -26,7 +26,9 @@ struct HelixKind {
   using Hanging = ArticulatedInertia<T>;
 
  public:
-  using Real = T;  // scalar: a number, or a pack of SIMD lanes
+  using Real = T;        // scalar: a number, or a pack of SIMD lanes
+  using Unknowns = Vec;  // of an element
+  using Rule = NoRule;   // points need no numbers of their own
 
   /// Geometry and motion of an element that the sweeps share.
   struct Kept {
@@ -54,7 +56,7 @@ struct HelixKind {
   /// Replaces the motion of the start by that of the tip, and fills e. Reads
   /// `acceleration` only if accelerated.
   template <bool accelerated>
-  static void move(const Material& m, const Vec& q, const Vec& rate,
+  static void move(const Rule& /*rule*/, const Material& m, const Vec& q, const Vec& rate,
                    const Vec& acceleration, Motion& at, Kept& e) {
     e.v = at.v;
     e.omega = at.omega;
@@ -92,7 +94,9 @@ struct HelixKind {
     return end;
   }
 
-  using Sums = HelixSums<T>;  // sums over the points of an element
+  using Loads = LoadSums<T>;               // sums of loads of effects
+  using Inertia = UneliminatedInertia<T>;  // what carry() fills
+  using Sums = HelixSums<T>;               // sums over the points of an element
   /// Computes the sums over the points. Reads `acceleration` only if accelerated.
   template <bool accelerated, class Kernel>
   static void add_up(const Kernel& kernel, const Material& m, const Vec& q,
@@ -153,32 +157,15 @@ struct HelixKind {
                     UneliminatedInertia<T>& to) {
     const T& inertia = weights.of_length;
     const HelixMoments<T> points(HelixElement<T>(q, rate), q, sums);
-    // What hangs on the tip, in the components of the start.
-    const Symmetric3<T> ll = congruent(e.rotation, hanging.ll),
-                        aa = congruent(e.rotation, hanging.aa);
-    const Matrix la = e.rotation * hanging.la * e.rotation.transposed(),
-                 al = la.transposed();
-    // Wrench of the tip's response to a turn of the start, or to a change of the
-    // unknowns: the tip then moves by -[P]x and by dP/dkappa, W.
     const Vec& tip = e.position;
-    const Matrix f_turn = la - times_cross(full(ll), tip),
-                 f_own = ll * e.slope + la * e.turn;
-    const Matrix m_turn = full(aa) - times_cross(al, tip),
-                 m_own = al * e.slope + aa * e.turn;
-    const Vec p = inertia * points.first;
-    const T mass = inertia * sums.one;
+    const HangingOnTip<T> on_tip(e.rotation, tip, hanging);
+    const Matrix f_own = on_tip.force(e.slope, e.turn),
+                 m_own = on_tip.moment(e.slope, e.turn);
     Hanging& all = to.sum;
-    all.ll = ll;
-    all.ll.xx += mass;
-    all.ll.yy += mass;
-    all.ll.zz += mass;
-    all.la = f_turn - cross_matrix(p);
-    const Symmetric3<T> pp = inertia * points.second;
-    all.aa = upper(m_turn + cross_times(tip, f_turn)) - pp;
-    const T trace = pp.xx + pp.yy + pp.zz;
-    all.aa.xx += trace;
-    all.aa.yy += trace;
-    all.aa.zz += trace;
+    all.ll = on_tip.ll;
+    all.la = on_tip.f_turn;
+    all.aa = upper(on_tip.m_turn + cross_times(tip, on_tip.f_turn));
+    add_mass(inertia * sums.one, inertia * points.first, inertia * points.second, all);
     // Columns of H_lk and H_ak by rows.
     to.of_force = f_own.transposed() + inertia * points.momentum;
     to.of_moment = (m_own + cross_times(tip, f_own)).transposed() + inertia * points.spin;
@@ -217,7 +204,7 @@ struct HelixKind {
     from.own.zz += tangent.z;
     e.of_force = from.of_force;
     e.of_moment = from.of_moment;
-    e.pivot = inverse(from.own, twist);
+    e.pivot = inverse_of_modes(from.own, twist);
     const Matrix z_l = e.pivot * e.of_force, z_a = e.pivot * e.of_moment;
     const Matrix by_force = e.of_force.transposed(), by_moment = e.of_moment.transposed();
     return {from.sum.ll - upper(by_force, z_l.transposed()),
@@ -253,13 +240,13 @@ struct HelixKind {
   class Shape {
    public:
     /// Prepares the functions of the element.
-    Shape(const Vec& q, const Vec& rate, const T& length)
+    Shape(const Rule& /*rule*/, const Vec& q, const Vec& rate, const T& length)
         : element_(q, rate), functions_(q, length), rate_(rate), length_(length) {}
 
-    /// Returns position and velocity of the point at arc length `arc`.
-    SeenPoint<T> at(const T& arc) const {
-      const HelixFunctions<T> f = functions_.at(arc);
-      return {element_.position(arc, f), element_.slope(f) * rate_};
+    /// Returns position and velocity of a point.
+    SeenPoint<T> at(const PointPlace<T>& point) const {
+      const HelixFunctions<T> f = functions_.at(point.arc);
+      return {element_.position(point.arc, f), element_.slope(f) * rate_};
     }
     /// Returns position, velocity and turn of the tip.
     [[gnu::always_inline]] SeenTip<T> tip() const {
@@ -291,31 +278,31 @@ struct HelixKind {
     Points(const Kept& e, const Vec& q, const Vec& rate, const T& length)
         : e_(e), element_(q, rate), functions_(q, length), rate_(rate) {}
 
-    /// Returns the position of the point at arc length `arc`.
-    Vec position(const T& arc) const {
-      return element_.position(arc, functions_.at(arc));
+    /// Returns the position of a point.
+    Vec position(const PointPlace<T>& at) const {
+      return element_.position(at.arc, functions_.at(at.arc));
     }
-    /// Returns the velocity of the point at arc length `arc`, which is at `position`.
-    Vec velocity(const T& arc, const Vec& position) const {
+    /// Returns the velocity of a point, which is at `position`.
+    Vec velocity(const PointPlace<T>& at, const Vec& position) const {
       return e_.v + cross(e_.omega, position) +
-             element_.slope(functions_.at(arc)) * rate_;
+             element_.slope(functions_.at(at.arc)) * rate_;
     }
-    /// Returns the tangent at arc length `arc`.
-    Vec tangent(const T& arc) const {
-      const HelixFunctions<T> f = functions_.at(arc);
+    /// Returns the tangent at a point.
+    Vec tangent(const PointPlace<T>& at) const {
+      const HelixFunctions<T> f = functions_.at(at.arc);
       return Vec{T(1), T(0), T(0)} + f.S * element_.u() + f.A * element_.z();
     }
     /// Adds a force on a point.
-    void add_force(const T& arc, const Vec& position, const Vec& force,
+    void add_force(const PointPlace<T>& at, const Vec& position, const Vec& force,
                    LoadSums<T>& sums) const {
       sums.add_force(position, force);
-      sums.add_force_of_unknowns(element_.slope(functions_.at(arc)), force);
+      sums.add_force_of_unknowns(element_.slope(functions_.at(at.arc)), force);
     }
     /// Adds the derivatives B of the load on a point (PointLoad).
-    void add_block(const T& arc, const Vec& position, const Symmetric3<T>& block,
-                   LoadSums<T>& sums) const {
+    void add_block(const PointPlace<T>& at, const Vec& position,
+                   const Symmetric3<T>& block, LoadSums<T>& sums) const {
       sums.add_block(position, block);
-      sums.add_block_of_unknowns(position, element_.slope(functions_.at(arc)), block);
+      sums.add_block_of_unknowns(position, element_.slope(functions_.at(at.arc)), block);
     }
 
    private:
@@ -340,13 +327,6 @@ struct HelixKind {
       sums.add(weight, arc, f);
       sums.add_force(weight * load.at(arc, f), arc, f);
     }
-  }
-
-  /// Without twist, of the lower right block.
-  static Symmetric3<T> inverse(const Symmetric3<T>& h, bool twist) {
-    if (twist) return tress::inverse(h);
-    const T o(0), by = T(1) / (h.yy * h.zz - h.yz * h.yz);
-    return {o, h.zz * by, h.yy * by, o, o, -h.yz * by};
   }
 };
 

@@ -67,6 +67,8 @@ using AnyLaneKernel =
 AnyLaneKernel helix_lanes(const LaneOptions& options, const HeadPack& pack);
 /// Makes a kernel of chains of rigid links.
 AnyLaneKernel chain_lanes(const LaneOptions& options, const HeadPack& pack);
+/// Makes a kernel of super-clothoids.
+AnyLaneKernel clothoid_lanes(const LaneOptions& options, const HeadPack& pack);
 /// Makes a kernel of discrete elastic rods, in double or single precision.
 AnyLaneKernel der_lanes(const LaneOptions& options, const HeadPack& pack,
                         Jacobian jacobian);

@@ -55,15 +55,14 @@ Matrix3<T> where_less(const T& x, const T& y, const Matrix3<T>& yes,
            where_less(x, y, yes.row[2], no.row[2])}};
 }
 
-/// Sums of loads over an element, sum J^T f and sum J^T B J, in the components of the
-/// element's axes. J = [1, -[P]x, d] is the motion of a point, d_j = dP/dq_j.
+/// Sums of loads over an element that moves as a rigid body, sum J^T f and sum J^T B J,
+/// in the components of the element's axes. J = [1, -[P]x] is the motion of a point.
 template <class T>
-struct LoadSums {
-  T some{};                        // 1 in lanes with a load, 0 in others
-  Vec3<T> force, moment, unknown;  // sums of J^T f
-  Symmetric3<T> ll, aa, inner;     // diagonal blocks of the sum of J^T B J
-  Matrix3<T> la;                   // block of translations and rotations
-  Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
+struct RigidLoadSums {
+  T some{};               // 1 in lanes with a load, 0 in others
+  Vec3<T> force, moment;  // sums of J^T f
+  Symmetric3<T> ll, aa;   // diagonal blocks of the sum of J^T B J
+  Matrix3<T> la;          // block of translations and rotations
 
   /// Adds the force f on a point at p, without the terms of the unknowns.
   void add_force(const Vec3<T>& p, const Vec3<T>& f) {
@@ -77,6 +76,22 @@ struct LoadSums {
     la = la - turned;
     aa = aa - upper(cross_times(p, turned));
   }
+  /// Adds `more` to `to` in lanes with a load; elsewhere not even the sign of a zero
+  /// changes.
+  template <class M>
+  void add_to(M& to, const M& more) const {
+    to = where_less(T(0), some, to + more, to);
+  }
+};
+
+/// Sums of loads over an element of three unknowns. J = [1, -[P]x, d] is the motion of a
+/// point, d_j = dP/dq_j.
+template <class T>
+struct LoadSums : RigidLoadSums<T> {
+  Vec3<T> unknown;                 // sum of d^T f
+  Symmetric3<T> inner;             // sum of d^T B d
+  Matrix3<T> of_force, of_moment;  // rows j: sum B d_j, sum P x B d_j
+
   /// Adds the terms of the unknowns, which move the point by d, to add_force().
   void add_force_of_unknowns(const Matrix3<T>& d, const Vec3<T>& f) {
     unknown = unknown + d.back(f);
@@ -88,12 +103,6 @@ struct LoadSums {
     of_force = of_force + own.transposed();
     of_moment = of_moment + cross_times(p, own).transposed();
     inner = inner + upper(d.transposed(), own.transposed());
-  }
-  /// Adds `more` to `to` in lanes with a load; elsewhere not even the sign of a zero
-  /// changes.
-  template <class M>
-  void add_to(M& to, const M& more) const {
-    to = where_less(T(0), some, to + more, to);
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "math/instructions.h"
 #include "models/head/chain_strand.h"
+#include "models/head/clothoid_strand.h"
 #include "models/head/helix_strand.h"
 #include "models/head/packs.h"
 #include "models/head/semidefinite.h"
@@ -22,7 +23,7 @@ void ReducedLoads<Kind>::look_around(const Block& block, const Element* elements
 }
 
 template <class Kind>
-auto ReducedLoads<Kind>::find_exact(const Block& block, const Vec3T* v,
+auto ReducedLoads<Kind>::find_exact(const Block& block, const Unknowns* v,
                                     const Element* elements)
     -> const ExactPoint<T>* const* {
   look_around(block, elements);
@@ -33,8 +34,8 @@ auto ReducedLoads<Kind>::find_exact(const Block& block, const Vec3T* v,
 }
 
 template <class Kind>
-auto ReducedLoads<Kind>::find(const Block& block, const Vec3T* v, const Element* elements)
-    -> const LoadSums<T>* const* {
+auto ReducedLoads<Kind>::find(const Block& block, const Unknowns* v,
+                              const Element* elements) -> const Loads* const* {
   look_around(block, elements);
   const bool others = std::ranges::any_of(
       block_.others, [](const auto& of_strand) { return !of_strand.empty(); });
@@ -65,7 +66,7 @@ TRESS_FLATTEN void ReducedLoads<Kind>::place(const Element* elements) {
 
 /// Whether some of its points have a load, which is in sums_ then.
 template <class Kind>
-TRESS_FLATTEN bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
+TRESS_FLATTEN bool ReducedLoads<Kind>::element(std::size_t i, const Unknowns& rate,
                                                const Element& e, bool others) {
   const OnElement points(e.kept, e.q, rate, block_.material->length);
   bool ready = false;
@@ -73,7 +74,7 @@ TRESS_FLATTEN bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
     if (ready) return;
     ready = true;
     for (std::size_t k = 0; k < points_; ++k) {
-      at_[k].p = points.position(arc_of(k));
+      at_[k].p = points.position(place_of(k));
       at_[k].load = others ? others_[points_ * i + k] : PointLoad<T>{};
       at_[k].some = others ? some_[points_ * i + k] : T(0);
     }
@@ -93,7 +94,7 @@ TRESS_FLATTEN bool ReducedLoads<Kind>::element(std::size_t i, const Vec3T& rate,
 
 /// Null if none of its points has a load.
 template <class Kind>
-TRESS_FLATTEN auto ReducedLoads<Kind>::exact(std::size_t i, const Vec3T& rate,
+TRESS_FLATTEN auto ReducedLoads<Kind>::exact(std::size_t i, const Unknowns& rate,
                                              const Element& e) -> const ExactPoint<T>* {
   const OnElement points(e.kept, e.q, rate, block_.material->length);
   ExactPoint<T>* const at = &exact_at_[points_ * i];
@@ -101,7 +102,7 @@ TRESS_FLATTEN auto ReducedLoads<Kind>::exact(std::size_t i, const Vec3T& rate,
   for (std::size_t b = 0; b < block_.bodies.size(); ++b) {
     if (near_[b * n_ + i] == 0) continue;
     for (std::size_t k = 0; !ready && k < points_; ++k) {
-      at[k] = {points.position(arc_of(k)), {}, T(0)};
+      at[k] = {points.position(place_of(k)), {}, T(0)};
     }
     ready = true;
     const NearBody& body = block_.bodies[b];
@@ -116,7 +117,7 @@ TRESS_FLATTEN auto ReducedLoads<Kind>::exact(std::size_t i, const Vec3T& rate,
 
 template <class Kind>
 bool ReducedLoads<Kind>::add_up(std::size_t i, const OnElement& points) {
-  LoadSums<T>& sums = sums_[i];
+  Loads& sums = sums_[i];
   bool loaded = false;
   for (std::size_t k = 0; k < points_; ++k) {
     const Point& at = at_[k];
@@ -135,8 +136,8 @@ bool ReducedLoads<Kind>::add_up(std::size_t i, const OnElement& points) {
     shift(drag);
     load.block = semidefinite(load.block, at.some);
     shift(-drag);
-    points.add_force(arc_of(k), at.p, load.force, sums);
-    points.add_block(arc_of(k), at.p, load.block, sums);
+    points.add_force(place_of(k), at.p, load.force, sums);
+    points.add_block(place_of(k), at.p, load.block, sums);
   }
   return loaded;
 }
@@ -181,7 +182,7 @@ void ReducedLoads<Kind>::touch(const NearBody& body, const Shape& shape, std::si
   const T length(units_.length), speed(units_.speed());
   for (std::size_t k = 0; k < points_; ++k) {
     LoadedPoint<T, Load>& point = at[k];
-    const auto velocity = [&] { return speed * points.velocity(arc_of(k), point.p); };
+    const auto velocity = [&] { return speed * points.velocity(place_of(k), point.p); };
     const Vec3T x = from + of_body.turn() * (length * point.p);
     const T w = weight_of(k), to_force = w * T(units_.length / units_.force());
     if constexpr (std::same_as<Load, ExactLoad<T>>) {
@@ -195,7 +196,7 @@ void ReducedLoads<Kind>::touch(const NearBody& body, const Shape& shape, std::si
 
 /// Effects other than bodies, strand by strand.
 template <class Kind>
-TRESS_FLATTEN void ReducedLoads<Kind>::take_others(const Vec3T* v,
+TRESS_FLATTEN void ReducedLoads<Kind>::take_others(const Unknowns* v,
                                                    const Element* elements) {
   const std::size_t all = n_ * points_;
   others_.assign(all, {});
@@ -209,12 +210,12 @@ TRESS_FLATTEN void ReducedLoads<Kind>::take_others(const Vec3T* v,
     const Start& at = starts_[i];
     const OnElement points(e.kept, e.q, v[i], block_.material->length);
     for (std::size_t k = 0; k < points_; ++k) {
-      const T arc = arc_of(k);
-      const Vec3T p = points.position(arc);
+      const PointPlace<T> place = place_of(k);
+      const Vec3T p = points.position(place);
       const std::size_t point = points_ * i + k;
       x_[point] = at.x + at.frame * (length * p);
-      v_[point] = at.frame * (speed * points.velocity(arc, p));
-      tangent_[point] = at.frame * points.tangent(arc);
+      v_[point] = at.frame * (speed * points.velocity(place, p));
+      tangent_[point] = at.frame * points.tangent(place);
     }
   }
   for (std::size_t k = 0; k < block_.others.size(); ++k) {
@@ -282,7 +283,8 @@ void ReducedLoads<Kind>::put(std::size_t i, int lane) {
 
 #define TRESS_PACK(Number, width)                                \
   template class ReducedLoads<HelixKind<PackOf<Number, width>>>; \
-  template class ReducedLoads<ChainKind<PackOf<Number, width>>>;
+  template class ReducedLoads<ChainKind<PackOf<Number, width>>>; \
+  template class ReducedLoads<ClothoidKind<PackOf<Number, width>>>;
 TRESS_EACH_PACK(TRESS_PACK)
 #undef TRESS_PACK
 

@@ -21,6 +21,8 @@ class ReducedLoads {
   using Vec3T = Vec3<T>;
   using Kernel = ReducedKernel<Kind>;
   using Element = typename Kernel::Scratch;
+  using Unknowns = typename Kind::Unknowns;
+  using Loads = typename Kind::Loads;
 
  public:
   /// Allocates for the elements of a kernel, which must outlive it.
@@ -49,10 +51,10 @@ class ReducedLoads {
     std::span<const std::vector<const Effect*>> others;  // (strands), or empty
   };
   /// Finds the loads of each element, or null, from the motion at the step's end.
-  const LoadSums<T>* const* find(const Block& block, const Vec3T* v,
-                                 const Element* elements);
+  const Loads* const* find(const Block& block, const Unknowns* v,
+                           const Element* elements);
   /// Finds the loads of bodies point by point, with all derivatives.
-  const ExactPoint<T>* const* find_exact(const Block& block, const Vec3T* v,
+  const ExactPoint<T>* const* find_exact(const Block& block, const Unknowns* v,
                                          const Element* elements);
 
  private:
@@ -67,19 +69,19 @@ class ReducedLoads {
 
   void look_around(const Block& block, const Element* elements);
   void place(const Element* elements);
-  bool element(std::size_t i, const Vec3T& rate, const Element& e, bool others);
-  const ExactPoint<T>* exact(std::size_t i, const Vec3T& rate, const Element& e);
+  bool element(std::size_t i, const Unknowns& rate, const Element& e, bool others);
+  const ExactPoint<T>* exact(std::size_t i, const Unknowns& rate, const Element& e);
   bool add_up(std::size_t i, const OnElement& points);
   void look_for(const NearBody& body, std::span<char> near) const;
   template <class Shape, class Load>
   void touch(const NearBody& body, const Shape& shape, std::size_t i,
              const OnElement& points, LoadedPoint<T, Load>* at) const;
-  void take_others(const Vec3T* v, const Element* elements);
+  void take_others(const Unknowns* v, const Element* elements);
   void take_others(int lane);
   void put(std::size_t i, int lane);
 
-  T arc_of(std::size_t k) const {
-    return T(kernel_.at(static_cast<int>(k))) * block_.material->length;
+  PointPlace<T> place_of(std::size_t k) const {
+    return kernel_.place(static_cast<int>(k), block_.material->length);
   }
   T weight_of(std::size_t k) const {
     return T(kernel_.weight(static_cast<int>(k))) * block_.material->length;
@@ -93,8 +95,8 @@ class ReducedLoads {
   std::vector<char> near_;  // (bodies, elements) whether one may touch the other
   std::vector<Point> at_;   // of an element
   std::vector<ExactPoint<T>> exact_at_;
-  std::vector<LoadSums<T>> sums_;
-  std::vector<const LoadSums<T>*> loads_;
+  std::vector<Loads> sums_;
+  std::vector<const Loads*> loads_;
   std::vector<const ExactPoint<T>*> exact_;
   // Of effects other than bodies, by points.
   std::vector<PointLoad<T>> others_;

@@ -3,6 +3,7 @@
 #include "models/head/head_units.h"
 #include "models/head/lane_head.h"
 #include "models/head/reduced_kernel.h"
+#include "models/head/strain_entries.h"
 #include "models/strand/strand.h"
 
 namespace tress::models {
@@ -30,21 +31,34 @@ void set_material(const Strand& strand, const LaneOptions& options,
                (units.density * units.length * units.length));
 }
 
-/// Unknowns of an element in units of the batch.
+/// Unknowns of an element in units of the batch: Vec or LinearStrain.
+template <class Strain>
 struct ReducedStart {
-  Vec rest, initial;  // at rest, and at t = 0
+  Strain rest, initial;  // at rest, and at t = 0
 };
+/// Sets the twist of `to`, which is held, to that of `from`.
+inline void hold_twist(const Vec& from, Vec& to) { to.x = from.x; }
+/// Sets the twist of `to`, which is held, to that of `from`.
+inline void hold_twist(const LinearStrain& from, LinearStrain& to) {
+  hold_twist(from.mean, to.mean);
+  hold_twist(from.half, to.half);
+}
 /// Returns the unknowns of element i at rest and at t = 0.
 template <class Kind>
-ReducedStart start_of(const Strand& strand, const LaneOptions& options,
-                      const HeadUnits& units, std::size_t i) {
+auto start_of(const Strand& strand, const LaneOptions& options, const HeadUnits& units,
+              std::size_t i) {
   const double unit = Kind::unit(units.length);
-  const Vec rest = unit * Kind::at_rest(strand, i, &Segment::natural);
-  Vec initial = unit * Kind::at_rest(strand, i, &Segment::initial);
-  if (!options.twist) initial.x = rest.x;  // held
-  return {rest, initial};
+  const auto rest = unit * Kind::at_rest(strand, i, &Segment::natural);
+  auto initial = unit * Kind::at_rest(strand, i, &Segment::initial);
+  if (!options.twist) hold_twist(rest, initial);
+  return ReducedStart<decltype(initial)>{rest, initial};
 }
 
+/// Throws InputError if the points cannot carry the integrals of a clothoid.
+inline void check_for_clothoids(const LaneOptions& options) {
+  refuse_if(options.points < 4, std::to_string(options.points) + " points of a clothoid",
+            place_of_head, "use 4 to 16");
+}
 /// Throws InputError unless these numbers make sense.
 inline void check_for_reduced_head(const LaneOptions& options) {
   check_for_head(options);

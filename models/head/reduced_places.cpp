@@ -3,6 +3,7 @@
 #include "math/instructions.h"
 #include "math/lanes.h"
 #include "models/head/chain_strand.h"
+#include "models/head/clothoid_strand.h"
 #include "models/head/helix_strand.h"
 #include "models/head/packs.h"
 
@@ -26,7 +27,7 @@ TRESS_FLATTEN void ReducedPlaces<Kind>::write(std::size_t strands, std::span<dou
   };
   store(0);
   for (std::size_t i = 0; i < elements; ++i) {
-    const SeenTip<T> tip = typename Kind::Shape(q[i], rate[i], length).tip();
+    const SeenTip<T> tip = typename Kind::Shape(*rule, q[i], rate[i], length).tip();
     at = at + at_frame * tip.position;
     at_frame = at_frame * FrameOf<T>{tip.rotation.column(0), tip.rotation.column(1),
                                      tip.rotation.column(2)};
@@ -38,7 +39,8 @@ TRESS_FLATTEN void ReducedPlaces<Kind>::write(std::size_t strands, std::span<dou
 
 #define TRESS_PACK(Number, width)                                  \
   template struct ReducedPlaces<HelixKind<PackOf<Number, width>>>; \
-  template struct ReducedPlaces<ChainKind<PackOf<Number, width>>>;
+  template struct ReducedPlaces<ChainKind<PackOf<Number, width>>>; \
+  template struct ReducedPlaces<ClothoidKind<PackOf<Number, width>>>;
 TRESS_EACH_PACK(TRESS_PACK)
 #undef TRESS_PACK
 

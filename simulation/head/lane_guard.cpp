@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "math/gauss_legendre.h"
+#include "models/head/strain_entries.h"
 #include "models/reduced/helix.h"
+#include "simulation/head/clothoid_points.h"
 #include "simulation/head/no_head.h"
 #include "simulation/run/guarded_strand.h"
 #include "simulation/scene/strand_tables.h"
@@ -38,8 +41,9 @@ class LaneGuard::Reader {
     ends_.resize(numbers_ * each_.size());
     rates_.resize(ends_.size());
     if (guard.curved()) {
-      darboux_.resize(3 * guard.elements_);
+      darboux_.resize((guard.clothoids_ ? 6 : 3) * guard.elements_);
       darboux_rates_.resize(darboux_.size());
+      if (guard.clothoids_) clothoid_.emplace(guard.at_, guard.weight_);
     }
     head.motion(block, t, ends_, rates_);
     const std::size_t count =
@@ -60,7 +64,11 @@ class LaneGuard::Reader {
       put_nodes(length);
     } else if (guard_.curved()) {
       head_.state(first_ + k, darboux_, darboux_rates_);
-      put_points_of_helices(length);
+      if (guard_.clothoids_) {
+        put_points_of_clothoids(length);
+      } else {
+        put_points_of_helices(length);
+      }
     } else {
       put_points_of_chords(length);
     }
@@ -168,6 +176,26 @@ class LaneGuard::Reader {
       frame = frame * helix.rotation(tip);
     }
   }
+  /// The same of linear Darboux vectors.
+  void put_points_of_clothoids(double length) {
+    const std::size_t points = clothoid_->count();
+    Frame frame = pose_.frame * guard_.frames_[first_ + k_];
+    Vec omega = pose_.omega;
+    for (std::size_t i = 0; i < guard_.elements_; ++i) {
+      using models::LinearStrain;
+      clothoid_->place(models::entries<LinearStrain>(&darboux_[6 * i]),
+                       models::entries<LinearStrain>(&darboux_rates_[6 * i]), length);
+      for (std::size_t j = 0; j < points; ++j) {
+        const ClothoidPoints::Point at = clothoid_->point(j);
+        const Vec from_start = frame * at.position;
+        put(points * i + j, end(i) + from_start,
+            rate(i) + cross(omega, from_start) + frame * at.velocity, frame * at.tangent,
+            guard_.weight_[j] * length);
+      }
+      omega = omega + frame * clothoid_->turning();
+      frame = frame * clothoid_->rotation();
+    }
+  }
   void put(std::size_t i, const Vec& x, const Vec& v, const Vec& tangent, double length) {
     store3(x, &x_[3 * i]);
     store3(v, &v_[3 * i]);
@@ -201,6 +229,7 @@ class LaneGuard::Reader {
   RootPose pose_;
   std::vector<double> ends_, rates_;                // as Head::motion()
   std::vector<double> darboux_, darboux_rates_;     // of helices, as Head::state()
+  std::optional<ClothoidPoints> clothoid_;          // of elements of linear curvature
   std::vector<double> x_, v_, tangent_, load_, u_;  // (3 points)
   std::vector<double> mass_, length_;               // (points)
 };
@@ -217,7 +246,8 @@ LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_res
                                             return !effect->uniform_acceleration() &&
                                                    !effect->viscosity();
                                           })),
-      helices_(!stretches_ && !steps_chains(scene)),
+      helices_(!stretches_ && !steps_chains(scene) && !steps_clothoids(scene)),
+      clothoids_(steps_clothoids(scene)),
       elements_(static_cast<std::size_t>(options.elements)) {
   motion_.frame = {};
   for (const auto& effect : effects_) {

@@ -72,8 +72,8 @@ class LaneGuard final : public HeadGuard {
   };
   class Reader;
 
-  /// Whether effects act on points of helices.
-  bool curved() const { return helices_ && !at_.empty(); }
+  /// Whether effects act on points of curved elements.
+  bool curved() const { return (helices_ || clothoids_) && !at_.empty(); }
 
   RootMotion motion_;
   models::Effects effects_;
@@ -83,7 +83,7 @@ class LaneGuard final : public HeadGuard {
   bool stretches_;       // springs
   bool acts_somewhere_;  // whether some effect is neither uniform nor drag
   std::vector<double> at_, weight_;  // of points, of an element's length; none: nodes
-  bool helices_;                     // elements are helices, not straight
+  bool helices_, clothoids_;         // elements of constant, of linear curvature
   std::size_t elements_;
   std::vector<OfStrand> strands_;
   std::vector<Frame> frames_;         // of the roots at rest, if curved()

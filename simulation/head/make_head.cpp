@@ -98,6 +98,14 @@ std::unique_ptr<models::Head> helix_head(const HeadOptions& options,
   return in_steps(models::helix_lanes(options, pack), options);
 }
 
+std::unique_ptr<models::Head> clothoid_head(const HeadOptions& options,
+                                            const HeadPack& pack) {
+  check_steps(options, pack);
+  check_start(options);
+  if (linear(options)) return stiff_clothoid_head(options, pack);
+  return in_steps(models::clothoid_lanes(options, pack), options);
+}
+
 std::unique_ptr<models::Head> chain_head(const HeadOptions& options,
                                          const HeadPack& pack) {
   check_steps(options, pack);

@@ -31,6 +31,12 @@ bool resolve(models::HeadNumber number, double tolerance);
 std::unique_ptr<models::Head> helix_head(const HeadOptions& options,
                                          const models::HeadPack& pack);
 
+/// Makes a batch of super-clothoids (models/head/clothoid_strand.h). Coordinates are, per
+/// element, the mean Darboux vector and half its difference between the ends (1/m).
+/// Methods and effects as above; `points` >= 4. Throws InputError as above.
+std::unique_ptr<models::Head> clothoid_head(const HeadOptions& options,
+                                            const models::HeadPack& pack);
+
 /// Makes a batch of chains of rigid links (models/head/chain_strand.h). Coordinates are
 /// the rotation vectors of the joints (rad), 3 per link. Methods as above, but
 /// linearly_implicit_midpoint needs double precision. `points` are those of a link at

@@ -84,10 +84,12 @@ std::optional<NoHead> no_model(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (steps_springs(scene)) return no_springs(scene);
   if (steps_quaternions(scene)) return no_quaternions(scene);
-  if (scene.model->id != "super_helix" && !steps_chains(scene)) {
+  if (scene.model->id != "super_helix" && !steps_chains(scene) &&
+      !steps_clothoids(scene)) {
     return NoHead{std::string(scene.model->id),
-                  "use [model] id = \"super_helix\", \"articulated_chain\", "
-                  "\"mass_spring\", \"corde\" or \"xpbd_cosserat\""};
+                  "use [model] id = \"super_helix\", \"super_clothoid\", "
+                  "\"articulated_chain\", \"mass_spring\", \"corde\" or "
+                  "\"xpbd_cosserat\""};
   }
   if (auto no = no_integrator(scene)) return no;
   if (p.word("modes") == "bend_planar") {
@@ -240,6 +242,7 @@ bool steps_edges(const Scene& scene) {
   return steps_springs(scene) || steps_quaternions(scene);
 }
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
+bool steps_clothoids(const Scene& scene) { return scene.model->id == "super_clothoid"; }
 
 std::optional<HeadMethod> head_method(const Scene& scene) {
   for (const auto& [id, method] : head_methods) {

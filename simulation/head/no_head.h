@@ -34,6 +34,8 @@ bool steps_springs(const Scene& scene);
 bool steps_quaternions(const Scene& scene);
 /// Returns whether a scene in lanes has rigid links.
 bool steps_chains(const Scene& scene);
+/// Returns whether a scene in lanes has elements of linear curvature.
+bool steps_clothoids(const Scene& scene);
 /// Whether nodes carry mass and edges between them stretch.
 bool steps_edges(const Scene& scene);
 /// Methods that heads have, by the ids of integrators.

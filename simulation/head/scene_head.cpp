@@ -10,6 +10,7 @@
 #include "contract/input_error.h"
 #include "models/contact/contact_law.h"
 #include "models/contact/strand_partners.h"
+#include "models/head/reduced_parts.h"
 #include "models/reduced/reduced_strand.h"
 #include "simulation/head/lane_guard.h"
 #include "simulation/head/replicated_head.h"
@@ -58,12 +59,19 @@ std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
   if (steps_springs(scene)) return spring_head(options, pack);
   if (scene.model->id == "corde") return corde_head(options, pack);
   if (steps_quaternions(scene)) return cosserat_head(options, pack);
+  if (steps_clothoids(scene)) return clothoid_head(options, pack);
   return steps_chains(scene) ? chain_head(options, pack) : helix_head(options, pack);
 }
 
 /// Points of an element that winds by so much, as reduced_strand() takes them.
 int points_of(const Scene& scene, double winding) {
+  if (steps_clothoids(scene)) return models::clothoid_points(winding);
   return steps_chains(scene) ? 4 : models::quadrature_points(winding);
+}
+/// Whether the points of an element that winds by so much are too many for lanes.
+bool too_curved(const Scene& scene, double winding) {
+  return steps_clothoids(scene) && scene.model_options.whole("quadrature") == 0 &&
+         points_of(scene, winding) > models::most_points_of_element;
 }
 
 /// Strands of a scene as a series.
@@ -82,11 +90,15 @@ struct Extent {
     length = std::max(length, other.length);
     winding = std::max(winding, other.winding);
   }
-  void include(const Strand& strand) {
+  /// `linear`: curvature is linear in an element.
+  void include(const Strand& strand, bool linear) {
     length = std::max(length, strand.length());
     for (const Segment& segment : strand.segments) {
-      for (const Vec& shape : {segment.natural, segment.initial}) {
-        winding = std::max(winding, segment.length * norm(shape));
+      for (const auto& [mean, half] :
+           {models::LinearStrain{segment.natural, segment.natural_half},
+            models::LinearStrain{segment.initial, segment.initial_half}}) {
+        winding =
+            std::max(winding, segment.length * (norm(mean) + (linear ? norm(half) : 0)));
       }
     }
   }
@@ -95,7 +107,8 @@ struct Extent {
 /// What has to be known of all strands of a scene before any is made into a head's; each
 /// rank looks at its share of them.
 template <class Strands>
-Extent extent_of(const Strands& series, Crew& crew, Ranks& ranks, std::span<Vec> roots) {
+Extent extent_of(const Strands& series, bool linear, Crew& crew, Ranks& ranks,
+                 std::span<Vec> roots) {
   const auto rank = static_cast<std::size_t>(ranks.rank()),
              size = static_cast<std::size_t>(ranks.size());
   const auto first = [&](std::size_t r) { return series.size() * r / size; };
@@ -103,7 +116,7 @@ Extent extent_of(const Strands& series, Crew& crew, Ranks& ranks, std::span<Vec>
   in_parts(crew, first(rank), first(rank + 1), parts,
            [&](std::size_t k, std::size_t part) {
              const Strand& strand = series.strand(k);
-             extents[part].include(strand);
+             extents[part].include(strand, linear);
              if (!roots.empty()) roots[k] = strand.root.position;
            });
   Extent all;
@@ -236,7 +249,8 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
   // Strands that may touch each other lie beside each other in memory, too.
   const bool by_roots = divided || scene.interaction() != nullptr;
   std::vector<Vec> roots(by_roots ? series.size() : 0);
-  const Extent all = extent_of(series, crew, ranks, std::span(roots));
+  const Extent all =
+      extent_of(series, steps_clothoids(scene), crew, ranks, std::span(roots));
   const std::vector<double> equal(cost.empty() ? roots.size() : 0, 1);
   SceneHead made;
   made.division = by_roots ? std::make_shared<HeadDivision>(
@@ -244,7 +258,8 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
                                  ranks.size(), ranks.rank())
                            : std::make_shared<HeadDivision>(series.size());
   made.guarded = scene.guard;
-  if (no_lanes(scene, pack.number)) {
+  const bool narrow = pack.number == models::HeadNumber::float32;
+  if (no_lanes(scene, pack.number) || (!narrow && too_curved(scene, all.winding))) {
     replicate(scene, series, crew, made);
   } else {
     add_in_lanes(scene, series, pack, all, crew, ranks, made);

@@ -61,7 +61,8 @@ namespace {
 /// A scene of what has SIMD lanes.
 std::string with_lanes(Draw& draw) {
   const std::string_view model =
-      draw.one_of({"super_helix", "articulated_chain", "mass_spring"});
+      draw.one_of(
+          {"super_helix", "super_clothoid", "articulated_chain", "mass_spring"});
   const std::string_view method =
       draw.one_of({"linearly_implicit_euler", "linearly_implicit_euler", "backward_euler",
                    "linearly_implicit_midpoint", "tr_bdf2"});

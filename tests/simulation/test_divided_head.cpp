@@ -240,7 +240,8 @@ TEST_P(DividedHead, GoesOnWhenItIsDividedAnew) {
 
 std::vector<Scalp> scalps() {
   std::vector<Scalp> all;
-  for (const std::string model : {"super_helix", "articulated_chain"}) {
+  for (const std::string model :
+       {"super_helix", "super_clothoid", "articulated_chain"}) {
     all.push_back({"free", "", model});
     // By longer steps rigid links come apart on a body.
     all.push_back({"body",
@@ -261,7 +262,8 @@ INSTANTIATE_TEST_SUITE_P(Scalps, DividedHead, testing::ValuesIn(scalps()),
 TEST(HeadAhead, IsWhereRatesLeadTo) {
   const SceneOutline outline = scene({"free", ""}, 11);
   HeadOptions options{{.elements = 4, .longest = 0.1, .motion = outline.scene.head}};
-  for (const auto& make : {helix_head, chain_head, der_head, spring_head}) {
+  for (const auto& make :
+       {helix_head, clothoid_head, chain_head, der_head, spring_head}) {
     const auto head = make(options, {models::HeadNumber::float64, 4});
     for (std::size_t k = 0; k < outline.series->size(); ++k) {
       head->add(outline.series->strand(k));
@@ -285,7 +287,7 @@ TEST(HeadAhead, IsWhereRatesLeadTo) {
     EXPECT_GT(most[0], 1e-9);  // m, or this says little
     EXPECT_NEAR(most[0] / most[1], 4, 0.4);
     // Arcs lie beside their chords, edges on them.
-    EXPECT_EQ(bulge[0] > 1e-5, make == helix_head);
+    EXPECT_EQ(bulge[0] > 1e-5, make == helix_head || make == clothoid_head);
   }
 }
 

@@ -121,10 +121,11 @@ struct Acting {
 };
 void PrintTo(const Acting& a, std::ostream* out) { *out << a.name; }  // NOLINT
 /// Models whose heads take all effects.
-constexpr const char* models_in_all[] = {"super_helix", "articulated_chain"};
+constexpr const char* models_in_all[] = {"super_helix", "super_clothoid",
+                                         "articulated_chain"};
 /// Those whose heads have all methods, and their tables with the exact Jacobian.
-constexpr const char* models_by_all[] = {"super_helix", "articulated_chain",
-                                         "mass_spring", "corde"};
+constexpr const char* models_by_all[] = {
+    "super_helix", "super_clothoid", "articulated_chain", "mass_spring", "corde"};
 std::string exact(const std::string& model, int points) {
   return model == "mass_spring" || model == "corde"
              ? fmt::format("id = \"{}\"\n", model)
@@ -175,7 +176,9 @@ constexpr const char* turning =
 TEST_P(HeadUnder, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
   constexpr int elements = 3, count = 22;
   const auto& [acting, model] = GetParam();
-  const double radians = std::string(model) == "super_helix" ? 0.1 / elements : 1;
+  const bool joints = std::string(model) == "articulated_chain";
+  const std::size_t each = std::string(model) == "super_clothoid" ? 6 : 3;
+  const double radians = joints ? 1 : 0.1 / elements;
   const SceneOutline outline = parse_outline(
       text({.count = count,
             .elements = elements,
@@ -187,12 +190,12 @@ TEST_P(HeadUnder, IsTheSameBitsForAnyNumberOfThreadsAndLanes) {
       "head.toml");
   expect_the_same_bits(outline, 40, 0.001, all_numbers, [&](const Head& head) {
     int wound = 0, all = 0;
-    std::vector<double> q(3 * elements), v(q.size());
+    std::vector<double> q(each * elements), v(q.size());
     for (std::size_t k = 0; k < count; ++k) {
       if (head.lost(k)) continue;
       head.state(k, q, v);
       for (std::size_t i = 0; i < elements; ++i, ++all) {
-        wound += norm(load3(&q[3 * i])) * radians > 1.5 ? 1 : 0;
+        wound += norm(load3(&q[each * i])) * radians > 1.5 ? 1 : 0;
       }
     }
     EXPECT_GE(wound, 3);  // or this says little
@@ -269,6 +272,8 @@ TEST(HeadOfHair, MovesAsTheWorldOfTheSceneDoes) {
   for (const std::string options :
        {"id = \"super_helix\"\nquadrature = 8\n",
         "id = \"super_helix\"\nquadrature = 8\nmodes = \"bend\"\n",
+        "id = \"super_clothoid\"\nquadrature = 8\n",
+        "id = \"super_clothoid\"\nquadrature = 8\nmodes = \"bend\"\n",
         "id = \"articulated_chain\"\n", "id = \"articulated_chain\"\nmodes = \"bend\"\n",
         "id = \"articulated_chain\"\nrotary_inertia = \"off\"\nmodes = \"bend\"\n"}) {
     SCOPED_TRACE(options);

@@ -46,7 +46,9 @@ class ExactKernel {
   /// Motion of a frame.
   using Motion = ReducedMotion<T>;
   /// Elimination of an element.
-  using Elimination = ExactElimination<T>;
+  using Elimination = ExactElimination<T, sizeof(typename Kind::Unknowns) / sizeof(Vec)>;
+  /// Unknowns of an element.
+  using Unknowns = typename Kind::Unknowns;
   /// Working memory of one thread.
   using Scratch = typename Kernel::Scratch;
   using Factors = typename Elimination::Factors;  // of an element, between sweeps
@@ -55,20 +57,25 @@ class ExactKernel {
   explicit ExactKernel(const Kernel& kernel) : kernel_(kernel) {}
 
   /// Motion at the state, for loads in `scratch`; returns what newton() and again() need.
-  Motion move(const Material& m, const Motion& root, const Vec* q, const Vec* v,
-              const Vec* a, Scratch* scratch, Factors* factors) const;
+  Motion move(const Material& m, const Motion& root, const Unknowns* q, const Unknowns* v,
+              const Unknowns* a, Scratch* scratch, Factors* factors) const;
   /// x in `correction`; returns its largest entry per lane, NaN unless all are finite.
   /// `end`: what move() returned; `loads`: of an element null or its points, null if
-  /// there are none; `rest`, q, v, a, correction: (elements).
+  /// there are none; `rest`, q, v, a, correction, and `scratch` of move(): (elements).
   T newton(const Material& m, const Motion& end, const ExactPoint<T>* const* loads,
-           const Vec* rest, Weights w, const Vec* q, const Vec* v, const Vec* a,
-           Vec* correction, Factors* factors) const;
+           const Unknowns* rest, Weights w, const Unknowns* q, const Unknowns* v,
+           const Unknowns* a, Unknowns* correction, const Scratch* scratch,
+           Factors* factors) const;
   /// Computes a correction with the factors of the last newton(), at another state.
-  T again(const Material& m, const Motion& end, const LoadSums<T>* const* loads,
-          const Vec* rest, const Vec* v, const Vec* a, Vec* correction,
-          const Scratch* scratch, Factors* factors) const;
+  T again(const Material& m, const Motion& end, const typename Kind::Loads* const* loads,
+          const Unknowns* rest, const Unknowns* v, const Unknowns* a,
+          Unknowns* correction, const Scratch* scratch, Factors* factors) const;
 
  private:
+  using Each = typename Elimination::template Each<Vec>;
+  // Unknowns are vectors one after the other.
+  static Each* each(Unknowns* x) { return reinterpret_cast<Each*>(x); }
+
   const Kernel& kernel_;
 };
 

@@ -9,15 +9,15 @@ namespace tress::models {
 
 template <class Kind>
 TRESS_FLATTEN auto ExactKernel<Kind>::move(const Material& m, const Motion& root,
-                                           const Vec* q, const Vec* v, const Vec* a,
-                                           Scratch* scratch, Factors* factors) const
-    -> Motion {
+                                           const Unknowns* q, const Unknowns* v,
+                                           const Unknowns* a, Scratch* scratch,
+                                           Factors* factors) const -> Motion {
   Motion at = root;
   by_registers_of<T>([&] {
     for (int i = 0; i < kernel_.elements(); ++i) {
       factors[i].start = at;
       scratch[i].q = q[i];
-      Kind::template move<true>(m, q[i], v[i], a[i], at, scratch[i].kept);
+      Kind::template move<true>(kernel_.rule(), m, q[i], v[i], a[i], at, scratch[i].kept);
     }
   });
   return at;
@@ -26,8 +26,10 @@ TRESS_FLATTEN auto ExactKernel<Kind>::move(const Material& m, const Motion& root
 template <class Kind>
 TRESS_FLATTEN auto ExactKernel<Kind>::newton(const Material& m, const Motion& end,
                                              const ExactPoint<T>* const* loads,
-                                             const Vec* rest, Weights w, const Vec* q,
-                                             const Vec* v, const Vec* a, Vec* correction,
+                                             const Unknowns* rest, Weights w,
+                                             const Unknowns* q, const Unknowns* v,
+                                             const Unknowns* a, Unknowns* correction,
+                                             const Scratch* scratch,
                                              Factors* factors) const -> T {
   const int n = kernel_.elements();
   T most;
@@ -37,7 +39,7 @@ TRESS_FLATTEN auto ExactKernel<Kind>::newton(const Material& m, const Motion& en
       Factors& e = factors[i];
       const T rotor = T(i + 1 < n ? 1 : Kind::rotors_of_last) * m.rotor;
       Elimination::add_rotor(rotor, i + 1 < n ? factors[i + 1].start : end, hanging);
-      const ExactElement<Kind> element(kernel_, m, w, q[i], v[i], a[i]);
+      const ExactElement<Kind> element(kernel_, m, w, q[i], v[i], a[i], scratch[i].kept);
       typename Elimination::Columns columns;
       element.own(hanging, e, columns);
       element.add_bending(Kernel::bending(m, w, i, q[i], rest[i], v[i]), columns);
@@ -54,16 +56,17 @@ TRESS_FLATTEN auto ExactKernel<Kind>::newton(const Material& m, const Motion& en
       Elimination::eliminate(columns, kernel_.twist(), e, hanging);
       if (any_less(T(0), e.placed)) Elimination::eliminate(places, T(w.pos), e, hanging);
     }
-    most = Elimination::corrections(n, factors, correction);
+    most = Elimination::corrections(n, factors, each(correction));
   });
   return most;
 }
 
 template <class Kind>
 TRESS_FLATTEN auto ExactKernel<Kind>::again(const Material& m, const Motion& end,
-                                            const LoadSums<T>* const* loads,
-                                            const Vec* rest, const Vec* v, const Vec* a,
-                                            Vec* correction, const Scratch* scratch,
+                                            const typename Kind::Loads* const* loads,
+                                            const Unknowns* rest, const Unknowns* v,
+                                            const Unknowns* a, Unknowns* correction,
+                                            const Scratch* scratch,
                                             Factors* factors) const -> T {
   const int n = kernel_.elements();
   T most;
@@ -72,9 +75,9 @@ TRESS_FLATTEN auto ExactKernel<Kind>::again(const Material& m, const Motion& end
         m, end, loads, [rest](int i) { return rest[i]; }, v, a, correction, scratch);
     Vec force, moment;
     for (int i = n - 1; i >= 0; --i) {
-      Elimination::hang(factors[i], correction[i], force, moment);
+      Elimination::hang(factors[i], each(correction)[i], force, moment);
     }
-    most = Elimination::corrections(n, factors, correction);
+    most = Elimination::corrections(n, factors, each(correction));
   });
   return most;
 }

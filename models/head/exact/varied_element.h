@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "math/helix.h"
 #include "models/head/exact/varied.h"
 #include "models/head/reduced_kernel.h"
@@ -50,19 +52,22 @@ struct VariedWrench {
 
 /// Sums over the length of an element of w, P its points, d_j = dP/dq_j, P' = sum q_j'
 /// d_j.
-template <class T>
+template <class T, std::size_t functions = 1>
 struct ElementSums {
+  /// Of three unknowns each.
+  using Each = std::array<Matrix3<T>, functions>;
+
   T one;                 // w
   Vec3<T> first;         // w P
   Symmetric3<T> second;  // w P P^T
-  Matrix3<T> momentum;   // rows j: w d_j
-  Matrix3<T> spin;       // rows j: w P x d_j
+  Each momentum;         // rows j: w d_j
+  Each spin;             // rows j: w P x d_j
   Vec3<T> moved;         // w P'
   Matrix3<T> moving;     // w P' P^T
   /// Rows j: w ((d_j.omega) P + (P.omega) d_j - 2 (d_j.P) omega + 2 P' x d_j). They are
   /// the effect on unknown j of a change of the start's angular velocity omega, through
   /// centrifugal and Coriolis forces.
-  Matrix3<T> convective;
+  Each convective;
 };
 
 /// An element of this Kind; defined for each.

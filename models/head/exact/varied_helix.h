@@ -128,8 +128,8 @@ class VariedElement<HelixKind<T>> {
     to.one = m.one;
     to.first = points.first;
     to.second = points.second;
-    to.momentum = points.momentum;
-    to.spin = points.spin;
+    to.momentum[0] = points.momentum;
+    to.spin[0] = points.spin;
 
     // d_j = kappa_j r + B l_j + A m_j, P = s e0 + A u + B z.
     const Vec &u = element.u(), &z = element.z();
@@ -160,11 +160,11 @@ class VariedElement<HelixKind<T>> {
              cross(by, x);
     };
     const T o(0), one(1), two(2);
-    to.convective = {{k_.x * of_k + felt({o, k_.y, k_.z}, b_p, by_l),
-                      k_.y * of_k + felt({-two * k_.y, k_.x, o}, b_p, by_l) +
-                          felt({o, o, -one}, a_p, by_m),
-                      k_.z * of_k + felt({-two * k_.z, o, k_.x}, b_p, by_l) +
-                          felt({o, one, o}, a_p, by_m)}};
+    to.convective[0] = {{k_.x * of_k + felt({o, k_.y, k_.z}, b_p, by_l),
+                         k_.y * of_k + felt({-two * k_.y, k_.x, o}, b_p, by_l) +
+                             felt({o, o, -one}, a_p, by_m),
+                         k_.z * of_k + felt({-two * k_.z, o, k_.x}, b_p, by_l) +
+                             felt({o, one, o}, a_p, by_m)}};
   }
 
   const Material& m_;

@@ -100,14 +100,14 @@ class VariedElement<ChainKind<T>> {
     const Vec s_t = second * t;
     to.second = {t.x * s_t.x, t.y * s_t.y, t.z * s_t.z,
                  t.x * s_t.y, t.x * s_t.z, t.y * s_t.z};
-    to.momentum = first * slope;
+    to.momentum[0] = first * slope;
     to.moved = first * moving;
     to.moving = dyad(moving, s_t);
     const T along = dot(t, omega);
     for (int j = 0; j < 3; ++j) {
       const Vec& d = slope.row[j];
-      to.spin.row[j] = cross(s_t, d);
-      to.convective.row[j] =
+      to.spin[0].row[j] = cross(s_t, d);
+      to.convective[0].row[j] =
           second * (along * d + dot(d, omega) * t + T(2) * cross(moving, d));
     }
   }

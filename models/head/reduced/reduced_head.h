@@ -24,6 +24,8 @@ namespace tress::models {
 template <class Kind>
 class ReducedHead : public Head {
   using T = typename Kind::Real;
+  using Unknowns = typename Kind::Unknowns;
+  static constexpr std::size_t per_element = sizeof(Unknowns) / sizeof(T);
 
  public:
   /// Makes an empty batch. Throws InputError as stiff_helix_head().
@@ -80,10 +82,10 @@ class ReducedHead : public Head {
       set_lane(root.frame, lane, strand.root.frame);
       set_material<Kind>(strand, options_, units_, lane, materials_[block]);
       for (std::size_t i = 0; i < n_; ++i) {
-        const ReducedStart start = start_of<Kind>(strand, options_, units_, i);
+        const auto start = start_of<Kind>(strand, options_, units_, i);
         set_lane(rest_[n_ * block + i], lane, start.rest);
         set_lane(q_[n_ * block + i], lane, start.initial);
-        set_lane(v_[n_ * block + i], lane, Vec{});
+        set_lane(v_[n_ * block + i], lane, decltype(start.rest){});
       }
     }
     lost_.push_back(0);
@@ -96,7 +98,7 @@ class ReducedHead : public Head {
   std::size_t blocks() const override { return roots_.size(); }
   std::size_t bytes() const override {
     return blocks() * (sizeof(Root) + sizeof(ReducedMaterial<T>) +
-                       3 * n_ * sizeof(Vec3<T>) + 1) +
+                       3 * n_ * sizeof(Unknowns) + 1) +
            lost_.size() + own_.size() * sizeof(Effects);
   }
 
@@ -107,7 +109,7 @@ class ReducedHead : public Head {
 
   void step(std::size_t block, double t, double h, Scratch& given) override {
     Own& scratch = static_cast<Own&>(given);
-    Vec3<T>*const q = &q_[n_ * block], *const v = &v_[n_ * block];
+    Unknowns *const q = &q_[n_ * block], *const v = &v_[n_ * block];
     std::copy_n(q, n_, scratch.before.begin());
     if (scratch.t != t + h) look_around(t + h, scratch);
     const ReducedMotion<T> root = root_of(roots_[block], scratch.pose);
@@ -116,7 +118,7 @@ class ReducedHead : public Head {
     auto* const elements = scratch.elements.data();
     ReducedMotion<T> end;
     by_registers_of<T>([&] { end = kernel_.move(material, root, step, q, v, elements); });
-    const LoadSums<T>* const* loads = nullptr;
+    const typename Kind::Loads* const* loads = nullptr;
     if (const auto reached = reached_by_effects(block, h, scratch)) {
       loads = scratch.loads.find(*reached, v, elements);
     }
@@ -126,7 +128,7 @@ class ReducedHead : public Head {
     });
     T finite(0);  // 0 or NaN
     for (std::size_t i = 0; i < n_; ++i) {
-      const T all = q[i].x + q[i].y + q[i].z;
+      const T all = entries_sum(q[i]);
       finite += all - all;
     }
     if (!all_up_to(finite, 0) || hurt_[block] != 0) {
@@ -140,9 +142,7 @@ class ReducedHead : public Head {
   }
   void lose(std::size_t strand) override {
     const std::size_t block = strand / width;
-    for (std::size_t i = 0; i < n_; ++i) {
-      set_lane(v_[n_ * block + i], static_cast<int>(strand % width), Vec{});
-    }
+    stop(block, static_cast<int>(strand % width));
     hurt_[block] = 1;
     lost_[strand] = 1;
   }
@@ -163,7 +163,7 @@ class ReducedHead : public Head {
   /// the chord. The length includes the rounding of chords.
   void ahead(std::size_t block, double t, double h, std::span<double> x,
              std::span<double> bulge) const override {
-    std::vector<Vec3<T>> q(n_);
+    std::vector<Unknowns> q(n_);
     const T step(h / units_.time);
     for (std::size_t i = 0; i < n_; ++i) {
       q[i] = q_[n_ * block + i] + step * v_[n_ * block + i];
@@ -185,9 +185,9 @@ class ReducedHead : public Head {
     const auto lane = static_cast<int>(strand % width);
     const double unit = Kind::unit(units_.length);
     for (std::size_t i = 0; i < n_; ++i) {
-      const std::size_t at = n_ * (strand / width) + i;
-      store3((1 / unit) * lane_of(q_[at], lane), &q[3 * i]);
-      store3(1 / (unit * units_.time) * lane_of(v_[at], lane), &v[3 * i]);
+      const std::size_t at = n_ * (strand / width) + i, to = per_element * i;
+      store_entries((1 / unit) * lane_of(q_[at], lane), &q[to]);
+      store_entries(1 / (unit * units_.time) * lane_of(v_[at], lane), &v[to]);
     }
   }
 
@@ -211,15 +211,15 @@ class ReducedHead : public Head {
     }
   }
 
-  std::size_t kept() const override { return 6 * n_ + 1; }
-  std::size_t kept_of_state() const override { return 6 * n_; }
+  std::size_t kept() const override { return kept_of_state() + 1; }
+  std::size_t kept_of_state() const override { return 2 * per_element * n_; }
   void keep(std::size_t block, std::span<double> x) const override {
     double* to = x.data();
     for (std::size_t k = 0; k < strands_of(block); ++k) {
       for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
-        store3(lane_of(q_[i], static_cast<int>(k)), to);
-        store3(lane_of(v_[i], static_cast<int>(k)), to + 3);
-        to += 6;
+        store_entries(lane_of(q_[i], static_cast<int>(k)), to);
+        store_entries(lane_of(v_[i], static_cast<int>(k)), to + per_element);
+        to += 2 * per_element;
       }
       *to++ = lost_[width * block + k];
     }
@@ -228,9 +228,9 @@ class ReducedHead : public Head {
     const double* from = x.data();
     for (std::size_t k = 0; k < strands_of(block); ++k) {
       for (std::size_t i = n_ * block; i < n_ * (block + 1); ++i) {
-        set_lane(q_[i], static_cast<int>(k), load3(from));
-        set_lane(v_[i], static_cast<int>(k), load3(from + 3));
-        from += 6;
+        set_lane(q_[i], static_cast<int>(k), entries<OfLane>(from));
+        set_lane(v_[i], static_cast<int>(k), entries<OfLane>(from + per_element));
+        from += 2 * per_element;
       }
       char& lost = lost_[width * block + k];
       lost = *from++ != 0 ? 1 : 0;
@@ -242,6 +242,8 @@ class ReducedHead : public Head {
   static constexpr std::size_t width = T::lanes;
 
   using Root = LaneRoot<T>;
+  /// Unknowns of an element of one strand.
+  using OfLane = decltype(lane_of(Unknowns{}, 0));
 
   /// Working memory of one thread.
   struct Own final : Scratch {
@@ -253,8 +255,8 @@ class ReducedHead : public Head {
           others(width) {}
     /// Elements of a block between sweeps (elements).
     std::vector<typename ReducedKernel<Kind>::Scratch> elements;
-    std::vector<Vec3<T>> before;  // unknowns before the step (elements)
-    ReducedLoads<Kind> loads;     // loads of effects on the block
+    std::vector<Unknowns> before;  // unknowns before the step (elements)
+    ReducedLoads<Kind> loads;      // loads of effects on the block
     double t = std::numeric_limits<double>::quiet_NaN();  // time of all members below, s
     RootPose pose;                                        // motion of the head at t
     std::vector<NearBody> bodies;                         // bodies that reach the head
@@ -331,6 +333,10 @@ class ReducedHead : public Head {
     return root_motion(root, motion_of(pose));
   }
 
+  /// Sets the rates of a strand to 0.
+  void stop(std::size_t block, int lane) {
+    for (std::size_t i = 0; i < n_; ++i) set_lane(v_[n_ * block + i], lane, OfLane{});
+  }
   void freeze(std::size_t block, const T& finite, double h, const Own& scratch) {
     for (int lane = 0; lane < T::lanes; ++lane) {
       const std::size_t strand = width * block + static_cast<std::size_t>(lane);
@@ -338,8 +344,8 @@ class ReducedHead : public Head {
       if (finite[lane] == 0 && !(counts && lost_[strand] != 0)) continue;
       for (std::size_t i = 0; i < n_; ++i) {
         set_lane(q_[n_ * block + i], lane, lane_of(scratch.before[i], lane));
-        set_lane(v_[n_ * block + i], lane, Vec{});
       }
+      stop(block, lane);
       hurt_[block] = 1;
       if (!counts || lost_[strand] != 0) continue;
       lost_[strand] = 1;
@@ -356,6 +362,7 @@ class ReducedHead : public Head {
             root_of(root, pose),
             materials_[block].length,
             n_,
+            &kernel_.rule(),
             &q_[n_ * block],
             &v_[n_ * block],
             units_.length,
@@ -372,8 +379,8 @@ class ReducedHead : public Head {
   double radius_ = 0;  // of the ball about the head's position that holds all strands, m
   std::vector<Root> roots_;
   std::vector<ReducedMaterial<T>> materials_;
-  std::vector<Vec3<T>> q_, v_, rest_;  // (blocks, elements)
-  std::vector<char> lost_;             // of each strand
+  std::vector<Unknowns> q_, v_, rest_;  // (blocks, elements)
+  std::vector<char> lost_;              // of each strand
   HeadLosses losses_;
   std::vector<char> hurt_;    // of each block: whether it has a failed strand
   std::vector<Effects> own_;  // of each strand, or empty

@@ -21,6 +21,8 @@ template <class Kind>
 class ReducedModel {
   using V = Vec3<typename Kind::Real>;
   using Kernel = ReducedKernel<Kind>;
+  using Unknowns = typename Kind::Unknowns;
+  static constexpr std::size_t per_element = 3 * sizeof(Unknowns) / sizeof(V);
 
  public:
   using Real = typename Kind::Real;  // scalar: a number, or a pack of SIMD lanes
@@ -41,9 +43,9 @@ class ReducedModel {
     ReducedMaterial<Real> material;  // properties of the elements
     Real by_scale, time;             // 1 over a typical unknown, 1 over a typical rate
   };
-  /// Rest shape of an element alone: an array of these is read as an array of vectors.
+  /// Rest shape of an element alone: an array of these is read as an array of unknowns.
   struct Element {
-    V rest;                                 // unknowns at rest
+    Unknowns rest;                          // unknowns at rest
     static constexpr std::size_t kept = 0;  // count of numbers that steps change
     /// Writes the numbers of a lane that steps change: none.
     void keep(int /*lane*/, double* /*to*/) const {}
@@ -82,7 +84,7 @@ class ReducedModel {
   /// Returns the number of elements of a strand.
   std::size_t elements() const { return n_; }
   /// Returns the number of unknowns of a strand.
-  std::size_t unknowns() const { return 3 * n_; }
+  std::size_t unknowns() const { return per_element * n_; }
   /// Returns the unit of an unknown in SI: 1 over the unit of length, or 1 (rad).
   double unit(const HeadUnits& units, std::size_t /*k*/) const {
     return 1 / Kind::unit(units.length);
@@ -114,10 +116,10 @@ class ReducedModel {
     set_lane(to.by_scale, lane, 1 / scale);
     set_lane(to.time, lane, 1 / (reduced_rate(strand) * units.time));
     for (std::size_t i = 0; i < n_; ++i) {
-      const ReducedStart start = start_of<Kind>(strand, options_, units, i);
+      const auto start = start_of<Kind>(strand, options_, units, i);
       set_lane(elements[i].rest, lane, start.rest);
-      set_lane(vectors(q)[i], lane, start.initial);
-      set_lane(vectors(v)[i], lane, Vec{});
+      set_lane(by_element(q)[i], lane, start.initial);
+      set_lane(by_element(v)[i], lane, decltype(start.rest){});
     }
   }
 
@@ -157,28 +159,29 @@ class ReducedModel {
     const auto end = move(strand, clamp, q, v, a, scratch);
     const ExactPoint<Real>* const* loads = nullptr;
     if (!scratch.bodies.empty()) {
-      loads = scratch.loads.find_exact(block_of(strand, scratch), vectors(v),
+      loads = scratch.loads.find_exact(block_of(strand, scratch), by_element(v),
                                        scratch.elements.data());
     }
-    return size(strand, w,
-                exact_.newton(strand.material, end, loads, &elements->rest, w, vectors(q),
-                              vectors(v), vectors(a), vectors(correction),
-                              scratch.factors.data()));
+    return size(
+        strand, w,
+        exact_.newton(strand.material, end, loads, &elements->rest, w, by_element(q),
+                      by_element(v), by_element(a), by_element(correction),
+                      scratch.elements.data(), scratch.factors.data()));
   }
   /// Computes a correction with the matrix of the last newton(); returns as newton().
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
     const auto end = move(strand, clamp, q, v, a, scratch);
-    const LoadSums<Real>* const* loads = nullptr;
+    const typename Kind::Loads* const* loads = nullptr;
     if (!scratch.bodies.empty()) {
-      loads = scratch.loads.find(block_of(strand, scratch), vectors(v),
+      loads = scratch.loads.find(block_of(strand, scratch), by_element(v),
                                  scratch.elements.data());
     }
     return size(strand, w,
-                exact_.again(strand.material, end, loads, &elements->rest, vectors(v),
-                             vectors(a), vectors(correction), scratch.elements.data(),
-                             scratch.factors.data()));
+                exact_.again(strand.material, end, loads, &elements->rest, by_element(v),
+                             by_element(a), by_element(correction),
+                             scratch.elements.data(), scratch.factors.data()));
   }
   /// Returns the largest entry of dq in each lane over a typical unknown.
   Real coordinate_size(const Strand& strand, const Real* dq) const {
@@ -212,19 +215,21 @@ class ReducedModel {
     return energies_(
         strand.material, clamp(strand, pose), root_at(strand, pose.frame),
         frame_of(pose.frame) * strand.root.frame, [&](int i) { return elements[i].rest; },
-        vectors(q), vectors(v));
+        by_element(q), by_element(v));
   }
 
  private:
   static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
-  // Vec3 is three of them.
-  static const V* vectors(const Real* x) { return reinterpret_cast<const V*>(x); }
-  static V* vectors(Real* x) { return reinterpret_cast<V*>(x); }
+  // Vec3 is three of them, LinearStrainOf two of these.
+  static const Unknowns* by_element(const Real* x) {
+    return reinterpret_cast<const Unknowns*>(x);
+  }
+  static Unknowns* by_element(Real* x) { return reinterpret_cast<Unknowns*>(x); }
 
   ReducedMotion<Real> move(const Strand& strand, const Clamp& clamp, const Real* q,
                            const Real* v, const Real* a, Scratch& scratch) const {
-    return exact_.move(strand.material, clamp, vectors(q), vectors(v), vectors(a),
-                       scratch.elements.data(), scratch.factors.data());
+    return exact_.move(strand.material, clamp, by_element(q), by_element(v),
+                       by_element(a), scratch.elements.data(), scratch.factors.data());
   }
   static typename ReducedLoads<Kind>::Block block_of(const Strand& strand,
                                                      const Scratch& scratch) {
@@ -243,7 +248,8 @@ class ReducedModel {
     use(0, at, frame * velocity);
     for (std::size_t i = 0; i < n_; ++i) {
       const SeenTip<Real> tip =
-          typename Kind::Shape(vectors(q)[i], vectors(v)[i], strand.material.length)
+          typename Kind::Shape(kernel_.rule(), by_element(q)[i], by_element(v)[i],
+                               strand.material.length)
               .tip();
       at = at + frame * tip.position;
       frame = frame * FrameOf<Real>{tip.rotation.column(0), tip.rotation.column(1),

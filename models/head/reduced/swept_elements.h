@@ -192,16 +192,17 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
       e.sweep.q = load(state.q, i, elements_[i].held.x);
       e.v = load(state.v, i, T(0));
       const V a = load(state.a, i, T(0));
-      Kind::template move<true>(m, e.sweep.q, e.v, a, state.end, e.sweep.kept);
+      Kind::template move<true>({}, m, e.sweep.q, e.v, a, state.end, e.sweep.kept);
       Kind::template add_up<true>(kernel_, m, e.sweep.q, e.v, a, e.sweep.kept, e.sums);
     }
   }
 
   std::size_t points() const { return static_cast<std::size_t>(kernel_.points()); }
-  /// Arc length of a point. Points that only fill a pack lie in the middle.
-  T arc_of(std::size_t i, std::size_t k) const {
-    return T(k < points() ? kernel_.at(static_cast<int>(k)) : 0.5) *
-           elements_[i].material.length;
+  /// Place of a point. Points that only fill a pack lie in the middle.
+  PointPlace<T> place_of(std::size_t i, std::size_t k) const {
+    const T& length = elements_[i].material.length;
+    const int number = static_cast<int>(k);
+    return {number, T(k < points() ? kernel_.at(number) : 0.5) * length};
   }
   typename Kind::Points points_of(std::size_t i) const {
     const Element& e = now_->elements[i];
@@ -218,10 +219,10 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
       frames_[i] = frame;
       const auto on = points_of(i);
       for (std::size_t k = 0; k < padded_; ++k) {
-        const T arc = arc_of(i, k);
-        const V position = on.position(arc);
-        put(padded_ * i + k, start + frame * position, frame * on.velocity(arc, position),
-            frame * on.tangent(arc));
+        const PointPlace<T> place = place_of(i, k);
+        const V position = on.position(place);
+        put(padded_ * i + k, start + frame * position,
+            frame * on.velocity(place, position), frame * on.tangent(place));
       }
       start = start + frame * e.sweep.kept.position;
       Kind::go_on(e.sweep.kept, frame);
@@ -254,9 +255,9 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
       all.force = all.moment = all.unknown = {};
       const auto on = points_of(i);
       for (std::size_t k = 0; k < points(); ++k) {
-        const T arc = arc_of(i, k);
+        const PointPlace<T> place = place_of(i, k);
         const std::size_t at = 3 * (padded_ * i + k);
-        on.add_force(arc, on.position(arc),
+        on.add_force(place, on.position(place),
                      frames_[i].back({given(at), given(at + 1), given(at + 2)}), all);
       }
     }
@@ -271,8 +272,8 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
         const std::size_t at = 9 * (padded_ * i + k);
         const Symmetric3<T> block{given(at),     given(at + 4), given(at + 8),
                                   given(at + 1), given(at + 2), given(at + 5)};
-        const T arc = arc_of(i, k);
-        on.add_block(arc, on.position(arc), congruent(back, block), all);
+        const PointPlace<T> place = place_of(i, k);
+        on.add_block(place, on.position(place), congruent(back, block), all);
       }
       loads_[i] = all;
     }

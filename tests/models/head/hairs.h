@@ -10,6 +10,7 @@
 
 #include "contract/forms/material_points.h"
 #include "integrators/catalogue.h"
+#include "models/clothoid/super_clothoid.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
 #include "models/reduced/articulated_chain.h"
@@ -35,10 +36,12 @@ struct HairModel {
   std::unique_ptr<System> (*alone)(const Strand&, const ReducedOptions&, Effects);
   /// Relative change of a start that makes no less than the roundings of all steps do.
   double rounding;
+  std::size_t per_element = 3;  // coordinates of an element
 };
 inline constexpr HairModel helices{"Helices", helix_head, super_helix, 1e-12},
-    chains{"Chains", chain_head, articulated_chain, 3e-11};
-inline constexpr const HairModel* hair_models[] = {&helices, &chains};
+    chains{"Chains", chain_head, articulated_chain, 3e-11},
+    clothoids{"Clothoids", clothoid_head, super_clothoid, 1e-12, 6};
+inline constexpr const HairModel* hair_models[] = {&helices, &chains, &clothoids};
 
 inline constexpr double hair_step = 1e-4;  // s
 
@@ -56,6 +59,10 @@ struct Case {
   double step = hair_step;  // s
   int steps = 100;          // of a run that is compared
   const HairModel* model = &helices;
+  /// Returns the number of coordinates of a strand.
+  std::size_t coordinates() const {
+    return model->per_element * static_cast<std::size_t>(elements);
+  }
   Effects own_of(std::size_t k) const { return own ? own(k) : Effects{}; }
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
@@ -105,6 +112,12 @@ inline Strand strand(const Case& c, std::size_t k) {
                   {.elements = c.elements, .length = 0.25 / (1 + x / 20), .grading = 1},
                   uniform_shape(curl * natural),
                   uniform_shape(curl * (c.sprung ? initial : natural)));
+  // Of each element the strain grows or falls by a tenth on either side of its mean.
+  for (std::size_t i = 0; i < made.segments.size(); ++i) {
+    Segment& s = made.segments[i];
+    s.natural_half = (i % 2 == 0 ? 0.1 : -0.1) * s.natural;
+    s.initial_half = (i % 2 == 0 ? 0.1 : -0.1) * s.initial;
+  }
   const HeadOptions o = options(c);
   made.root = o.motion;
   made.root.centre = o.motion.position;
@@ -183,7 +196,7 @@ inline Alone alone(const Case& c, std::size_t k, std::span<const double> times,
   system->material_points()->positions(t, method_of->q(), end.x);
   system->material_points()->velocities(t, method_of->q(), method_of->v(), end.u);
   const auto put = [&](In from, std::vector<double>& to) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(c.elements); ++i) {
+    for (std::size_t i = 0; i < c.coordinates() / 3; ++i) {
       if (c.twist) {
         to.insert(to.end(), {from[3 * i], from[3 * i + 1], from[3 * i + 2]});
       } else {

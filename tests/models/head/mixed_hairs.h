@@ -20,12 +20,13 @@ struct HeadMaker {
 inline void PrintTo(const HeadMaker& m, std::ostream* out) { *out << m.name; }  // NOLINT
 inline constexpr HeadMaker helix_hairs{"Helices", "super_helix", simulation::helix_head,
                                        false, true},
+    clothoid_hairs{"Clothoids", "super_clothoid", simulation::clothoid_head, false, true},
     linked_hairs{"Chains", "articulated_chain", simulation::chain_head, false, true},
     rods{"Rods", "der", simulation::der_head, true, true},
     spring_masses{"Springs", "mass_spring", simulation::spring_head, true, false},
     quaternion_rods{"Quaternions", "corde", simulation::corde_head, true, true};
-inline constexpr HeadMaker controlled_heads[] = {helix_hairs, linked_hairs, rods,
-                                                 spring_masses, quaternion_rods};
+inline constexpr HeadMaker controlled_heads[] = {
+    helix_hairs, clothoid_hairs, linked_hairs, rods, spring_masses, quaternion_rods};
 
 /// Straight, wavy and curled hairs, of each a soft one, one that is 8 times as stiff to
 /// bend, and two between them.

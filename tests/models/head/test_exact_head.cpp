@@ -3,6 +3,7 @@
 #include <random>
 
 #include "models/head/chain_strand.h"
+#include "models/head/clothoid_strand.h"
 #include "models/head/helix_strand.h"
 #include "models/head/reduced/reduced_model.h"
 #include "tests/models/head/hairs.h"
@@ -31,6 +32,10 @@ template <>
 struct Hair<ChainKind<T>> {
   static constexpr const HairModel& model = chains;
 };
+template <>
+struct Hair<ClothoidKind<T>> {
+  static constexpr const HairModel& model = testing_support::clothoids;
+};
 
 /// q, v and a of strands away from rest, in SI, and what is of them in a head.
 struct States {
@@ -54,7 +59,7 @@ States moved(const System& system, std::uint32_t seed) {
 
 template <class Kind>
 class OfHair : public testing::Test {};
-using Kinds = testing::Types<HelixKind<T>, ChainKind<T>>;
+using Kinds = testing::Types<HelixKind<T>, ChainKind<T>, ClothoidKind<T>>;
 TYPED_TEST_SUITE(OfHair, Kinds);
 
 // The same matrix and residual in other orders of summation: 1e-16 times the number

@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "models/head/chain_strand.h"
+#include "models/head/clothoid_strand.h"
 #include "models/head/exact/exact_kernel.h"
 #include "models/head/helix_strand.h"
+#include "models/head/lane_numbers.h"
 
 /// Newton's corrections x of ExactKernel against the residual r of ReducedKernel: S x = r
 /// with S x by differences.
@@ -41,7 +43,9 @@ class Loaded {
  public:
   using Kernel = ReducedKernel<Kind>;
   using Exact = ExactKernel<Kind>;
-  using State = std::array<std::vector<V>, 3>;
+  using Unknowns = typename Kind::Unknowns;
+  using Elements = std::vector<Unknowns>;
+  using State = std::array<Elements, 3>;
 
   Loaded(bool twist, bool loaded, double size)
       : kernel_(elements, points, twist), exact_(kernel_), loaded_(loaded) {
@@ -52,13 +56,12 @@ class Loaded {
     const double sizes[] = {size, 3, 9};
     for (std::size_t k = 0; k < 3; ++k) {
       for (int i = 0; i < elements; ++i) {
-        state_[k].push_back(any.vector(sizes[k]));
-        if (!twist) state_[k].back().x = T(0);
+        state_[k].emplace_back();
+        for (V& x : vectors(state_[k].back())) x = vector(any, sizes[k], twist);
       }
     }
-    for (V& rest : rest_) {
-      rest = any.vector(1);
-      if (!twist) rest.x = T(0);
+    for (Unknowns& rest : rest_) {
+      for (V& x : vectors(rest)) x = vector(any, 1, twist);
     }
     force_ = any.vector(0.5);
     by_x_ = any.matrix(2);
@@ -74,7 +77,7 @@ class Loaded {
   /// Largest difference of S x from r, over the largest entry of r. `blind`: S knows of
   /// no loads.
   double left(bool blind = false) {
-    std::vector<V> x(elements);
+    Elements x(elements);
     std::vector<typename Exact::Factors> factors(elements);
     Scratch scratch(elements);
     const auto end = exact_.move(material_, root_, state_[0].data(), state_[1].data(),
@@ -82,12 +85,12 @@ class Loaded {
     find(scratch, state_[1]);
     exact_.newton(material_, end, loaded_ && !blind ? exact_loads_.data() : nullptr,
                   rest_.data(), weights, state_[0].data(), state_[1].data(),
-                  state_[2].data(), x.data(), factors.data());
-    std::vector<V> again(elements);
+                  state_[2].data(), x.data(), scratch.data(), factors.data());
+    Elements again(elements);
     exact_.again(material_, end, loaded_ ? loads_.data() : nullptr, rest_.data(),
                  state_[1].data(), state_[2].data(), again.data(), scratch.data(),
                  factors.data());
-    const std::vector<V> r = residual(x, 0);
+    const Elements r = residual(x, 0);
     if (blind) x = again;
     double largest = 0, most = 0;
     each(x, [&](double a) { largest = std::max(largest, std::abs(a)); });
@@ -97,7 +100,7 @@ class Loaded {
                further = residual(x, 2 * e), beyond = residual(x, -2 * e);
     double size = 0;
     for (std::size_t i = 0; i < elements; ++i) {
-      const V slope =
+      const Unknowns slope =
           T(1 / (12 * e)) * (T(8) * (ahead[i] - back[i]) - (further[i] - beyond[i]));
       const auto compare = [&](const T& a, const T& b) {
         for (int lane = 0; lane < T::lanes; ++lane) {
@@ -105,9 +108,12 @@ class Loaded {
           most = std::max(most, std::abs(a[lane] - b[lane]));
         }
       };
-      if (kernel_.twist()) compare(slope.x, r[i].x);
-      compare(slope.y, r[i].y);
-      compare(slope.z, r[i].z);
+      for (std::size_t f = 0; f < vectors(slope).size(); ++f) {
+        const V &of_slope = vectors(slope)[f], &of_r = vectors(r[i])[f];
+        if (kernel_.twist()) compare(of_slope.x, of_r.x);
+        compare(of_slope.y, of_r.y);
+        compare(of_slope.z, of_r.z);
+      }
       // The same residual summed in another order: roundings, by which corrections of
       // chains, whose joints leave three digits, differ up to 1e4 times more.
       each({again[i] - x[i]}, [&](double a) { EXPECT_LE(std::abs(a), 1e-10 * largest); });
@@ -121,16 +127,25 @@ class Loaded {
   using Scratch = std::vector<typename Kernel::Scratch>;
 
   template <class Use>
-  static void each(const std::vector<V>& x, Use use) {
-    for (const V& v : x) {
-      for (int lane = 0; lane < T::lanes; ++lane) {
-        for (const double a : {v.x[lane], v.y[lane], v.z[lane]}) use(a);
+  static void each(const Elements& x, Use use) {
+    for (const Unknowns& element : x) {
+      for (const V& v : vectors(element)) {
+        for (int lane = 0; lane < T::lanes; ++lane) {
+          for (const double a : {v.x[lane], v.y[lane], v.z[lane]}) use(a);
+        }
       }
     }
   }
+  static V vector(Numbers& any, double size, bool twist) {
+    V x = any.vector(size);
+    if (!twist) x.x = T(0);
+    return x;
+  }
+  static std::span<V> vectors(Unknowns& x) { return numbers_of<V>(x); }
+  static std::span<const V> vectors(const Unknowns& x) { return numbers_of<V>(x); }
 
   /// At the state moved by e times the weights times x.
-  std::vector<V> residual(const std::vector<V>& x, double e) {
+  Elements residual(const Elements& x, double e) {
     const double by[] = {weights.pos, weights.vel, weights.acc};
     State moved = state_;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -143,7 +158,7 @@ class Loaded {
     const auto end = exact_.move(material_, root_, moved[0].data(), moved[1].data(),
                                  moved[2].data(), scratch.data(), factors.data());
     find(scratch, moved[1]);
-    std::vector<V> r(elements);
+    Elements r(elements);
     kernel_.residual(
         material_, end, loaded_ ? loads_.data() : nullptr,
         [&](int i) { return rest_[static_cast<std::size_t>(i)]; }, moved[1].data(),
@@ -152,7 +167,7 @@ class Loaded {
   }
 
   /// Loads on elements 1, 3 and 4.
-  void find(const Scratch& scratch, const std::vector<V>& rate) {
+  void find(const Scratch& scratch, const Elements& rate) {
     const T o(0), one(1);
     FrameOf<T> frame{{one, o, o}, {o, one, o}, {o, o, one}};
     V at;
@@ -164,10 +179,12 @@ class Loaded {
       sums_[i] = {};
       sums_[i].some = some_;
       for (int k = 0; k < points; ++k) {
-        const T arc = T(kernel_.at(k)) * material_.length, w(kernel_.weight(k));
-        const V p = on.position(arc), x = at + frame * p, u = frame * on.velocity(arc, p);
+        const PointPlace<T> place = kernel_.place(k, material_.length);
+        const T w(kernel_.weight(k));
+        const V p = on.position(place), x = at + frame * p,
+                u = frame * on.velocity(place, p);
         const V f = w * turn.back(force_ - by_x_ * x - by_u_ * u);
-        on.add_force(arc, p, f, sums_[i]);
+        on.add_force(place, p, f, sums_[i]);
         points_[i][static_cast<std::size_t>(k)] = {
             p,
             {f, w * (turn.transposed() * by_x_ * turn),
@@ -188,19 +205,19 @@ class Loaded {
   ReducedMaterial<T> material_;
   ReducedMotion<T> root_;
   State state_;
-  std::array<V, elements> rest_;
+  std::array<Unknowns, elements> rest_;
   V force_;
   M by_x_, by_u_;
   T some_;
-  std::array<LoadSums<T>, elements> sums_;
+  std::array<typename Kind::Loads, elements> sums_;
   std::array<std::array<ExactPoint<T>, points>, elements> points_;
-  std::array<const LoadSums<T>*, elements> loads_{};
+  std::array<const typename Kind::Loads*, elements> loads_{};
   std::array<const ExactPoint<T>*, elements> exact_loads_{};
 };
 
 template <class Kind>
 class OfKind : public testing::Test {};
-using Kinds = testing::Types<HelixKind<T>, ChainKind<T>>;
+using Kinds = testing::Types<HelixKind<T>, ChainKind<T>, ClothoidKind<T>>;
 TYPED_TEST_SUITE(OfKind, Kinds);
 
 // With e = 1e-3 over the largest entry of x, differences err by e^4 of fifth derivatives,

@@ -162,10 +162,10 @@ TEST_P(HeadWithEffects, StrandsMoveAsTheyDoAlone) {
   const int steps = c.steps;
   const auto all = head(c, {HeadNumber::float64, 8}, strands);
   advance(*all, steps, c.step);
-  const auto n = static_cast<std::size_t>(3 * c.elements);
-  std::vector<double> q(n), v(n), x(strands * (n + 3)), u(x.size());
+  const std::size_t n = c.coordinates(), each = all->numbers();
+  std::vector<double> q(n), v(n), x(strands * each), u(x.size());
   for (std::size_t b = 0, done = 0; b < all->blocks(); ++b) {
-    const std::size_t size = all->strands_of(b) * (n + 3);
+    const std::size_t size = all->strands_of(b) * each;
     all->motion(b, steps * c.step, std::span(x).subspan(done, size),
                 std::span(u).subspan(done, size));
     done += size;
@@ -183,10 +183,10 @@ TEST_P(HeadWithEffects, StrandsMoveAsTheyDoAlone) {
     const double left = left_by_newton(c);
     EXPECT_LE(apart(q, want.q), apart(changed.q, want.q) + left * want.size);
     EXPECT_LE(apart(v, want.v), apart(changed.v, want.v) + left * want.rate);
-    EXPECT_LE(apart(In(x).subspan(k * (n + 3), n + 3), want.x),
+    EXPECT_LE(apart(In(x).subspan(k * each, each), want.x),
               apart(changed.x, want.x) + left * 0.25);
     // A rate turns what follows, of length L at most, over L at most.
-    EXPECT_LE(apart(In(u).subspan(k * (n + 3), n + 3), want.u),
+    EXPECT_LE(apart(In(u).subspan(k * each, each), want.u),
               apart(changed.u, want.u) +
                   0.25 * 0.25 * (apart(changed.v, want.v) + left * want.rate));
     moved += apart(want.x, alone(bare, k, steps, 0).x) > 1e-6 ? 1 : 0;
@@ -234,7 +234,8 @@ struct State {
   bool operator==(const State&) const = default;
 };
 State state(const Head& of, std::size_t k) {
-  State s{std::vector<double>(of.numbers() - 3), std::vector<double>(of.numbers() - 3)};
+  const std::size_t n = of.kept_of_state() / 2;
+  State s{std::vector<double>(n), std::vector<double>(n)};
   of.state(k, s.q, s.v);
   return s;
 }

@@ -14,6 +14,7 @@ using testing_support::alone;
 using testing_support::Case;
 using testing_support::chains;
 using testing_support::change_of_start;
+using testing_support::clothoids;
 using testing_support::exact;
 using testing_support::exact_methods;
 using testing_support::hair_models;
@@ -41,11 +42,11 @@ TEST_P(ReducedHead, StrandsMoveAsTheyDoAlone) {
   constexpr std::size_t strands = 10;
   const auto all = head(c, {HeadNumber::float64, 8}, strands);
   advance(*all, steps, c.step);
-  const auto n = static_cast<std::size_t>(3 * c.elements);
-  std::vector<double> q(n), v(n), x(strands * (n + 3));
+  const std::size_t n = c.coordinates(), each = all->numbers();
+  std::vector<double> q(n), v(n), x(strands * each);
   std::size_t done = 0;
   for (std::size_t b = 0; b < all->blocks(); ++b) {
-    const std::size_t size = all->strands_of(b) * (n + 3);
+    const std::size_t size = all->strands_of(b) * each;
     all->positions(b, steps * c.step, std::span(x).subspan(done, size));
     done += size;
   }
@@ -59,7 +60,7 @@ TEST_P(ReducedHead, StrandsMoveAsTheyDoAlone) {
     const double left = left_by_newton(c);
     EXPECT_LE(apart(q, want.q), apart(changed.q, want.q) + left * want.size);
     EXPECT_LE(apart(v, want.v), apart(changed.v, want.v) + left * want.rate);
-    const In points = std::span(x).subspan(k * (n + 3), n + 3);
+    const In points = std::span(x).subspan(k * each, each);
     EXPECT_LE(apart(points, want.x), apart(changed.x, want.x) + left * 0.25);
     // It has moved, or all of this says nothing.
     EXPECT_GT(apart(want.x, alone(c, k, 0, 0).x), 1e-4);
@@ -96,6 +97,14 @@ std::vector<Case> cases() {
     of_chains.model = &chains;
     all.push_back(of_chains);
   }
+  for (std::size_t i = 0; i < both; ++i) {
+    Case of_clothoids = all[i];
+    of_clothoids.model = &clothoids;
+    all.push_back(of_clothoids);
+  }
+  // By up to 6 rad: in parts, lane by lane.
+  all.push_back({.name = "Tightest", .points = 16, .curl = 11, .model = &clothoids});
+  all.push_back({.name = "VeryUneven", .points = 16, .uneven = 11, .model = &clothoids});
   // By up to 6 rad; joints, whose unknowns are singular at 2 pi, by up to 5.
   all.push_back({.name = "Tightest", .points = 16, .curl = 11});
   all.push_back({.name = "VeryUneven", .points = 16, .uneven = 11});
@@ -120,7 +129,7 @@ Energy energy_alone(const Case& c, std::size_t k, double t, const Head& all,
                                       .jacobian = ReducedJacobian::elastic,
                                       .quadrature = c.points},
                                      effects);
-  const auto n = static_cast<std::size_t>(3 * c.elements);
+  const std::size_t n = c.coordinates();
   std::vector<double> q(n), v(n);
   all.state(k, q, v);
   if (!c.twist) {
@@ -254,14 +263,15 @@ TEST_P(HeadOfModel, GoesOnWithoutStrandsThatAreLost) {
     ASSERT_EQ(failing, 11u);
     advance(*sound, 30, c.step);
     advance(*hurt, 30, c.step);
-    std::vector<double> q(30), v(30), want_q(30), want_v(30);
+    const std::size_t n = c.coordinates();
+    std::vector<double> q(n), v(n), want_q(n), want_v(n);
     for (std::size_t k = 0; k < 64; ++k) {
       EXPECT_EQ(hurt->lost(k), fails(k)) << k;
       EXPECT_FALSE(sound->lost(k));
       hurt->state(k, q, v);
       sound->state(k, want_q, want_v);
       if (fails(k)) {
-        EXPECT_EQ(v, std::vector<double>(30)) << k;
+        EXPECT_EQ(v, std::vector<double>(n)) << k;
       } else {
         EXPECT_EQ(q, want_q) << k;
         EXPECT_EQ(v, want_v) << k;
@@ -277,7 +287,8 @@ TEST_P(HeadOfModel, WhatIsLostStaysWhereItIs) {
     const auto sound = head(c, pack, 20), hurt = head(c, pack, 20);
     for (Head* all : {sound.get(), hurt.get()}) advance(*all, 10, c.step);
     hurt->lose(3);
-    std::vector<double> q(30), v(30), want_q(30), want_v(30), held(30);
+    const std::size_t n = c.coordinates();
+    std::vector<double> q(n), v(n), want_q(n), want_v(n), held(n);
     hurt->state(3, held, v);
     for (Head* all : {sound.get(), hurt.get()}) advance(*all, 10, c.step);
     for (std::size_t k = 0; k < 20; ++k) {
@@ -285,7 +296,7 @@ TEST_P(HeadOfModel, WhatIsLostStaysWhereItIs) {
       sound->state(k, want_q, want_v);
       EXPECT_EQ(hurt->lost(k), k == 3);
       EXPECT_EQ(q, k == 3 ? held : want_q) << k;
-      EXPECT_EQ(v, k == 3 ? std::vector<double>(30) : want_v) << k;
+      EXPECT_EQ(v, k == 3 ? std::vector<double>(n) : want_v) << k;
     }
   }
 }
@@ -297,9 +308,10 @@ TEST_P(HeadOfModel, MemoryIsTheStateAndTwentyNumbers) {
   // Of an element coordinates, rates and rest; with the exact Jacobian accelerations from
   // which steps go on, and the size of corrections, which takes two numbers more. Two of
   // them have two numbers of when they were.
-  const std::size_t numbers = c.method == &testing_support::one_solve ? 10 * 9 + 21
-                              : c.method == &testing_support::newton  ? 10 * 12 + 23
-                                                                      : 10 * 15 + 25;
+  const std::size_t n = c.coordinates();
+  const std::size_t numbers = c.method == &testing_support::one_solve ? 3 * n + 21
+                              : c.method == &testing_support::newton  ? 4 * n + 23
+                                                                      : 5 * n + 25;
   EXPECT_LE(all->bytes(), 16u * numbers * sizeof(double));
 }
 
