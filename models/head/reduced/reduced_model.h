@@ -210,8 +210,9 @@ class ReducedModel {
               [&](std::size_t i, const V& /*at*/, const V& u) { use(i, u); });
   }
   /// Returns the energies of the strands at (q, v), in units of the batch.
-  LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
-                              const RootPose& pose, const Real* q, const Real* v) const {
+  TRESS_FLATTEN LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
+                                            const RootPose& pose, const Real* q,
+                                            const Real* v) const {
     return energies_(
         strand.material, clamp(strand, pose), root_at(strand, pose.frame),
         frame_of(pose.frame) * strand.root.frame, [&](int i) { return elements[i].rest; },
@@ -241,8 +242,8 @@ class ReducedModel {
   }
 
   template <class Use>
-  void run_along(const Strand& strand, const Frame& head, const Clamp& root,
-                 const Real* q, const Real* v, Use use) const {
+  TRESS_FLATTEN void run_along(const Strand& strand, const Frame& head, const Clamp& root,
+                               const Real* q, const Real* v, Use use) const {
     FrameOf<Real> frame = frame_of(head) * strand.root.frame;
     V at = root_at(strand, head), velocity = root.v, omega = root.omega;
     use(0, at, frame * velocity);

@@ -76,7 +76,9 @@ class HeadMethods : public testing::TestWithParam<Method> {
 };
 
 TEST_P(HeadMethods, ErrorsFallWithTheOrder) {
-  expect_order(*std::get<1>(GetParam()), 0.064, 128,
+  // Half differences of clothoids vibrate faster than means.
+  const int first = std::get<0>(GetParam()) == &testing_support::clothoids ? 256 : 128;
+  expect_order(*std::get<1>(GetParam()), 0.064, first,
                [](const HairMethod& method, double t, int steps) {
                  return after(
                      *head(of({.name = "", .elements = 4, .moves = true}, method),
@@ -97,8 +99,7 @@ TEST_P(HeadMethods, StepsOfOtherLengthsAreThoseOfTheStrandAlone) {
     all->step(0, 1, t, h, *scratch);
     t += h;
   }
-  const auto n = static_cast<std::size_t>(3 * c.elements);
-  std::vector<double> q(n), v(n);
+  std::vector<double> q(c.coordinates()), v(q.size());
   for (std::size_t k = 0; k < 4; ++k) {
     const auto want = alone(c, k, lengths, 1, 0),
                changed = alone(c, k, lengths, 1, change_of_start(c, steps));
