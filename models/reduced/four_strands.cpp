@@ -159,7 +159,7 @@ std::unique_ptr<System> four_strands(std::span<const Strand> strands, Unknown un
   ToSweep all;
   for (std::size_t k = 0; k < strands.size(); ++k) {
     systems.push_back(alone(strands[k], options, effects[k]));
-    made.push_back(reduced_strand(strands[k], unknown, options, {}));
+    made.push_back(reduced_strand(strands[k], unknown, options, effects[k]));
     all.strands.push_back(dynamic_cast<SweptStrand*>(systems.back().get()));
   }
   for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {

@@ -32,6 +32,7 @@ class InverseDynamics {
         uniform = uniform + *acceleration;
       } else {
         loading_.push_back(effect.get());
+        if (!effect->viscosity()) placed_.push_back(effect.get());
       }
     }
     kinematics.fall(uniform);
@@ -71,14 +72,19 @@ class InverseDynamics {
 
   /// Whether some effect is not uniform.
   bool loaded() const { return !loading_.empty(); }
+  /// Whether some effect is neither uniform nor viscous.
+  bool pushed() const { return !placed_.empty(); }
+  /// Whether some such effect has derivatives.
+  bool stiffened() const {
+    return std::ranges::any_of(placed_,
+                               [](const Effect* e) { return e->needs().derivatives; });
+  }
   /// Returns the loads of such effects on the points as placed (3 numbers each, N).
   tress::In find_loads(double t) { return find_loads(t, points(needs_)); }
   /// Returns the loads of these effects on other points.
-  tress::In find_loads(double t, const Points& p) {
-    std::fill(load_.begin(), load_.end(), 0.0);
-    for (const Effect* effect : loading_) effect->add_load(t, p, load_);
-    return load_;
-  }
+  tress::In find_loads(double t, const Points& p) { return loads_of(loading_, t, p); }
+  /// Returns the loads of effects that are neither uniform nor viscous.
+  tress::In find_placed_loads(double t) { return loads_of(placed_, t, points(needs_)); }
   /// Arrays that place() fills, for callers that place the points themselves.
   struct Places {
     tress::Out x, v, tangent;  // 3 numbers per point; empty where no effect reads them
@@ -116,6 +122,11 @@ class InverseDynamics {
   /// Writes blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.
   void derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks, [](const Effect&) { return true; });
+  }
+  /// Writes derivatives() of the effects that are not viscous.
+  void placed_derivatives(double t, double pos, double vel, InOut blocks) const {
+    derivatives(t, pos, vel, blocks,
+                [](const Effect& effect) { return !effect.viscosity(); });
   }
   /// Writes derivatives() of the effects that couple no points.
   void uncoupled_derivatives(double t, double pos, double vel, InOut blocks) const {
@@ -168,6 +179,12 @@ class InverseDynamics {
     Vec3<Pack> total, load;
   };
 
+  tress::In loads_of(const std::vector<const Effect*>& effects, double t,
+                     const Points& p) {
+    std::ranges::fill(load_, 0.0);
+    for (const Effect* effect : effects) effect->add_load(t, p, load_);
+    return load_;
+  }
   template <class Accept>
   void derivatives(double t, double pos, double vel, InOut blocks, Accept accept) const {
     std::ranges::fill(blocks, 0.0);
@@ -254,6 +271,7 @@ class InverseDynamics {
   Effects effects_;
   Needs needs_;
   std::vector<const Effect*> loading_;  // effects that are not uniform
+  std::vector<const Effect*> placed_;   // those of them that are not viscous
   std::vector<double> x_, v_, tangent_, mass_, length_, load_;
   std::vector<Force> force_;
   std::vector<Wrench> at_tip_;

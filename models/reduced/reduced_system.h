@@ -76,7 +76,7 @@ class ReducedSystem : public System,
     scratch_.assign(n, 0.0);
     if (sweeps_) v_factored_.assign(n, 0.0);
     chain_ = kinematics_.is_chain();
-    if (!exact_ && swept && dynamics_.effect_needs().derivatives) {
+    if (!exact_ && swept && dynamics_.stiffened()) {
       by_state_.resize(9 * kinematics_.points());
     }
     if (!exact_) return;
@@ -355,12 +355,12 @@ class ReducedSystem : public System,
     const auto of_effects = dynamics_.places();
     return {of_effects.x, of_effects.v, of_effects.tangent};
   }
-  bool loaded() const override { return dynamics_.loaded(); }
-  bool stiffened() const override { return dynamics_.effect_needs().derivatives; }
-  In loads(double t) override { return dynamics_.find_loads(t); }
+  bool loaded() const override { return dynamics_.pushed(); }
+  bool stiffened() const override { return dynamics_.stiffened(); }
+  In loads(double t) override { return dynamics_.find_placed_loads(t); }
   In stiffness(double t, Weights w) override {
     if (!stiffened()) return {};
-    dynamics_.derivatives(t, -w.pos, -w.vel, by_state_);
+    dynamics_.placed_derivatives(t, -w.pos, -w.vel, by_state_);
     make_semidefinite(by_state_);
     return by_state_;
   }

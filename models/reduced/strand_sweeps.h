@@ -11,7 +11,8 @@
 namespace tress::models {
 
 /// A strand under sweeps. It provides the motion of its clamp and the loads on its
-/// points, which are those of ReducedStrand::blocks.
+/// points, which are those of ReducedStrand::blocks, but for uniform and viscous loads
+/// (Effect::viscosity()), which the sweeps add to the inertia.
 class SweptStrand {
  public:
   virtual ~SweptStrand() = default;
@@ -58,7 +59,8 @@ class StrandSweepsOf {
 /// Sweeps of one strand.
 using StrandSweeps = StrandSweepsOf<double>;
 
-/// Strands to sweep over, which must outlive the sweeps, and the data they are made of.
+/// Strands to sweep over, which must outlive the sweeps, and the data they are made of,
+/// with their effects.
 /// Lanes beyond the last strand repeat the first.
 struct ToSweep {
   std::vector<const ReducedStrand*> made;  // data, one strand per lane

@@ -42,6 +42,9 @@ class Metered final : public Effect {
   std::optional<Vec> uniform_acceleration() const noexcept override {
     return effect_->uniform_acceleration();
   }
+  std::optional<Viscosity> viscosity() const noexcept override {
+    return effect_->viscosity();
+  }
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override {
     effect_->add_derivatives(t, p, pos, vel, blocks);

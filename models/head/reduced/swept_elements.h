@@ -6,6 +6,7 @@
 
 #include "math/instructions.h"
 #include "math/lanes.h"
+#include "models/effects/effect.h"
 #include "models/head/reduced_kernel.h"
 #include "models/reduced/strand_sweeps.h"
 
@@ -127,12 +128,20 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
   }
   void describe(const ReducedStrand& strand, int lane) {
     double before = strand.root_rotor;
+    Viscosity air;
+    for (const auto& effect : strand.effects) {
+      const Viscosity own = effect->viscosity().value_or(Viscosity{});
+      air.per_length += own.per_length;
+      air.per_mass += own.per_mass;
+    }
     for (std::size_t i = 0; i < elements_.size(); ++i) {
       const ReducedSegment& segment = strand.segments[i];
       const PointBlock& first = strand.blocks[segment.first_block];
       Fixed& e = elements_[i];
       set_lane(e.material.length, lane, segment.length);
-      set_lane(e.material.density, lane, first.mass[0] / first.length[0]);
+      const double density = first.mass[0] / first.length[0];
+      set_lane(e.material.density, lane, density);
+      set_lane(e.material.drag, lane, air.per_length + air.per_mass * density);
       set_lane(e.material.stiffness, lane, segment.stiffness.mean);
       set_lane(e.material.rotor, lane, Kind::rotors_of_root > 0 ? before : segment.rotor);
       set_lane(e.friction, lane, segment.friction.mean);
@@ -306,8 +315,10 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
       const Fixed& fixed = elements_[i];
       Element& e = now_->elements[i];
       typename Kernel::Uneliminated all;
-      Kind::carry(fixed.material, {acc * fixed.material.density, acc}, e.sweep.q, e.v,
-                  e.sums, hanging, stiffened ? &loads_[i] : nullptr, e.sweep.kept, all);
+      const ReducedInertia<T> inertia{
+          acc * fixed.material.density + vel * fixed.material.drag, acc};
+      Kind::carry(fixed.material, inertia, e.sweep.q, e.v, e.sums, hanging,
+                  stiffened ? &loads_[i] : nullptr, e.sweep.kept, all);
       hanging = Kind::eliminate(pos * fixed.material.stiffness + vel * fixed.friction,
                                 twist, all, e.sweep, e.sweep.joint);
       const Symmetric3<T>& p = e.sweep.pivot;
