@@ -25,7 +25,7 @@ std::vector<ElementRod::Joint> ElementRod::joints() const {
   int first = -1;
   for (const Segment& segment : strand_.segments) {
     if (before != nullptr || nodal_.parts.clamped) {
-      all.push_back({first, rod_joint(strand_.material, before, segment, {})});
+      all.push_back({first, rod_joint(strand_, before, segment, {})});
     }
     before = &segment;
     ++first;

@@ -2,7 +2,7 @@
 
 #include "models/elements/element_elasticity.h"
 #include "models/maximal/nodal_strand.h"
-#include "models/maximal/rod_joint.h"
+#include "models/strand/rod_joint.h"
 
 namespace tress::models {
 

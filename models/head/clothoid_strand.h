@@ -36,7 +36,7 @@ struct ClothoidKind {
   using Inertia = LinearInertia<T>;    // what carry() fills
   using Clothoid = ClothoidOf<T, 3>;   // shape of an element
   using Along = typename Clothoid::Along;
-  using Rule = typename Clothoid::Rule;
+  using Rule = typename Clothoid::Rule;  // integrals between its points
 
   /// Geometry and motion of an element that the sweeps share.
   struct Kept {

@@ -51,13 +51,13 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
   std::vector<DerElasticity::EdgeData> edges;
   for (std::size_t i = 0; i < n; ++i) {
     const Segment& segment = strand.segments[i];
+    const Material material = strand.material_of(segment);
     const double stretch =
-        strand.material.youngs_modulus * segment.section.area() / segment.length;
+        material.youngs_modulus * segment.section.area() / segment.length;
     edges.push_back(
         {nodal.initial[i], segment.length, options.inextensible ? 0.0 : stretch});
     if (!options.quasi_static_twist) {
-      parts.inertia[i] =
-          strand.material.density * segment.section.polar() * segment.length;
+      parts.inertia[i] = material.density * segment.section.polar() * segment.length;
     }
     // The frames of a rigid motion turn with the whole.
     parts.rate[3 * (n + 1) + i] = dot(nodal.root.spin, nodal.initial[i].e0);
@@ -69,7 +69,7 @@ std::unique_ptr<System> der(const Strand& strand, const DerOptions& options,
     const Vec rest =
         joint_strain(before != nullptr ? nodal.natural[i - 1] : nodal.root.place.frame,
                      nodal.natural[i]);
-    joints.push_back(rod_joint(strand.material, before, strand.segments[i], rest));
+    joints.push_back(rod_joint(strand, before, strand.segments[i], rest));
   }
   parts.elasticity = std::make_unique<DerElasticity>(std::move(edges), std::move(joints),
                                                      parts.clamped, options.jacobian);

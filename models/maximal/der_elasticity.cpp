@@ -5,6 +5,7 @@
 
 #include "math/instructions.h"
 #include "models/maximal/joint_strain.h"
+#include "models/maximal/to_nodes.h"
 
 namespace tress::models {
 namespace {

@@ -5,8 +5,8 @@
 #include "models/maximal/edge_reference.h"
 #include "models/maximal/elasticity.h"
 #include "models/maximal/kernel/der_forces.h"
-#include "models/maximal/rod_joint.h"
 #include "models/maximal/strand_elimination.h"
+#include "models/strand/rod_joint.h"
 
 namespace tress::models {
 

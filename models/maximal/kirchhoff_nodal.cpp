@@ -99,11 +99,11 @@ std::unique_ptr<System> kirchhoff_nodal(const Strand& strand,
     };
     const double arc = (segment.length + (before != nullptr ? before->length : 0)) / 2;
     parts.rod.length.push_back(segment.length);
-    parts.rod.rotor.push_back(strand.material.density * segment.section.polar() *
-                              segment.length);
+    parts.rod.rotor.push_back(strand.material_of(segment).density *
+                              segment.section.polar() * segment.length);
     parts.rod.arc.push_back(arc);
     parts.rod.joints.push_back(
-        rod_joint(strand.material, before, segment, of_joint(nodal.natural)));
+        rod_joint(strand, before, segment, of_joint(nodal.natural)));
     const Vec start = (1 / arc) * of_joint(nodal.initial);
     parts.start.insert(parts.start.end(), {start.x, start.y, start.z});
   }

@@ -55,7 +55,7 @@ double typical_rate(const Strand& strand) {
   constexpr double earth = 10;  // m/s^2
   const double length = strand.length();
   const Segment& first = strand.segments.front();
-  const double stiffness = strand.material.youngs_modulus *
+  const double stiffness = strand.material_of(first).youngs_modulus *
                            std::min(first.section.inertia1(), first.section.inertia2());
   return std::sqrt(earth / length +
                    stiffness * length / (strand.mass() * std::pow(length, 4)));
@@ -95,7 +95,8 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
       if (k == 0 || k > strand.segments.size()) continue;
       const Segment& segment = strand.segments[k - 1];
       carried += segment.length / 2;
-      mass += strand.material.density * segment.section.area() * segment.length / 2;
+      mass += strand.material_of(segment).density * segment.section.area() *
+              segment.length / 2;
     }
     const NodeMean at{.first = static_cast<int>(i)};
     parts.mass.push_back({at, mass, carried});

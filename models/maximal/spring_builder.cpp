@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/maximal/rod_joint.h"
+#include "models/strand/rod_joint.h"
 
 namespace tress::models {
 namespace {
@@ -26,8 +26,8 @@ SpringBuilder::SpringBuilder(const Strand& strand, const NodalStrand& nodal)
 void SpringBuilder::add_stretch() {
   for (std::size_t i = 0; i < rest_.size(); ++i) {
     const Segment& segment = strand_.segments[i];
-    const double k =
-        strand_.material.youngs_modulus * segment.section.area() / segment.length;
+    const double k = strand_.material_of(segment).youngs_modulus *
+                     segment.section.area() / segment.length;
     add<Chord<1>>({{}, i, k, 0, segment.length});
   }
 }
@@ -36,7 +36,7 @@ void SpringBuilder::add_bending(Bending bending) {
   if (clamped_) add_wall();
   for (std::size_t i = 0; i + 1 < rest_.size(); ++i) {
     const RodJoint j =
-        rod_joint(strand_.material, &strand_.segments[i], strand_.segments[i + 1], {});
+        rod_joint(strand_, &strand_.segments[i], strand_.segments[i + 1], {});
     const double stiffness = (j.stiffness.y + j.stiffness.z) / 2;
     const Vec* e = &rest_[i];
     if (bending == Bending::second_neighbour) {
@@ -79,9 +79,10 @@ void SpringBuilder::add_dihedrals() {
     }
     const Dihedral dihedral{Dihedral{}.value(e), std::pow(vanishing * sides(0), 2),
                             std::pow(vanishing * sides(1), 2)};
-    const double k = strand_.material.shear_modulus *
-                     strand_.segments[middle].section.torsion() / length;
-    const double friction = strand_.material.internal_friction / length;
+    const Segment& segment = strand_.segments[middle];
+    const Material material = strand_.material_of(segment);
+    const double k = material.shear_modulus * segment.section.torsion() / length;
+    const double friction = material.internal_friction / length;
     if (middle == 0) {
       add<WallDihedral>({{dihedral, length, {}}, 0, k, friction, 0});
     } else {
@@ -96,7 +97,7 @@ void SpringBuilder::add(Spring<Strain> spring) {
 }
 
 void SpringBuilder::add_wall() {
-  const RodJoint j = rod_joint(strand_.material, nullptr, strand_.segments[0], {});
+  const RodJoint j = rod_joint(strand_, nullptr, strand_.segments[0], {});
   const double stiffness = (j.stiffness.y + j.stiffness.z) / 2;
   for (const WallBend::About about : {WallBend::About::e1, WallBend::About::e2}) {
     WallBend strain{about, {}, {}};
@@ -121,9 +122,9 @@ void SpringBuilder::add_altitude(const Strain& strain, std::size_t first,
   const double by_angle = dot(slope[Strain::edges - 1], cross(axis, rest_[middle + 1]));
   if (std::abs(by_angle) < flat * segment.length) return;
   const double scale = 1 / (segment.length * by_angle * by_angle);
-  add<Strain>({strain, first,
-               strand_.material.shear_modulus * segment.section.torsion() * scale,
-               strand_.material.internal_friction * scale, rest});
+  const Material material = strand_.material_of(segment);
+  add<Strain>({strain, first, material.shear_modulus * segment.section.torsion() * scale,
+               material.internal_friction * scale, rest});
 }
 
 }  // namespace tress::models

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "models/maximal/rod_joint.h"
+#include "models/strand/rod_joint.h"
 
 namespace tress::models {
 

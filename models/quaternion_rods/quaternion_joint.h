@@ -1,7 +1,7 @@
 #pragma once
 
 #include "math/quaternion.h"
-#include "models/maximal/rod_joint.h"
+#include "models/strand/rod_joint.h"
 
 namespace tress::models {
 

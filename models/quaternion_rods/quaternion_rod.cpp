@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "models/maximal/to_nodes.h"
 #include "models/quaternion_rods/orientation_step.h"
 
 namespace tress::models {

@@ -15,7 +15,7 @@ QuaternionStrandParts<Edge> quaternion_strand(const Strand& strand,
   Quaternion now = root, natural = root;  // neighbours on the same side of the sphere
   for (std::size_t i = 0; i < n; ++i) {
     const Segment& segment = strand.segments[i];
-    made.edges.push_back(kind.edge_of(strand.material, segment));
+    made.edges.push_back(kind.edge_of(strand.material_of(segment), segment));
     now = nearer(now, quaternion_of(nodal.initial[i]));
     const std::size_t at = 3 * (n + 1) + 4 * i;
     store_quaternion(now, &parts.z[at]);
@@ -23,14 +23,13 @@ QuaternionStrandParts<Edge> quaternion_strand(const Strand& strand,
     const CrossSection& section = segment.section;
     const double l = segment.length;
     std::fill_n(&parts.inertia[4 * i], 4,
-                4 * strand.material.density * l *
+                4 * strand.material_of(segment).density * l *
                     (section.polar() + kind.rotary * section.area() * l * l));
     const Quaternion before = natural;
     natural = nearer(before, quaternion_of(nodal.natural[i]));
     if (i == 0 && !parts.clamped) continue;
-    made.joints.emplace_back(rod_joint(strand.material,
-                                       i > 0 ? &strand.segments[i - 1] : nullptr, segment,
-                                       turn_between(before, natural)));
+    made.joints.emplace_back(rod_joint(strand, i > 0 ? &strand.segments[i - 1] : nullptr,
+                                       segment, turn_between(before, natural)));
   }
   return made;
 }

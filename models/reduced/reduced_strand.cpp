@@ -9,6 +9,7 @@
 #include "math/gauss_legendre.h"
 #include "models/reduced/pitfalls.h"
 #include "models/strand/geometry.h"
+#include "models/strand/rod_joint.h"
 
 namespace tress::models {
 namespace {
@@ -52,14 +53,10 @@ Vec unknowns(int dofs) { return {dofs == 3 ? 1.0 : 0, 1, dofs == 1 ? 0.0 : 1}; }
 
 bool identity(const Frame& f) { return f.e0.x == 1 && f.e1.y == 1 && f.e2.z == 1; }
 
-/// Arc length represented by a joint: half of each adjacent segment.
-double joint_length(const Strand& strand, std::size_t i) {
-  const Segment& segment = strand.segments[i];
-  const double before =
-      segment.parent < 0
-          ? 0
-          : strand.segments[static_cast<std::size_t>(segment.parent)].length;
-  return (before + segment.length) / 2;
+/// Returns null for a segment at the root.
+const Segment* parent_of(const Strand& strand, const Segment& segment) {
+  return segment.parent < 0 ? nullptr
+                            : &strand.segments[static_cast<std::size_t>(segment.parent)];
 }
 
 /// Integral over a joint's arc length of a shape that is constant on every segment.
@@ -116,8 +113,8 @@ void add_rotors(ReducedStrand& reduced, const Strand& strand, Unknown unknown) {
   const bool rigid = unknown == Unknown::joint_angle;
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
-    const double half =
-        strand.material.density * segment.section.polar() * segment.length / 2;
+    const double half = strand.material_of(segment).density * segment.section.polar() *
+                        segment.length / 2;
     reduced.segments[i].rotor += rigid ? 2 * half : half;
     if (unknown == Unknown::linear_curvature) {
       reduced.segments[i].inertia.half.x = half * segment.length * segment.length / 15;
@@ -222,7 +219,7 @@ double reduced_scale(const Strand& strand, bool joints) {
 }
 
 double reduced_rate(const Strand& strand) {
-  const Material& material = strand.material;
+  const Material material = strand.material_of(strand.segments.front());
   const CrossSection& section = strand.segments.front().section;
   const double length = strand.length();
   // First frequency of a clamped beam: 3.516 sqrt(EI / (rho S L^4)).
@@ -236,7 +233,6 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   check(strand);
   const bool joints = unknown == Unknown::joint_angle;
   if (options.dofs == 1) check_plane(strand);
-  const Material& material = strand.material;
   const bool linear = unknown == Unknown::linear_curvature;
   const Vec free = unknowns(options.dofs), held = Vec{1, 1, 1} - free;
 
@@ -268,15 +264,19 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     segment.length = from.length;
     segment.mount = from.mount;
     segment.mounted = !identity(from.mount);
-    const Vec moduli = stiffness(material, from.section);
-    const double gamma = material.internal_friction;
-    const double arc = joints ? joint_length(strand, i) : from.length;
-    const double factor = joints ? 1 / arc : arc;
+    const Material material = strand.material_of(from);
+    Vec moment = from.length * stiffness(material, from.section);
+    Vec friction = (from.length * material.internal_friction) * Vec{1, 1, 1};
+    if (joints) {
+      const RodJoint joint = rod_joint(strand, parent_of(strand, from), from, {});
+      moment = joint.stiffness;
+      friction = joint.friction;
+    }
     const auto of_squares = [linear](const Vec& x) {
       return LinearStrain{x, linear ? 1.0 / 3 * x : Vec{}};
     };
-    segment.stiffness = of_squares(times(free, factor * moduli));
-    segment.friction = of_squares(times(free, (factor * gamma) * Vec{1, 1, 1}));
+    segment.stiffness = of_squares(times(free, moment));
+    segment.friction = of_squares(times(free, friction));
     const LinearStrain natural =
         joints ? LinearStrain{joint_angle(strand, i, &Segment::natural), {}}
                : LinearStrain{from.natural, from.natural_half};

@@ -106,8 +106,8 @@ std::vector<SplineElasticity::Point> stretching(const Strand& strand,
                                                 const CubicSpline& spline, In natural) {
   std::vector<SplineElasticity::Point> points;
   for (std::size_t i = 0; i < spline.spans(); ++i) {
-    const double stiffness =
-        strand.material.youngs_modulus * strand.segments[i].section.area();
+    const double stiffness = strand.material_of(strand.segments[i]).youngs_modulus *
+                             strand.segments[i].section.area();
     for (const auto& [along, weight] :
          gauss_legendre(stretch_points(i, spline.spans()), spline.length(i))) {
       const CubicSpline::Basis basis = spline.at(i, along);
@@ -124,8 +124,8 @@ std::vector<SplineElasticity::Point> with_bending(
     const Strand& strand, const CubicSpline& spline,
     std::vector<SplineElasticity::Point> points) {
   for (std::size_t i = 0; i < spline.spans(); ++i) {
-    const double bending =
-        strand.material.youngs_modulus * strand.segments[i].section.inertia1();
+    const double bending = strand.material_of(strand.segments[i]).youngs_modulus *
+                           strand.segments[i].section.inertia1();
     for (const auto& [along, weight] : gauss_legendre(bend_points, spline.length(i))) {
       const CubicSpline::Basis basis = spline.at(i, along);
       points.push_back({i, basis.first, basis.second, 0, bending * weight});
@@ -138,10 +138,11 @@ std::vector<SplineElasticity::Point> with_bending(
 /// Bending and twisting with frames.
 std::vector<FramedSpline::Span> framed_spans(const Strand& strand,
                                              const CubicSpline& spline) {
-  const double friction = strand.material.internal_friction;
   std::vector<FramedSpline::Span> spans;
   for (std::size_t i = 0; i < spline.spans(); ++i) {
-    const Vec moment = stiffness(strand.material, strand.segments[i].section);
+    const Segment& segment = strand.segments[i];
+    const Vec moment = stiffness(strand, segment);
+    const double friction = strand.material_of(segment).internal_friction;
     const double h = spline.length(i);
     FramedSpline::Span span{};
     span.start = spline.at(i, 0).first;
@@ -170,7 +171,8 @@ void add_angles(const Strand& strand, const RootStart& root,
     for (const std::size_t k : {knot, knot + 1}) {  // segments on either side
       if (k == 0 || k > n) continue;
       const Segment& segment = strand.segments[k - 1];
-      inertia += strand.material.density * segment.section.polar() * segment.length / 2;
+      inertia += strand.material_of(segment).density * segment.section.polar() *
+                 segment.length / 2;
     }
     parts.z.push_back(0);
     parts.rate.push_back(dot(root.spin, frames[knot].e0));
@@ -240,7 +242,8 @@ std::unique_ptr<System> dynamic_spline(const Strand& strand,
   parts.z_rate = parts.z_typ;
   for (double& rate : parts.z_rate) rate *= typical_rate(strand);
   for (std::size_t i = 0; i < spline.spans(); ++i) {
-    const double line = strand.material.density * strand.segments[i].section.area();
+    const Segment& segment = strand.segments[i];
+    const double line = strand.material_of(segment).density * segment.section.area();
     for (const auto& [along, weight] : gauss_legendre(mass_points, lengths[i])) {
       parts.mass.push_back({node_mean(i, spline.at(i, along)), line * weight, weight});
     }

@@ -33,6 +33,8 @@ struct CrossSection {
   double inertia2() const;  // about e2: pi a1^3 a2/4, m^4
   double torsion() const;   // J = pi a1^3 a2^3/(a1^2 + a2^2), m^4 (Saint-Venant)
   double polar() const;     // I1 + I2: rotational inertia about the tangent per density
+
+  bool operator==(const CrossSection&) const = default;
 };
 
 /// GJ, EI1 and EI2: stiffness of twist and the two curvatures, N m^2.

@@ -65,6 +65,11 @@ void check(const Segment& segment, int index) {
           "natural or initial shape is not finite", where,
           "give finite twist and curvatures in 1/m");
   check(segment.section, where);
+  const MaterialFactors& factors = segment.factors;
+  require(positive(factors.modulus) && positive(factors.density) &&
+              std::isfinite(factors.friction) && factors.friction >= 0,
+          "a factor of the material is not positive", where,
+          "give finite factors > 0; that of friction may be 0");
 }
 
 void check(const FreeRoot& root) {
@@ -90,11 +95,31 @@ double Strand::length() const {
 }
 
 double Strand::mass() const {
-  double volume = 0;
+  double volume = 0;  // at the strand's density
   for (const Segment& segment : segments) {
-    volume += segment.section.area() * segment.length;
+    volume += segment.factors.density * segment.section.area() * segment.length;
   }
   return material.density * volume;
+}
+
+Material Strand::material_of(const Segment& segment) const {
+  Material own = material;
+  own.density *= segment.factors.density;
+  own.youngs_modulus *= segment.factors.modulus;
+  own.shear_modulus *= segment.factors.modulus;
+  own.internal_friction *= segment.factors.friction;
+  return own;
+}
+
+bool Strand::uniform() const {
+  const Segment& first = segments.front();
+  return std::ranges::all_of(segments, [&](const Segment& segment) {
+    return segment.section == first.section && segment.factors == first.factors;
+  });
+}
+
+Vec stiffness(const Strand& strand, const Segment& segment) {
+  return stiffness(strand.material_of(segment), segment.section);
 }
 
 Shape uniform_shape(Vec darboux) {

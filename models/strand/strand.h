@@ -11,6 +11,15 @@
 
 namespace tress::models {
 
+/// Constants of a segment's material over those of its strand.
+struct MaterialFactors {
+  double modulus = 1;   // Young's modulus and shear modulus
+  double density = 1;   // density
+  double friction = 1;  // internal friction
+
+  bool operator==(const MaterialFactors&) const = default;
+};
+
 /// One segment of a strand, which starts at the tip of `parent`, or at the root.
 struct Segment {
   int parent = -1;       // index of an earlier segment, -1: the root
@@ -22,6 +31,7 @@ struct Segment {
   // How far the two are at the tip from their means above, if they vary linearly; read by
   // models whose elements can (LinearStrain of strain.h).
   Vec natural_half{}, initial_half{};  // natural and initial change, 1/m
+  MaterialFactors factors{};           // material over that of the strand
 };
 
 /// The root is clamped to a prescribed motion, or free to move from an initial state.
@@ -35,14 +45,22 @@ struct FreeRoot {
 /// A strand, or a tree of strands, the input of every strand model: material, segments,
 /// rest shape, and motion of the root.
 struct Strand {
-  Material material;                  // material of all segments
+  Material material;                  // material, times the factors of a segment
   std::vector<Segment> segments;      // parents before children
   RootMotion root;                    // motion of the clamp
   std::optional<FreeRoot> free_root;  // when set, `root` is not used
 
   double length() const;  // longest way from the root to a tip, m
   double mass() const;    // kg
+  /// Returns the material of one of the segments.
+  Material material_of(const Segment& segment) const;
+  /// Returns whether all segments have the same section and material.
+  bool uniform() const;
 };
+
+/// Returns GJ, EI1 and EI2 of a segment: stiffness of twist and the two curvatures, N
+/// m^2.
+Vec stiffness(const Strand& strand, const Segment& segment);
 
 /// The Darboux vector (twist, curvature about e1, curvature about e2) of a shape over arc
 /// length s in [0, length], 1/m.

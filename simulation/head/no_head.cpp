@@ -6,6 +6,7 @@
 
 #include "models/head/head.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/along.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 
@@ -138,6 +139,10 @@ std::optional<NoHead> no_strands(const Scene& scene) {
     }
     if (p.number("grading") != 1) {
       return NoHead{"elements of different lengths", "leave out grading"};
+    }
+    if (varies_along(source.table)) {
+      return NoHead{"a section or material that varies along the strand",
+                    "leave out the keys that end with _along"};
     }
   }
   if (scene.strands.front().free_root) {

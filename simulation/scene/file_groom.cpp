@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "contract/input_error.h"
+#include "simulation/scene/along.h"
 #include "simulation/scene/groom.h"
 
 namespace tress::simulation {
@@ -78,7 +79,10 @@ constexpr Parameter file_keys[] = {
 };
 
 /// The keys of a groom that also apply with a file.
-constexpr std::string_view with_file[] = {"count", "guides", "elements", "initial"};
+constexpr std::string_view with_file[] = {"count",         "guides",
+                                          "elements",      "initial",
+                                          "radius_along",  "ellipticity_along",
+                                          "modulus_along", "density_along"};
 
 bool among(std::span<const Parameter> keys, std::string_view name) {
   return std::ranges::find(keys, name, &Parameter::name) != keys.end();
@@ -203,6 +207,7 @@ Strand file_strand(const Table& groom, const Table* own_material, const Common& 
     if (!straight) segment.initial = segment.natural;
     strand.segments.push_back(segment);
   }
+  vary_along(groom, strand);
   set_root(strand, common.head, common.free_root, chain.place, chain.root);
   models::check(strand);
   return strand;

@@ -10,6 +10,7 @@
 #include "simulation/groom/cap.h"
 #include "simulation/groom/frames.h"
 #include "simulation/groom/random.h"
+#include "simulation/scene/along.h"
 #include "simulation/scene/file_groom.h"
 #include "simulation/scene/shapes.h"
 #include "simulation/table/directions.h"
@@ -166,6 +167,7 @@ double detail(const Table& table) {
                      table.place("guides"), "leave out guides, or the tolerance");
   }
   refuse_grading(table, "a tolerance");
+  refuse_varied(table, "a tolerance");
   return tolerance;
 }
 
@@ -226,7 +228,7 @@ Strand Groom::strand(std::size_t i, std::uint64_t stream) const {
       p.number("length_m") * varied(random, p.number("length_variation"));
   const double curl = varied(random, p.number("curl_variation"));
   const double phase = p.word("phase") == "random" ? 2 * pi * random.uniform() : 0;
-  const Shape mean = natural_shape(table_, material_, common_.seed, 2 * stream);
+  const Shape mean = natural_shape(table_, material_, length, common_.seed, 2 * stream);
   const double share = static_cast<double>(i);
   const double turns = share * (std::numbers::phi - 1);
   const Cap::Place place =
@@ -235,6 +237,7 @@ Strand Groom::strand(std::size_t i, std::uint64_t stream) const {
   const Shape natural = [&](double s) { return curl * mean(s); };
   Strand strand =
       cut_strand(table_, material_, length, natural, {}, elements(length, natural, root));
+  vary_along(table_, strand);
   set_root(strand, common_.head, common_.free_root, place.x, root);
   return strand;
 }

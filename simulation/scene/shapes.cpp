@@ -6,14 +6,16 @@
 
 #include "contract/input_error.h"
 #include "simulation/groom/random.h"
+#include "simulation/scene/along.h"
 
 namespace tress::simulation {
 namespace {
 
 constexpr Parameter shape_table[] = {
     {.name = "shape",
-     .help = "shape at rest; material: the curl of the material",
-     .choices = "straight|material|helix|wavy|fuzzy"},
+     .help = "shape at rest; material: the curl of the material; along: that of "
+             "darboux_along",
+     .choices = "straight|material|helix|wavy|fuzzy|along"},
     {.name = "curl_radius_m",
      .help =
          "helix: radius r (m); with pitch 2 pi b, curvature is r/(r^2 + b^2) and twist "
@@ -50,7 +52,8 @@ constexpr Parameter shape_table[] = {
 
 constexpr Use use_table[] = {{"helix", "curl_radius_m|curl_pitch_m"},
                              {"wavy", "wave_per_m|wavelength_m"},
-                             {"fuzzy", "fuzz_per_m|correlation_m"}};
+                             {"fuzzy", "fuzz_per_m|correlation_m"},
+                             {"along", "darboux_along"}};
 
 constexpr std::size_t waves = 32;
 struct Wave {
@@ -88,7 +91,7 @@ Shape fuzzy_shape(double amplitude, double correlation, std::uint64_t seed,
   };
 }
 
-Shape natural_shape(const Table& table, const StrandMaterial& material,
+Shape natural_shape(const Table& table, const StrandMaterial& material, double length,
                     std::uint64_t seed, std::uint64_t stream) {
   const Parameters& p = table.values();
   const std::string_view shape = p.word("shape");
@@ -104,6 +107,7 @@ Shape natural_shape(const Table& table, const StrandMaterial& material,
   if (shape == "fuzzy") {
     return fuzzy_shape(p.number("fuzz_per_m"), p.number("correlation_m"), seed, stream);
   }
+  if (shape == "along") return shape_along(table, length);
   return uniform_shape({});
 }
 

@@ -41,9 +41,9 @@ std::span<const Parameter> shape_parameters();
 /// The keys that apply to each shape.
 std::span<const Use> shape_uses();
 
-/// The natural shape requested by a table with shape_parameters(); not "points". Strands
-/// of one scene share its seed and differ by `stream`.
-Shape natural_shape(const Table& table, const StrandMaterial& material,
+/// The natural shape that a table with shape_parameters() gives a strand of this length
+/// (m); not "points". Strands of one scene share its seed and differ by `stream`.
+Shape natural_shape(const Table& table, const StrandMaterial& material, double length,
                     std::uint64_t seed, std::uint64_t stream);
 
 }  // namespace tress::simulation

@@ -10,6 +10,7 @@
 #include "models/cut/graded_cut.h"
 #include "models/strand/needed_elements.h"
 #include "simulation/groom/frames.h"
+#include "simulation/scene/along.h"
 #include "simulation/scene/shapes.h"
 #include "simulation/scene/shared_parameter.h"
 #include "simulation/table/directions.h"
@@ -143,6 +144,7 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
     refuse_if(!clamped, "no rest of a strand that nothing holds", table.place("mesh"),
               "leave out one of them");
     refuse_grading(table, "cuts at rest");
+    refuse_varied(table, "cuts at rest");
     return cut_at_rest(table, {material.material,
                                material.section,
                                length,
@@ -152,6 +154,7 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
   }
   if (tolerance == 0) return cut_strand(table, material, length, natural);
   refuse_grading(table, "a tolerance");
+  refuse_varied(table, "a tolerance");
   return cut_strand(
       table, material, length, natural, {},
       needed_elements(table, material, length, natural, frame.e0, tolerance));
@@ -163,6 +166,7 @@ std::vector<Parameter> cut_parameters() {
   std::vector<Parameter> all{shared_parameter("length_m"), shared_parameter("elements"),
                              shared_parameter("grading")};
   all.insert(all.end(), shape_parameters().begin(), shape_parameters().end());
+  all.insert(all.end(), along_parameters().begin(), along_parameters().end());
   all.push_back(
       {.name = "initial", .help = "shape at t = 0", .choices = "natural|straight"});
   return all;
@@ -209,6 +213,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
     Strand strand =
         cut_strand(table, material, curve.length, tied ? uniform_shape({}) : curve.shape,
                    tied ? curve.shape : Shape{});
+    vary_along(table, strand);
     set_root(strand, common.head, common.free_root, curve.position, curve.frame);
     return strand;
   }
@@ -219,8 +224,10 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
   const Vec tangent = direction(table, "root_tangent");
   const Frame frame = frame_of(tangent, normal(table, tangent));
   Strand strand =
-      cut_shape(table, material, natural_shape(table, material, common.seed, stream),
+      cut_shape(table, material,
+                natural_shape(table, material, p.number("length_m"), common.seed, stream),
                 frame, !common.free_root);
+  vary_along(table, strand);
   set_root(strand, common.head, common.free_root, p.vec("position_m"), frame);
   return strand;
 }
@@ -237,6 +244,14 @@ void refuse_grading(const Table& table, const std::string& other) {
   refuse_if(table.values().number("grading") != 1,
             "grading cannot be combined with " + other, table.place("grading"),
             "leave out one of them");
+}
+
+void refuse_varied(const Table& table, const std::string& other) {
+  refuse_if(
+      varies_along(table),
+      "a section or material that varies along the strand cannot be combined with " +
+          other,
+      table.place(), "leave out one of them");
 }
 
 }  // namespace tress::simulation

@@ -46,4 +46,8 @@ int needed_elements(const Table& table, const StrandMaterial& material, double l
 /// Refuses grading together with another key that sets the lengths of elements.
 void refuse_grading(const Table& table, const std::string& other);
 
+/// Refuses a section or material that varies along the strand together with `other`,
+/// which expects a uniform strand.
+void refuse_varied(const Table& table, const std::string& other);
+
 }  // namespace tress::simulation

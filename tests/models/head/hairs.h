@@ -40,7 +40,7 @@ struct HairModel {
 };
 inline constexpr HairModel helices{"Helices", helix_head, super_helix, 1e-12},
     chains{"Chains", chain_head, articulated_chain, 3e-11},
-    clothoids{"Clothoids", clothoid_head, super_clothoid, 1e-12, 6};
+    clothoids{"Clothoids", clothoid_head, super_clothoid, 4e-12, 6};
 inline constexpr const HairModel* hair_models[] = {&helices, &chains, &clothoids};
 
 inline constexpr double hair_step = 1e-4;  // s

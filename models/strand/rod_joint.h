@@ -19,14 +19,16 @@ struct RodJoint {
 
 /// The joint that represents half of each neighbour; for a clamp (`before` null), half of
 /// the first segment.
-inline RodJoint rod_joint(const Material& material, const Segment* before,
+inline RodJoint rod_joint(const Strand& strand, const Segment* before,
                           const Segment& after, const Vec& rest) {
   const double l = (after.length + (before != nullptr ? before->length : 0)) / 2;
-  Vec weighted = after.length / 2 * stiffness(material, after.section);
+  Vec weighted = after.length / 2 * stiffness(strand, after);
+  double friction = strand.material_of(after).internal_friction / l;
   if (before != nullptr) {
-    weighted = weighted + before->length / 2 * stiffness(material, before->section);
+    const double share = before->length / (2 * l);
+    weighted = weighted + before->length / 2 * stiffness(strand, *before);
+    friction += share * (strand.material_of(*before).internal_friction / l - friction);
   }
-  const double friction = material.internal_friction / l;
   return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
 }
 
@@ -36,18 +38,6 @@ inline std::vector<double> of_joints(const std::vector<RodJoint>& joints,
   std::vector<double> all(3 * joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) store3(joints[j].*member, &all[3 * j]);
   return all;
-}
-
-/// Converts h over the edge between two nodes and `others` more coordinates to a matrix
-/// over the two nodes and the others.
-template <int others>
-void to_nodes(const double (&h)[3 + others][3 + others],
-              double (&m)[6 + others][6 + others]) {
-  const auto of = [](int i) { return i < 3 ? i : i - 3; };
-  const auto sign = [](int i) { return i < 3 ? -1.0 : 1.0; };
-  for (int i = 0; i < 6 + others; ++i) {
-    for (int j = 0; j < 6 + others; ++j) m[i][j] = sign(i) * sign(j) * h[of(i)][of(j)];
-  }
 }
 
 }  // namespace tress::models

@@ -1,0 +1,157 @@
+#include "simulation/scene/along.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contract/input_error.h"
+
+namespace tress::simulation {
+namespace {
+
+using models::CrossSection;
+using models::Segment;
+using models::Shape;
+using models::Strand;
+
+constexpr double most_factor = 1e3, most_curvature = 1e6;
+
+constexpr Parameter keys[] = {
+    {.name = "radius_along",
+     .help = "radius over that of the material: rows of [arc length over the strand's "
+             "length, factor], linear between rows. A taper is [[0, 1], [1, 0.5]]",
+     .min = 0,
+     .max = most_factor,
+     .components = 2,
+     .rows = true},
+    {.name = "ellipticity_along",
+     .help = "ellipticity over that of the material: rows as of radius_along",
+     .min = 0,
+     .max = most_factor,
+     .components = 2,
+     .rows = true},
+    {.name = "modulus_along",
+     .help = "Young's modulus and shear modulus over those of the material: rows as of "
+             "radius_along",
+     .min = 0,
+     .max = most_factor,
+     .components = 2,
+     .rows = true},
+    {.name = "density_along",
+     .help = "density over that of the material: rows as of radius_along",
+     .min = 0,
+     .max = most_factor,
+     .components = 2,
+     .rows = true},
+    {.name = "darboux_along",
+     .help = "shape = \"along\": natural twist and curvatures about e1 and e2, rows of "
+             "[arc length over the strand's length, twist, curvature, curvature] (1/m), "
+             "linear between rows",
+     .min = -most_curvature,
+     .max = most_curvature,
+     .components = 4,
+     .rows = true},
+};
+constexpr std::array factors{"radius_along", "ellipticity_along", "modulus_along",
+                             "density_along"};
+
+/// Values over the share of the length, linear between rows and constant beyond them.
+template <std::size_t count>
+class Along {
+ public:
+  using Values = std::array<double, count>;
+
+  /// Throws InputError naming the key if its rows are not in order along the strand.
+  Along(const Table& table, std::string_view key) {
+    const auto all = table.values().numbers(key);
+    for (std::size_t i = 0; i < all.size(); i += count + 1) {
+      const double share = all[i];
+      refuse_if(share < 0 || share > 1,
+                fmt::format("{} has a row at {:g} of the length", key, share),
+                table.place(key), "give shares from 0, the root, to 1, the tip");
+      refuse_if(!rows_.empty() && share < rows_.back().first,
+                fmt::format("the rows of {} are not in order along the strand", key),
+                table.place(key), "sort them from the root to the tip");
+      Values values;
+      std::copy_n(&all[i + 1], count, values.begin());
+      rows_.emplace_back(share, values);
+    }
+  }
+
+  bool empty() const { return rows_.empty(); }
+  Values at(double share) const {
+    const auto after = std::ranges::upper_bound(rows_, share, {}, &Row::first);
+    if (after == rows_.begin()) return rows_.front().second;
+    const Row& before = *std::prev(after);
+    if (after == rows_.end()) return before.second;
+    const double part = (share - before.first) / (after->first - before.first);
+    Values values;
+    for (std::size_t k = 0; k < count; ++k) {
+      values[k] = std::lerp(before.second[k], after->second[k], part);
+    }
+    return values;
+  }
+
+ private:
+  using Row = std::pair<double, Values>;
+  std::vector<Row> rows_;
+};
+
+double mean_bending(const Strand& strand, const Segment& segment) {
+  const Vec all = stiffness(strand, segment);
+  return (all.y + all.z) / 2;
+}
+
+}  // namespace
+
+std::span<const Parameter> along_parameters() { return keys; }
+
+bool varies_along(const Table& table) {
+  return std::ranges::any_of(
+      factors, [&](const char* key) { return !table.values().numbers(key).empty(); });
+}
+
+void vary_along(const Table& table, Strand& strand) {
+  if (!varies_along(table)) return;
+  std::vector<Along<1>> along;
+  for (const char* key : factors) along.emplace_back(table, key);
+  const double length = strand.length();
+  double from = 0;
+  for (Segment& segment : strand.segments) {
+    const double middle = (from + segment.length / 2) / length;
+    from += segment.length;
+    std::array<double, factors.size()> all{};
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      all[k] = along[k].empty() ? 1 : along[k].at(middle)[0];
+      refuse_if(!(all[k] > 0),
+                fmt::format("{} is 0 in the middle of an element, at {:g} of the length",
+                            factors[k], middle),
+                table.place(factors[k]), "give factors above 0");
+    }
+    const auto [radius, ellipticity, modulus, density] = all;
+    const double stretch = std::sqrt(ellipticity);
+    const double before = mean_bending(strand, segment);
+    segment.section.a1 *= radius * stretch;
+    segment.section.a2 *= radius / stretch;
+    segment.factors.modulus = modulus;
+    segment.factors.density = density;
+    segment.factors.friction = mean_bending(strand, segment) / before;
+  }
+}
+
+Shape shape_along(const Table& table, double length) {
+  const Along<3> along(table, "darboux_along");
+  refuse_if(along.empty(), "shape = \"along\" without darboux_along",
+            table.place("shape"), "give darboux_along");
+  return [along, length](double s) {
+    const auto [twist, first, second] = along.at(s / length);
+    return Vec{twist, first, second};
+  };
+}
+
+}  // namespace tress::simulation

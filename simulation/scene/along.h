@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+#include "models/strand/strand.h"
+#include "simulation/table/table.h"
+
+namespace tress::simulation {
+
+/// Returns the keys of [strand] and [groom] for properties that vary along a strand: rows
+/// of an arc length over the length of the strand, and values there, linear between rows
+/// and constant beyond them.
+std::span<const Parameter> along_parameters();
+
+/// Returns whether the table gives a section or a material that varies along a strand.
+bool varies_along(const Table& table);
+
+/// Sets section and material of all segments by the table, each to the values at its
+/// middle. Internal friction varies as the mean bending stiffness, so that the damping
+/// time stays. Throws InputError naming the key if its rows are not in order along the
+/// strand, or a value is not positive.
+void vary_along(const Table& table, models::Strand& strand);
+
+/// Returns the shape of `darboux_along` for a strand of this length (m). Throws
+/// InputError unless its rows are in order along the strand.
+models::Shape shape_along(const Table& table, double length);
+
+}  // namespace tress::simulation

@@ -1,0 +1,275 @@
+// Properties that vary along a strand: frequency and sag of tapered cantilevers against a
+// Ritz method and integrals that share no code with the models, and what is refused.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "contract/forms/material_points.h"
+#include "contract/input_error.h"
+#include "models/catalogue.h"
+#include "simulation/head/no_head.h"
+#include "simulation/scene/scene.h"
+#include "tests/support/refusal.h"
+
+namespace tress::test_along {
+
+using namespace simulation;
+using testing_support::refusal;
+
+constexpr double length = 0.1, radius = 1e-4, youngs = 3e9, density = 1300;
+
+std::string text_of(const std::string& model, int elements, const std::string& strand,
+                    const std::string& rest = "") {
+  return "title = \"taper\"\n[model]\nid = \"" + model +
+         "\"\n[integrator]\nid = \"backward_euler\"\n[material]\nname = \"custom\"\n"
+         "radius_m = 1e-4\nyoungs_modulus_pa = 3e9\npoisson_ratio = 0.45\n"
+         "density_kg_m3 = 1300\n[strand]\nlength_m = 0.1\nelements = " +
+         std::to_string(elements) + "\n" + strand + "\n" + rest;
+}
+Scene scene_of(const std::string& text) { return parse_scene(text, "along.toml"); }
+
+/// A cantilever whose properties vary along it, as a scene and as functions of the share
+/// of its length.
+struct Varied {
+  std::string name, keys;
+  double (*radius)(double);   // over that of the root
+  double (*modulus)(double);  // likewise
+  double (*density)(double);  // likewise
+};
+constexpr double one(double) { return 1; }
+const Varied cases[] = {
+    {"taper", "radius_along = [[0, 1], [1, 0.3]]", [](double x) { return 1 - 0.7 * x; },
+     one, one},
+    {"soft heavy end",
+     "modulus_along = [[0, 1], [1, 0.5]]\ndensity_along = [[0, 1], [1, 3]]", one,
+     [](double x) { return 1 - 0.5 * x; }, [](double x) { return 1 + 2 * x; }},
+    {"two pieces",
+     "radius_along = [[0, 1], [0.5, 1], [0.5, 0.6]]\nmodulus_along = [[0.5, 1], [0.5, "
+     "2]]",
+     [](double x) { return x < 0.5 ? 1 : 0.6; },
+     [](double x) { return x < 0.5 ? 1.0 : 2; }, one}};
+
+double bending(const Varied& v, double x) {
+  return youngs * v.modulus(x) * std::numbers::pi / 4 * std::pow(radius * v.radius(x), 4);
+}
+double line_density(const Varied& v, double x) {
+  return density * v.density(x) * std::numbers::pi * std::pow(radius * v.radius(x), 2);
+}
+
+/// Integral over [from, 1] by the midpoint rule, whose error is below 1e-6 of it: jumps
+/// of the cases lie between its points.
+template <class F>
+double integral(double from, F f) {
+  constexpr int points = 2000;
+  double sum = 0;
+  for (int i = 0; i < points; ++i) {
+    const double x = from + (1 - from) * (i + 0.5) / points;
+    sum += f(x) * (1 - from) / points;
+  }
+  return sum;
+}
+
+/// The first frequency (rad/s) of an Euler-Bernoulli cantilever by Ritz's method with
+/// x^2 .. x^7 on each half, joined in value and slope; from above.
+double ritz(const Varied& v) {
+  // w = sum over k of c_k x^(k+2), and (x - 1/2)_+^(k+2): smooth to the first derivative.
+  constexpr int powers = 5, n = 2 * powers;
+  const auto at = [](int i, double x, int derivative) {
+    const double base = i < powers ? x : std::max(0.0, x - 0.5);
+    const int p = i % powers + 2;
+    return derivative == 0 ? std::pow(base, p)
+           : base == 0     ? (i < powers && p == 2 ? 2.0 : 0.0)
+                           : p * (p - 1) * std::pow(base, p - 2);
+  };
+  Eigen::Matrix<double, n, n> k, m;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      k(i, j) = integral(0, [&](double x) {
+        return bending(v, x) * at(i, x, 2) * at(j, x, 2) / std::pow(length, 3);
+      });
+      m(i, j) = integral(0, [&](double x) {
+        return line_density(v, x) * at(i, x, 0) * at(j, x, 0) * length;
+      });
+    }
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> solver(k,
+                                                                                     m);
+  return std::sqrt(solver.eigenvalues()[0]);
+}
+
+/// The sag of the tip (m) under a weight of acceleration g, straight beam theory.
+double sag(const Varied& v, double g) {
+  return integral(0, [&](double x) {
+    const double moment = integral(
+        x, [&](double u) { return line_density(v, u) * g * (u - x) * length * length; });
+    return moment * (1 - x) * length * length / bending(v, x);
+  });
+}
+
+std::unique_ptr<System> system_of(const Scene& scene) {
+  return scene.model->on_strand(scene.strands.front(), scene.model_options,
+                                make_effects(scene));
+}
+using Numbers = std::vector<double>;
+double size(const Numbers& x) {
+  double sum = 0;
+  for (const double y : x) sum += y * y;
+  return std::sqrt(sum);
+}
+
+/// The least frequency (rad/s) by inverse iteration. The ratio to the second is at least
+/// 4, squared 16: 30 rounds leave 16^-30.
+double frequency(System& system) {
+  const State start = initial_state(system);
+  const std::size_t n = start.q.size();
+  const Numbers zero(n);
+  Numbers x(n), force(n), none(n);
+  EXPECT_EQ(system.residual(0, start.q, zero, zero, none), Status::ok);
+  for (std::size_t i = 0; i < n; ++i) x[i] = 1 + 0.1 * std::sin(double(i));
+  EXPECT_EQ(system.linearize(0, start.q, zero, zero, {0, 0, 1}), Status::ok);
+  double growth = 0;
+  for (int round = 0; round < 30; ++round) {
+    const double before = size(x);
+    EXPECT_EQ(system.residual(0, start.q, zero, x, force), Status::ok);
+    for (std::size_t i = 0; i < n; ++i) force[i] -= none[i];
+    EXPECT_EQ(system.solve(force, x), Status::ok);
+    growth = size(x) / before;
+    for (double& y : x) y /= size(x);
+  }
+  return std::sqrt(1 / growth);
+}
+
+/// The sag of the tip under a small weight: the first step of Newton from the straight
+/// strand is exact to the square of the sag over the length, 1e-8.
+double tip_sag(System& system) {
+  const State start = initial_state(system);
+  const std::size_t n = start.q.size();
+  const Numbers zero(n);
+  Numbers r(n), x(n);
+  EXPECT_EQ(system.residual(0, start.q, zero, zero, r), Status::ok);
+  EXPECT_EQ(system.linearize(0, start.q, zero, zero, {0, 0, 1}), Status::ok);
+  for (double& y : r) y = -y;
+  EXPECT_EQ(system.solve(r, x), Status::ok);
+  for (std::size_t i = 0; i < n; ++i) x[i] += start.q[i];
+  MaterialPoints& points = *material_points(system);
+  Numbers places(3 * std::size_t(points.count()));
+  points.positions(0, x, places);
+  return -places.back();
+}
+
+/// Models without constraints; a spline's section is that of its span.
+bool takes_part(const ModelEntry& model) {
+  return model.on_strand != nullptr && model.id != "inextensible_strand" &&
+         model.id != "force_transport";
+}
+
+/// Errors with 20 and 40 elements: 0.3 % with 40, and order 2 where they exceed 1e-4.
+void expect_order_two(double coarse, double fine, const std::string& what) {
+  std::printf("%s: %.1e with 20, %.1e with 40\n", what.c_str(), coarse, fine);
+  EXPECT_LE(std::abs(fine), 3e-3);
+  if (std::abs(fine) > 1e-4) {
+    EXPECT_GE(std::abs(coarse / fine), 3) << what;
+  }
+}
+
+TEST(Along, FrequencyIsThatOfTheVariedBeam) {
+  for (const Varied& v : cases) {
+    const double expected = ritz(v);
+    for (const ModelEntry& model : model_catalogue()) {
+      if (!takes_part(model)) continue;
+      SCOPED_TRACE(v.name + " " + std::string(model.id));
+      const auto off = [&](int elements) {
+        const Scene scene = scene_of(text_of(std::string(model.id), elements, v.keys));
+        return frequency(*system_of(scene)) / expected - 1;
+      };
+      expect_order_two(off(20), off(40), v.name + ", " + std::string(model.id));
+    }
+  }
+}
+
+TEST(Along, SagIsThatOfTheVariedBeam) {
+  for (const Varied& v : cases) {
+    const double g = 1e-3, expected = sag(v, g);
+    for (const ModelEntry& model : model_catalogue()) {
+      if (!takes_part(model)) continue;
+      SCOPED_TRACE(v.name + " " + std::string(model.id));
+      const auto off = [&](int elements) {
+        const Scene scene =
+            scene_of(text_of(std::string(model.id), elements, v.keys,
+                             "[effects.gravity]\ngravity_m_s2 = [0, 0, -1e-3]\n"));
+        return tip_sag(*system_of(scene)) / expected - 1;
+      };
+      expect_order_two(off(20), off(40), v.name + ", " + std::string(model.id));
+    }
+  }
+}
+
+/// Internal friction follows the bending stiffness: one damping time for all segments.
+TEST(Along, DampingTimeStays) {
+  const Scene scene = scene_of(
+      text_of("super_helix", 10,
+              "radius_along = [[0, 1], [1, 0.2]]\nellipticity_along = [[0, 1], [1, 2]]"));
+  const models::Strand& strand = scene.strands.front();
+  EXPECT_FALSE(strand.uniform());
+  const auto time = [&](const models::Segment& segment) {
+    const Vec all = stiffness(strand, segment);
+    return segment.factors.friction / (all.y + all.z);
+  };
+  for (const models::Segment& segment : strand.segments) {
+    EXPECT_NEAR(time(segment) / time(strand.segments.front()), 1, 1e-14);
+  }
+  const models::CrossSection& last = strand.segments.back().section;
+  // In the middle of the last of ten: shares 0.95, factors 0.24 and 1.95.
+  EXPECT_NEAR(std::sqrt(last.a1 * last.a2), 0.24 * radius, 1e-12 * radius);
+  EXPECT_NEAR(last.a1 / last.a2, 1.95, 1e-12);
+}
+
+/// Linear between rows: a segment's mean is the value in its middle, its difference that
+/// of the rows.
+TEST(Along, NaturalCurvatureFollowsItsRows) {
+  const Scene scene = scene_of(
+      text_of("super_clothoid", 10,
+              "shape = \"along\"\ndarboux_along = [[0, 1, 20, 0], [1, 3, -20, 4]]"));
+  double share = 0.05;
+  for (const models::Segment& segment : scene.strands.front().segments) {
+    EXPECT_NEAR(segment.natural.x, 1 + 2 * share, 1e-12);
+    EXPECT_NEAR(segment.natural.y, 20 - 40 * share, 1e-12);
+    EXPECT_NEAR(segment.natural.z, 4 * share, 1e-12);
+    EXPECT_NEAR(segment.natural_half.y, -2, 1e-12);
+    share += 0.1;
+  }
+}
+
+TEST(Along, RefusesWhatIsNoTable) {
+  const struct {
+    const char *keys, *reason;
+  } bad[] = {
+      {"radius_along = [[0.5, 1], [0.2, 1]]", "not in order along the strand"},
+      {"radius_along = [[0, 1], [2, 1]]", "a row at 2 of the length"},
+      {"density_along = [[0, 1], [0.5, 0], [1, 0]]", "density_along is 0"},
+      {"radius_along = [[0, 1]]\nmesh = \"rest\"", "cannot be combined with cuts"},
+      {"modulus_along = [[0, 1]]\ntolerance_m = 1e-3", "combined with a tolerance"},
+      {"shape = \"along\"", "without darboux_along"},
+      {"darboux_along = [[0, 0, 1, 0]]", "darboux_along"}};
+  for (const auto& [keys, reason] : bad) {
+    const std::string said = refusal([&] { scene_of(text_of("super_helix", 4, keys)); });
+    EXPECT_NE(said.find(reason), std::string::npos) << keys << ": " << said;
+  }
+}
+
+/// Kernels of lanes have one section for a strand.
+TEST(Along, RunsAsABatchWithoutLanes) {
+  const std::string varied = "radius_along = [[0, 1], [1, 0.5]]";
+  EXPECT_FALSE(
+      no_lanes(scene_of(text_of("super_helix", 4, "")), models::HeadNumber::float64));
+  const auto no =
+      no_lanes(scene_of(text_of("super_helix", 4, varied)), models::HeadNumber::float64);
+  ASSERT_TRUE(no);
+  EXPECT_NE(no->reason.find("varies along the strand"), std::string::npos);
+}
+
+}  // namespace tress::test_along
