@@ -29,6 +29,22 @@ int edges_by_curvature(const SpaceCurve& curve, std::span<const double> turned,
   return n > 2 ? static_cast<int>(std::min(n, 1e6)) : 2;
 }
 
+/// Half the width in the middle of each element, linear between points.
+std::vector<double> radii_of(const HelixChain& chain, const SpaceCurve& curve,
+                             std::span<const double> widths) {
+  std::vector<double> radii;
+  if (widths.empty()) return radii;
+  std::size_t i = 0;
+  for (std::size_t k = 0; k + 1 < chain.joint.size(); ++k) {
+    const double middle = (chain.joint[k] + chain.joint[k + 1]) / 2;
+    while (i + 2 < widths.size() && curve.arc_of_point(i + 1) < middle) ++i;
+    const double from = curve.arc_of_point(i), to = curve.arc_of_point(i + 1);
+    const double part = std::clamp((middle - from) / (to - from), 0.0, 1.0);
+    radii.push_back(std::lerp(widths[i], widths[i + 1], part) / 2);
+  }
+  return radii;
+}
+
 /// The value below which a share of all is.
 double quantile(std::vector<double> all, double share) {
   const auto at = all.begin() + static_cast<std::ptrdiff_t>(
@@ -102,7 +118,10 @@ FittedStrand fitted(const PlacedGroom& groom, std::size_t k, const GroomFit& fit
     }
     const bool within = made.error.largest <= tolerance * curve.length();
     if (n == made.by_rule) made.rule_holds = within;
-    if (tolerance == 0 || within || n >= fit.elements) return made;
+    if (tolerance == 0 || within || n >= fit.elements) {
+      made.radii = radii_of(made.chain, curve, groom.lines.widths_of(k));
+      return made;
+    }
     n = std::min(fit.elements, n + (n + 1) / 2);
   }
 }

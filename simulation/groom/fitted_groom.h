@@ -32,6 +32,8 @@ struct FittedStrand {
   bool rule_holds = false;  // these are enough
   HelixChain chain;         // fitted chain
   FitError error;           // m
+  /// Radius of each element, in its middle, m; empty: the file's widths are not taken.
+  std::vector<double> radii;
 
   /// Returns the length of the chain, m.
   double length() const { return chain.joint.back(); }

@@ -95,8 +95,9 @@ class Cleaning {
   Cleaning(const GroomFile& read, const std::string& file, BadStrands bad)
       : read_(read), file_(file), bad_(bad) {}
 
-  /// Strand k with these points, which it may change.
-  void add(std::size_t k, std::vector<Vec>& x) {
+  /// Strand k with these points and widths, which it may change. No widths: none are
+  /// taken.
+  void add(std::size_t k, std::vector<Vec>& x, std::vector<double>& widths) {
     const std::size_t before = x.size();
     if (before < 2) {
       return leave_out(k, fmt::format("has {} point{}", before, before == 1 ? "" : "s"),
@@ -110,6 +111,11 @@ class Cleaning {
                               : fmt::format("has point {} that is not finite", i),
                        far_);
     }
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+      if (widths[i] > 0 && widths[i] <= farthest) continue;
+      return leave_out(k, fmt::format("has width {:.3g} m at point {}", widths[i], i),
+                       thin_);
+    }
     const auto repeats = [](const Vec& a, const Vec& b) {
       return !(norm(b - a) >= 2 * SpaceCurve::least_step);
     };
@@ -118,11 +124,19 @@ class Cleaning {
       if (bad_ == BadStrands::refuse) {
         refuse(k, fmt::format("has point {} twice", twice - x.begin()));
       }
-      x.erase(std::unique(x.begin(), x.end(), repeats), x.end());
+      std::size_t kept = 1;
+      for (std::size_t i = 1; i < before; ++i) {
+        if (repeats(x[kept - 1], x[i])) continue;
+        if (!widths.empty()) widths[kept] = widths[i];
+        x[kept++] = x[i];
+      }
+      x.resize(kept);
+      if (!widths.empty()) widths.resize(kept);
       repeated_ += before - x.size();
       if (x.size() < 2) return leave_out(k, "has one point, repeated", few_);
     }
     lines.points.insert(lines.points.end(), x.begin(), x.end());
+    lines.widths.insert(lines.widths.end(), widths.begin(), widths.end());
     lines.end_strand(read_.lines.numbers[k], read_.lines.places[k]);
   }
 
@@ -132,6 +146,7 @@ class Cleaning {
     };
     say(few_, "strands of fewer than two points are left out");
     say(far_, "strands with points that are not finite, or far away, are left out");
+    say(thin_, "strands with a width that is not above 0 are left out");
     say(repeated_, "repeated points are left out");
   }
 
@@ -154,7 +169,7 @@ class Cleaning {
   const GroomFile& read_;
   const std::string& file_;
   BadStrands bad_;
-  mutable std::size_t few_ = 0, far_ = 0;
+  mutable std::size_t few_ = 0, far_ = 0, thin_ = 0;
   std::size_t repeated_ = 0;
 };
 
@@ -209,13 +224,20 @@ PlacedGroom place_groom(GroomFile read, const std::string& file,
   const FileAxis up = axis_of(read, file, placing, placed.notes);
   Cleaning cleaning(read, file, placing.bad);
   cleaning.lines.points.reserve(read.lines.points.size() / placing.every);
+  refuse_if(placing.widths && read.lines.widths.empty(), "the file has no widths", file,
+            "leave out widths = \"file\", or export the file with them");
   std::vector<Vec> x;
+  std::vector<double> widths;
   for (std::size_t k = 0; k < read.lines.size(); k += placing.every) {
     x.clear();
+    widths.clear();
     for (const Vec& point : read.lines.strand(k)) {
       x.push_back(placing.position + metres * upright(point, up));
     }
-    cleaning.add(k, x);
+    if (placing.widths) {
+      for (const double width : read.lines.widths_of(k)) widths.push_back(metres * width);
+    }
+    cleaning.add(k, x, widths);
   }
   cleaning.note(placed.notes);
   placed.lines = std::move(cleaning.lines);

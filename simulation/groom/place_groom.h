@@ -25,6 +25,7 @@ struct GroomPlacing {
   Vec position;                         // of the file's origin, m
   BadStrands bad = BadStrands::refuse;  // treatment of strands that cannot be simulated
   std::size_t every = 1;                // take every n-th strand
+  bool widths = false;                  // take the widths of the file
 };
 
 /// In m, z up, thinned; with what a user should know of guesses and strands left out, one
@@ -49,9 +50,11 @@ struct PlacedGroom {
 ///
 /// A strand is bad if it has fewer than two points or a point that is not finite. It is
 /// also bad if a point is farther than 1 km from the origin or repeats the one before
-/// (within 1 nm). If bad strands are refused, an InputError names the first with its
-/// number, from 0, and its place in the file. If they are dropped, they are counted, and
-/// of repeated points only the repetition is left out.
+/// (within 1 nm), or has no width above 0 if widths are taken. If bad strands are
+/// refused, an InputError names the first with its number, from 0, and its place in the
+/// file. If they are dropped, they are counted, and of repeated points only the
+/// repetition is left out. Throws InputError if widths are to be taken from a file
+/// without any.
 PlacedGroom place_groom(GroomFile read, const std::string& file,
                         const GroomPlacing& placing);
 

@@ -33,10 +33,10 @@ struct HairArray {
   std::uint64_t bytes;  // of a strand, or of a point
   bool of_strand;
 };
-constexpr std::uint32_t has_segments = 1, has_points = 2;
+constexpr std::uint32_t has_segments = 1, has_points = 2, has_widths = 4;
 constexpr HairArray hair_arrays[] = {{has_segments, sizeof(std::uint16_t), true},
                                      {has_points, 3 * sizeof(float), false},
-                                     {4, sizeof(float), false},
+                                     {has_widths, sizeof(float), false},
                                      {8, sizeof(float), false},
                                      {16, 3 * sizeof(float), false}};
 constexpr std::uint64_t hair_header = 128;
@@ -115,7 +115,7 @@ std::optional<GroomFile> read_headless(ByteStream& from) {
 
 }  // namespace
 
-GroomFile read_hair(ByteStream& from) {
+GroomFile read_hair(ByteStream& from, const GroomReading& reading) {
   char magic[4] = {};
   if (from.size() >= sizeof magic) from.take(magic, sizeof magic);
   const std::string_view word(magic, sizeof magic);
@@ -135,6 +135,7 @@ GroomFile read_hair(ByteStream& from) {
     from.refuse(fmt::format("array bits {} are without points", bits),
                 "write the file with its points");
   }
+  const auto width = from.number<float>();  // where there is no array of widths
   check_hair_size(from, strands, points, bits);
   from.seek(hair_header);
   // No more than there are points: each strand has one at least.
@@ -156,6 +157,13 @@ GroomFile read_hair(ByteStream& from) {
   GroomFile made;
   made.lines.points.reserve(points);
   float_strands(from, each, made.lines);
+  if (!reading.widths) return made;
+  if ((bits & has_widths) != 0) {
+    made.lines.widths.resize(points);
+    for (double& of_point : made.lines.widths) of_point = from.number<float>();
+  } else if (width > 0) {
+    made.lines.widths.assign(points, width);
+  }
   return made;
 }
 
@@ -205,7 +213,7 @@ GroomFile read_groom(const std::string& file, const GroomReading& reading) {
     throw InputError("hidden_strands is for .usda files alone", file, "leave it out");
   }
   try {
-    if (ending == ".hair") return read_hair(from);
+    if (ending == ".hair") return read_hair(from, reading);
     if (ending == ".data") return read_counted(from, 3);
     if (ending == ".bin") return read_counted(from, 7);
     if (ending == ".ply") return read_ply(from, reading.strand_points);

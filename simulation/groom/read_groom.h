@@ -23,6 +23,7 @@ struct GroomReading {
   int strand_points = 0;                // of every strand of a .ply; 0: the file's own
   BadStrands bad = BadStrands::refuse;  // of curves whose count does not suit their basis
   bool hidden = false;                  // take the curves that USD does not render
+  bool widths = false;                  // read widths
 };
 
 /// Strands as they are in a file, in its units and axes.
@@ -50,15 +51,16 @@ struct GroomFile {
 ///             transforms above them [OpenUSD]
 ///     .vtp    lines of PolyData; ascii, binary and appended, not compressed [VTK]
 ///
-/// Strands may have any number of points of any value: place_groom() judges them. Throws
-/// InputError, naming byte or line, where sizes or syntax are wrong, where data follow
-/// the last strand, and where memory does not suffice. O(bytes), through a buffer; memory
-/// is that of the points, whatever sizes the file claims.
+/// Widths, the diameters at points, are read from a .hair and a .usda if the settings say
+/// so. Strands may have any number of points of any value: place_groom() judges them.
+/// Throws InputError, naming byte or line, where sizes or syntax are wrong, where data
+/// follow the last strand, and where memory does not suffice. O(bytes), through a buffer;
+/// memory is that of the points, whatever sizes the file claims.
 GroomFile read_groom(const std::string& file, const GroomReading& reading = {});
 
 // One format each.
 /// Reads Yuksel's .hair.
-GroomFile read_hair(ByteStream& from);
+GroomFile read_hair(ByteStream& from, const GroomReading& reading);
 /// Reads counted strands of `floats` numbers a point: .data, .bin.
 GroomFile read_counted(ByteStream& from, int floats);
 /// Reads .ply, with `strand_points` points a strand unless the file has curves.

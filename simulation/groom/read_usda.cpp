@@ -30,7 +30,7 @@ struct Prim {
 class UsdReader {
  public:
   UsdReader(ByteStream& from, const GroomReading& reading)
-      : from_(from), text_(from), reading_(reading), curves_(from) {
+      : from_(from), text_(from), curves_(from, reading) {
     made_.text = true;
     // [OpenUSD, UsdGeomGetStageMetersPerUnit, UsdGeomGetStageUpAxis]
     made_.format_metres = 0.01;
@@ -54,7 +54,7 @@ class UsdReader {
                        "export hair as curves, not as meshes or NURBS");
     }
     if (samples_) made_.notes.emplace_back("of an animation the first frame is read");
-    curves_.finish(reading_, made_);
+    curves_.finish(made_);
     return std::move(made_);
   }
 
@@ -168,8 +168,9 @@ class UsdReader {
   static bool knows(const Prim& prim, std::string_view name) {
     if (name.starts_with("xformOp:")) return name.find('.') == std::string_view::npos;
     if (name == "xformOpOrder" || name == "visibility" || name == "purpose") return true;
-    return prim.is_curves() && (name == "type" || name == "basis" || name == "wrap" ||
-                                name == "points" || name == "curveVertexCounts");
+    return prim.is_curves() &&
+           (name == "type" || name == "basis" || name == "wrap" || name == "points" ||
+            name == "curveVertexCounts" || name == "widths");
   }
 
   void read_attribute(Prim& prim, const std::string& name) {
@@ -188,6 +189,8 @@ class UsdReader {
                                           : Hidden::no;
     } else if (name == "points") {
       read_points(prim.curves);
+    } else if (name == "widths") {
+      prim.curves.widths = text_.numbers();
     } else if (name == "curveVertexCounts") {
       prim.curves.counts.clear();
       text_.list([&] { prim.curves.counts.push_back(from_.whole()); });
@@ -281,7 +284,6 @@ class UsdReader {
 
   ByteStream& from_;
   UsdText text_;
-  GroomReading reading_;
   UsdCurves curves_;
   GroomFile made_;
   std::vector<Prim> prims_;

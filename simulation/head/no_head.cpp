@@ -140,9 +140,10 @@ std::optional<NoHead> no_strands(const Scene& scene) {
     if (p.number("grading") != 1) {
       return NoHead{"elements of different lengths", "leave out grading"};
     }
-    if (varies_along(source.table)) {
+    const bool widths = source.file && p.word("widths") == "file";
+    if (widths || varies_along(source.table)) {
       return NoHead{"a section or material that varies along the strand",
-                    "leave out the keys that end with _along"};
+                    "leave out widths, and the keys that end with _along"};
     }
   }
   if (scene.strands.front().free_root) {

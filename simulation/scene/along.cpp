@@ -102,9 +102,17 @@ class Along {
   std::vector<Row> rows_;
 };
 
-double mean_bending(const Strand& strand, const Segment& segment) {
-  const Vec all = stiffness(strand, segment);
-  return (all.y + all.z) / 2;
+/// Changes section and moduli of a segment. Its internal friction changes as its mean
+/// bending stiffness.
+template <class Change>
+void change(const Strand& strand, Segment& segment, Change apply) {
+  const auto bending = [&] {
+    const Vec all = stiffness(strand, segment);
+    return all.y + all.z;
+  };
+  const double before = bending();
+  apply();
+  segment.factors.friction *= bending() / before;
 }
 
 }  // namespace
@@ -134,14 +142,24 @@ void vary_along(const Table& table, Strand& strand) {
                 table.place(factors[k]), "give factors above 0");
     }
     const auto [radius, ellipticity, modulus, density] = all;
-    const double stretch = std::sqrt(ellipticity);
-    const double before = mean_bending(strand, segment);
-    segment.section.a1 *= radius * stretch;
-    segment.section.a2 *= radius / stretch;
-    segment.factors.modulus = modulus;
-    segment.factors.density = density;
-    segment.factors.friction = mean_bending(strand, segment) / before;
+    change(strand, segment,
+           [&, radius = radius, modulus = modulus, density = density,
+            stretch = std::sqrt(ellipticity)] {
+             segment.section.a1 *= radius * stretch;
+             segment.section.a2 *= radius / stretch;
+             segment.factors.modulus = modulus;
+             segment.factors.density = density;
+           });
   }
+}
+
+void set_radius(const Strand& strand, double radius, Segment& segment) {
+  CrossSection& section = segment.section;
+  const double factor = radius / std::sqrt(section.a1 * section.a2);
+  change(strand, segment, [&] {
+    section.a1 *= factor;
+    section.a2 *= factor;
+  });
 }
 
 Shape shape_along(const Table& table, double length) {

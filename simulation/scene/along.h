@@ -21,6 +21,10 @@ bool varies_along(const Table& table);
 /// strand, or a value is not positive.
 void vary_along(const Table& table, models::Strand& strand);
 
+/// Sets the radius of a segment (m), the mean of a circle of the same area, and its
+/// internal friction as vary_along().
+void set_radius(const models::Strand& strand, double radius, models::Segment& segment);
+
 /// Returns the shape of `darboux_along` for a strand of this length (m). Throws
 /// InputError unless its rows are in order along the strand.
 models::Shape shape_along(const Table& table, double length);

@@ -61,6 +61,10 @@ constexpr Parameter file_keys[] = {
          "file: curves of a .usda that USD does not render (inactive, invisible, of a "
          "class, of purpose guide or proxy); drop: left out, and counted",
      .choices = "drop|take"},
+    {.name = "widths",
+     .help = "file: radius of the strands, that of [material], or half the widths of a "
+             ".hair or .usda, which vary along a strand",
+     .choices = "material|file"},
     {.name = "strand_points",
      .help = "file: points of every strand of a .ply that does not say; 0: it says",
      .number = 0,
@@ -145,10 +149,12 @@ std::shared_ptr<const PlacedGroom> read_file_groom(const Table& groom) {
   placing.up = up_axis(p.word("up"));
   placing.position = p.vec("position_m");
   placing.bad = p.word("bad_strands") == "drop" ? BadStrands::drop : BadStrands::refuse;
+  placing.widths = p.word("widths") == "file";
   placing.every = static_cast<std::size_t>(p.whole("every"));
   GroomReading reading;
   reading.strand_points = p.whole("strand_points");
   reading.bad = placing.bad;
+  reading.widths = placing.widths;
   reading.hidden = p.word("hidden_strands") == "take";
   return std::make_shared<const PlacedGroom>(
       place_groom(read_groom(file, reading), file, placing));
@@ -205,6 +211,7 @@ Strand file_strand(const Table& groom, const Table* own_material, const Common& 
     segment.section = material.section;
     segment.natural = chain.darboux[k];
     if (!straight) segment.initial = segment.natural;
+    if (!fitted.radii.empty()) set_radius(strand, fitted.radii[k], segment);
     strand.segments.push_back(segment);
   }
   vary_along(groom, strand);

@@ -1,10 +1,14 @@
 // Properties that vary along a strand: frequency and sag of tapered cantilevers against a
 // Ritz method and integrals that share no code with the models, and what is refused.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -115,6 +119,14 @@ std::unique_ptr<System> system_of(const Scene& scene) {
                                 make_effects(scene));
 }
 using Numbers = std::vector<double>;
+/// The unknowns at the start.
+struct Start {
+  explicit Start(const System& system)
+      : q(std::size_t(system.layout().coordinates)), v(q) {
+    system.initial_state(q, v);
+  }
+  Numbers q, v;
+};
 double size(const Numbers& x) {
   double sum = 0;
   for (const double y : x) sum += y * y;
@@ -124,7 +136,7 @@ double size(const Numbers& x) {
 /// The least frequency (rad/s) by inverse iteration. The ratio to the second is at least
 /// 4, squared 16: 30 rounds leave 16^-30.
 double frequency(System& system) {
-  const State start = initial_state(system);
+  const Start start(system);
   const std::size_t n = start.q.size();
   const Numbers zero(n);
   Numbers x(n), force(n), none(n);
@@ -146,7 +158,7 @@ double frequency(System& system) {
 /// The sag of the tip under a small weight: the first step of Newton from the straight
 /// strand is exact to the square of the sag over the length, 1e-8.
 double tip_sag(System& system) {
-  const State start = initial_state(system);
+  const Start start(system);
   const std::size_t n = start.q.size();
   const Numbers zero(n);
   Numbers r(n), x(n);
@@ -155,7 +167,7 @@ double tip_sag(System& system) {
   for (double& y : r) y = -y;
   EXPECT_EQ(system.solve(r, x), Status::ok);
   for (std::size_t i = 0; i < n; ++i) x[i] += start.q[i];
-  MaterialPoints& points = *material_points(system);
+  MaterialPoints& points = *system.material_points();
   Numbers places(3 * std::size_t(points.count()));
   points.positions(0, x, places);
   return -places.back();
@@ -270,6 +282,111 @@ TEST(Along, RunsAsABatchWithoutLanes) {
       no_lanes(scene_of(text_of("super_helix", 4, varied)), models::HeadNumber::float64);
   ASSERT_TRUE(no);
   EXPECT_NE(no->reason.find("varies along the strand"), std::string::npos);
+}
+
+/// A file of this ending and content, and the scene of its strands.
+class FromFile {
+ public:
+  FromFile(const std::string& ending, const std::string& bytes)
+      : folder_(std::filesystem::temp_directory_path() /
+                fmt::format("tress_along_{}", getpid())) {
+    std::filesystem::create_directories(folder_);
+    file_ = folder_ / ("strands" + ending);
+    std::ofstream(file_, std::ios::binary) << bytes;
+  }
+  ~FromFile() { std::filesystem::remove_all(folder_); }
+  FromFile(const FromFile&) = delete;
+  FromFile& operator=(const FromFile&) = delete;
+
+  Scene scene(const std::string& keys = "widths = \"file\"") const {
+    return scene_of(
+        "title = \"widths\"\n[model]\nid = \"der\"\n[integrator]\nid = "
+        "\"backward_euler\"\n[groom]\nunit = \"m\"\nup = \"z\"\nelements = 4\n"
+        "mesh = \"equal\"\nfile = \"" +
+        file_.string() + "\"\n" + keys + "\n");
+  }
+
+ private:
+  std::filesystem::path folder_, file_;
+};
+
+double radius_of(const models::Segment& segment) {
+  return std::sqrt(segment.section.a1 * segment.section.a2);
+}
+
+/// Two straight strands of three points, as a .usda with these widths.
+std::string usda(const std::string& widths) {
+  return "#usda 1.0\n(metersPerUnit = 1\nupAxis = \"Z\")\ndef BasisCurves \"hair\" {\n"
+         "uniform token type = \"linear\"\nint[] curveVertexCounts = [3, 3]\n"
+         "point3f[] points = [(0,0,0), (0,0,-0.1), (0,0,-0.2), (1,0,0), (1,0,-0.1), "
+         "(1,0,-0.2)]\n" +
+         widths + "}\n";
+}
+
+/// Widths at points vary linearly between them: elements of a quarter have the mean of
+/// their ends. The section keeps its ellipticity.
+TEST(Widths, OfAFileAreTheDiametersOfElements) {
+  const FromFile points(
+      ".usda",
+      usda("float[] widths = [2e-4, 1e-4, 1e-4, 2e-4, 2e-4, 4e-4] (interpolation = "
+           "\"vertex\")\n"));
+  const Scene scene = points.scene();
+  ASSERT_EQ(scene.strands.size(), 2U);
+  const double expected[2][4] = {{0.875e-4, 0.625e-4, 0.5e-4, 0.5e-4},
+                                 {1e-4, 1e-4, 1.25e-4, 1.75e-4}};
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const models::Segment& segment = scene.strands[k].segments[i];
+      EXPECT_NEAR(radius_of(segment) / expected[k][i], 1, 1e-6) << k << " " << i;
+      EXPECT_NEAR(segment.section.a1 / segment.section.a2, 1.41, 1e-12);
+    }
+  }
+  EXPECT_TRUE(no_lanes(scene));
+  // The material's, unless the scene asks for the file's.
+  EXPECT_NEAR(radius_of(points.scene("").strands[0].segments[0]), 36e-6, 1e-12);
+}
+
+TEST(Widths, OfACurveOrOfAllApplyToAllElements) {
+  const FromFile curves(".usda", usda("float[] widths = [2e-4, 6e-4]\n"));
+  EXPECT_NEAR(radius_of(curves.scene().strands[0].segments[3]), 1e-4, 1e-10);
+  EXPECT_NEAR(radius_of(curves.scene().strands[1].segments[0]), 3e-4, 1e-10);
+  const FromFile all(".usda", usda("float[] widths = [4e-4]\n"));
+  EXPECT_NEAR(radius_of(all.scene().strands[1].segments[2]), 2e-4, 1e-10);
+}
+
+/// A .hair with one strand, and with an array of widths or a width in its header.
+std::string hair(const std::vector<float>& widths, float width) {
+  std::string bytes = "HAIR";
+  const auto put = [&](auto x) {
+    bytes.append(reinterpret_cast<const char*>(&x), sizeof x);  // NOLINT
+  };
+  const std::uint32_t arrays = widths.empty() ? 2 : 6;
+  for (const std::uint32_t x : {1U, 3U, arrays, 2U}) put(x);
+  put(width);
+  bytes.resize(128);
+  for (const float x : {0.F, 0.F, 0.F, 0.F, 0.F, -0.1F, 0.F, 0.F, -0.2F}) put(x);
+  for (const float x : widths) put(x);
+  return bytes;
+}
+
+TEST(Widths, OfAHairFileAreThoseOfItsPointsOrItsHeader) {
+  const FromFile points(".hair", hair({2e-4F, 1e-4F, 3e-4F}, 1));
+  EXPECT_NEAR(radius_of(points.scene().strands[0].segments[0]) / 0.875e-4, 1, 1e-6);
+  EXPECT_NEAR(radius_of(points.scene().strands[0].segments[3]) / 1.25e-4, 1, 1e-6);
+  const FromFile header(".hair", hair({}, 3e-4F));
+  EXPECT_NEAR(radius_of(header.scene().strands[0].segments[2]) / 1.5e-4, 1, 1e-6);
+}
+
+TEST(Widths, AreRefusedWhereThereAreNone) {
+  const auto said = [](const FromFile& file) { return refusal([&] { file.scene(); }); };
+  EXPECT_NE(said({".usda", usda("")}).find("the file has no widths"), std::string::npos);
+  EXPECT_NE(said({".hair", hair({}, 0)}).find("the file has no widths"),
+            std::string::npos);
+  EXPECT_NE(said({".hair", hair({1e-4F, -1e-4F, 1e-4F}, 0)}).find("width -0.0001 m"),
+            std::string::npos);
+  EXPECT_NE(said({".usda", usda("float[] widths = [1e-4, 1e-4, 1e-4]\n")})
+                .find("the file has no widths"),
+            std::string::npos);
 }
 
 }  // namespace tress::test_along
