@@ -112,7 +112,7 @@ class ReducedKernel {
     Matrix of_force, of_moment;  // H_k(translation), H_k(rotation)
     Vec unknown;                 // its unknowns, were the start to stay
   };
-  /// Of an element of more unknowns: its Kind stores all factors.
+  /// Stands for the factors of an element of more unknowns, which its Kind stores.
   struct Nothing {};
   /// State of an element between sweeps.
   struct Scratch : std::conditional_t<std::same_as<Unknowns, Vec>, Eliminated, Nothing> {

@@ -11,8 +11,8 @@
 namespace tress::models {
 
 /// A strand under sweeps. It provides the motion of its clamp and the loads on its
-/// points, which are those of ReducedStrand::blocks, but for uniform and viscous loads
-/// (Effect::viscosity()), which the sweeps add to the inertia.
+/// points, which are those of ReducedStrand::blocks. The sweeps add uniform and viscous
+/// loads (Effect::viscosity()) to the inertia.
 class SweptStrand {
  public:
   virtual ~SweptStrand() = default;

@@ -50,7 +50,7 @@ struct PlacedGroom {
 ///
 /// A strand is bad if it has fewer than two points or a point that is not finite. It is
 /// also bad if a point is farther than 1 km from the origin or repeats the one before
-/// (within 1 nm), or has no width above 0 if widths are taken. If bad strands are
+/// (within 1 nm). If widths are taken, a width must be above 0. If bad strands are
 /// refused, an InputError names the first with its number, from 0, and its place in the
 /// file. If they are dropped, they are counted, and of repeated points only the
 /// repetition is left out. Throws InputError if widths are to be taken from a file

@@ -7,9 +7,9 @@
 
 namespace tress::simulation {
 
-/// Returns the keys of [strand] and [groom] for properties that vary along a strand: rows
-/// of an arc length over the length of the strand, and values there, linear between rows
-/// and constant beyond them.
+/// Returns the keys of [strand] and [groom] for properties that vary along a strand. Each
+/// has rows of an arc length over the length of the strand, and values there. Values are
+/// linear between rows and constant beyond them.
 std::span<const Parameter> along_parameters();
 
 /// Returns whether the table gives a section or a material that varies along a strand.

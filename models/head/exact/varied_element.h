@@ -54,7 +54,7 @@ struct VariedWrench {
 /// d_j.
 template <class T, std::size_t functions = 1>
 struct ElementSums {
-  /// Of three unknowns each.
+  /// Elements of three unknowns each.
   using Each = std::array<Matrix3<T>, functions>;
 
   T one;                 // w
