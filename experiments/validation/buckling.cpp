@@ -9,6 +9,7 @@
 #include "experiments/validation/rods/rod.h"
 #include "experiments/validation/rods/statics.h"
 #include "experiments/validation/test.h"
+#include "models/effects/point_force.h"
 #include "models/effects/tether.h"
 
 namespace tress::experiments::validation {
@@ -218,9 +219,9 @@ double measure_beck(const ModelTrial& trial) {
   const TestRod rod;
   const Strand strand = rod.strand(trial.elements, horizontal_clamp());
   const auto at = [&](double load) {
-    Statics statics(
-        trial.variant, strand, {}, {},
-        {std::make_shared<FollowerForce>(trial.elements, load * rod.force())});
+    const auto push = std::make_shared<PointForce>(
+        PointForce::Settings{.follower = -load * rod.force()});
+    Statics statics(trial.variant, strand, {}, {}, {push});
     statics.relax(1);
     return two_squares(statics);
   };

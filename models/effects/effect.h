@@ -23,6 +23,8 @@ struct Points {
   In mass;        // (count) mass carried by the point, kg
   In length;      // (count) strand length carried by the point, m
   int held = 0;   // the first so many move as the root prescribes, whatever their load
+  In arc{};       // (count) arc length from the root at rest, m
+  double longest = 0;  // arc length of the farthest tip, m
 };
 
 /// Quantities that a model must compute before it calls add_load, add_derivatives or

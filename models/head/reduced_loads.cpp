@@ -229,6 +229,7 @@ void ReducedLoads<Kind>::take_others(int lane) {
   for (auto* to : {&of_x_, &of_v_, &of_tangent_}) to->resize(3 * all);
   mass_.resize(all);
   length_.resize(all);
+  arc_.resize(all);
   load_.assign(3 * all, 0.0);
   blocks_.assign(9 * all, 0.0);
   const double density = lane_of(block_.material->density, lane) * units_.density;
@@ -238,13 +239,19 @@ void ReducedLoads<Kind>::take_others(int lane) {
     store3(lane_of(tangent_[i], lane), &of_tangent_[3 * i]);
     length_[i] = units_.length * lane_of(weight_of(i % points_), lane);
     mass_[i] = density * length_[i];
+    const auto before = static_cast<double>(i / points_);
+    arc_[i] = units_.length * (before * lane_of(block_.material->length, lane) +
+                               lane_of(place_of(i % points_).arc, lane));
   }
   const Points p{.count = static_cast<int>(all),
                  .x = of_x_,
                  .v = of_v_,
                  .tangent = of_tangent_,
                  .mass = mass_,
-                 .length = length_};
+                 .length = length_,
+                 .arc = arc_,
+                 .longest = units_.length * static_cast<double>(n_) *
+                            lane_of(block_.material->length, lane)};
   const double h = block_.h;
   for (const Effect* effect : block_.others[static_cast<std::size_t>(lane)]) {
     if (effect->needs().derivatives) {

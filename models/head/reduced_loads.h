@@ -102,7 +102,7 @@ class ReducedLoads {
   std::vector<PointLoad<T>> others_;
   std::vector<T> some_;
   std::vector<Vec3T> x_, v_, tangent_;
-  std::vector<double> of_x_, of_v_, of_tangent_, mass_, length_, load_, blocks_;
+  std::vector<double> of_x_, of_v_, of_tangent_, mass_, length_, arc_, load_, blocks_;
 };
 
 }  // namespace tress::models

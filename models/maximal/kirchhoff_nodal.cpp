@@ -90,6 +90,7 @@ std::unique_ptr<System> kirchhoff_nodal(const Strand& strand,
   for (const MaximalStrand::MassPoint& point : nodal.parts.mass) {
     parts.rod.mass.push_back(point.mass);
     parts.node_length.push_back(point.length);
+    parts.node_arc.push_back(point.arc);
   }
   for (std::size_t j = 0; j < strand.segments.size(); ++j) {
     const Segment& segment = strand.segments[j];

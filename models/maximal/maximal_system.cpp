@@ -80,6 +80,7 @@ MaximalSystem::MaximalSystem(MaximalStrand strand)
   for (const auto& point : strand_.mass) {
     mass_.push_back(point.mass);
     length_.push_back(point.length);
+    arc_.push_back(point.arc);
   }
   blocks_.resize(9 * count);
   scratch_.resize(static_cast<std::size_t>(pattern_.rows));
@@ -155,6 +156,8 @@ void MaximalSystem::place(double t, In q, In v) noexcept {
 
 Points MaximalSystem::points(Needs wanted) noexcept {
   Points p{static_cast<int>(mass_.size()), {}, {}, {}, mass_, length_};
+  p.arc = arc_;
+  p.longest = strand_.length;
   p.held = strand_.clamped && strand_.mass.front().at.nodes == 1 ? 1 : 0;
   const auto fill = [&](In of_nodes, std::vector<double>& to) {
     for (std::size_t i = 0; i < strand_.mass.size(); ++i) {

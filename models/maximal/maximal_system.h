@@ -38,9 +38,11 @@ struct MaximalStrand {
   struct MassPoint {
     NodeMean at;          // the point as a mean of nodes
     double mass, length;  // kg, m
+    double arc;           // from the root, m
   };
 
   bool clamped = true;                // whether node 0 is prescribed
+  double length = 0;                  // arc length at rest, m
   int nodes = 0;                      // number of nodes
   std::vector<double> z, rate;        // at t = 0
   std::vector<double> z_typ, z_rate;  // typical sizes of z and its rate
@@ -207,8 +209,8 @@ class MaximalSystem final : public System,
   bool displaced_ = false;                // the next tangent has its stresses from there
   double jumped_at_ = 0;                  // s, first of Elasticity::jumps()
   std::vector<double> z_, rate_, force_;  // all coordinates
-  std::vector<double> x_, v_, tangent_, load_, mass_, length_;  // per mass point
-  std::vector<double> blocks_;                                  // (9 mass points)
+  std::vector<double> x_, v_, tangent_, load_, mass_, length_, arc_;  // per mass point
+  std::vector<double> blocks_;                                        // (9 mass points)
   std::vector<double> values_, scratch_;
   // Made on first use: blocks and orientations, and the number of prescribed coordinates
   // of each.

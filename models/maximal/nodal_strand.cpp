@@ -99,7 +99,8 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
               segment.length / 2;
     }
     const NodeMean at{.first = static_cast<int>(i)};
-    parts.mass.push_back({at, mass, carried});
+    parts.mass.push_back({at, mass, carried, parts.length});
+    if (i + 1 < nodes) parts.length += strand.segments[i].length;
     parts.shown.push_back(at);
   }
 }

@@ -23,6 +23,7 @@ struct NodalParts {
   StaggeredRod rod;                     // discretisation
   RootMotion root;                      // motion of the root
   std::vector<double> node_length;      // length seen by effects, m
+  std::vector<double> node_arc;         // arc length from the root at rest, m
   std::vector<double> start;            // curvatures at t = 0
   double curvature = 1, rate = 1;       // typical sizes, 1/m and 1/s
   Jacobian jacobian = Jacobian::exact;  // terms of the Jacobian

@@ -40,6 +40,7 @@ class InverseDynamics {
     load_.resize(3 * all);
     mass_.resize(all);
     length_.resize(all);
+    arc_.resize(all);
     for (std::size_t b = 0; b < blocks; ++b) {
       for (int lane = 0; lane < Pack::lanes; ++lane) {
         const std::size_t at = K::first_point(b) + static_cast<std::size_t>(lane);
@@ -47,6 +48,7 @@ class InverseDynamics {
         length_[at] = kinematics.blocks()[b].length[lane];
       }
     }
+    place_along();
     if (needs_.position) x_.resize(3 * all);
     if (needs_.velocity) v_.resize(3 * all);
     if (needs_.tangent) tangent_.resize(3 * all);
@@ -116,7 +118,9 @@ class InverseDynamics {
             .v = filled(v_, wanted.velocity),
             .tangent = filled(tangent_, wanted.tangent),
             .mass = mass_,
-            .length = length_};
+            .length = length_,
+            .arc = arc_,
+            .longest = longest_};
   }
 
   /// Writes blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.
@@ -191,6 +195,24 @@ class InverseDynamics {
     const Points p = points(needs_);
     for (const auto& effect : effects_) {
       if (accept(*effect)) effect->add_derivatives(t, p, pos, vel, blocks);
+    }
+  }
+
+  /// Sets the arc lengths of all points from the root.
+  void place_along() {
+    const auto& segments = kinematics_.segments();
+    std::vector<double> tip;
+    for (const auto& segment : segments) {
+      const double start =
+          segment.parent < 0 ? 0 : tip[static_cast<std::size_t>(segment.parent)];
+      tip.push_back(start + segment.length);
+      longest_ = std::max(longest_, tip.back());
+      for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
+        for (int lane = 0; lane < Pack::lanes; ++lane) {
+          arc_[K::first_point(b) + static_cast<std::size_t>(lane)] =
+              start + kinematics_.blocks()[b].s[lane];
+        }
+      }
     }
   }
 
@@ -272,7 +294,8 @@ class InverseDynamics {
   Needs needs_;
   std::vector<const Effect*> loading_;  // effects that are not uniform
   std::vector<const Effect*> placed_;   // those of them that are not viscous
-  std::vector<double> x_, v_, tangent_, mass_, length_, load_;
+  std::vector<double> x_, v_, tangent_, mass_, length_, arc_, load_;
+  double longest_ = 0;  // arc length of the farthest tip
   std::vector<Force> force_;
   std::vector<Wrench> at_tip_;
   Wrench at_root_;

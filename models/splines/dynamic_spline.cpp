@@ -245,8 +245,10 @@ std::unique_ptr<System> dynamic_spline(const Strand& strand,
     const Segment& segment = strand.segments[i];
     const double line = strand.material_of(segment).density * segment.section.area();
     for (const auto& [along, weight] : gauss_legendre(mass_points, lengths[i])) {
-      parts.mass.push_back({node_mean(i, spline.at(i, along)), line * weight, weight});
+      parts.mass.push_back({node_mean(i, spline.at(i, along)), line * weight, weight,
+                            parts.length + along});
     }
+    parts.length += lengths[i];
     parts.shown.push_back(node_mean(i, spline.at(i, 0)));
     if (i + 1 == spline.spans()) {
       parts.shown.push_back(node_mean(i, spline.at(i, lengths[i])));

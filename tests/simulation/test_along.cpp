@@ -12,17 +12,20 @@
 #include <numbers>
 #include <string>
 
-#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "models/catalogue.h"
 #include "simulation/head/no_head.h"
 #include "simulation/scene/scene.h"
 #include "tests/support/refusal.h"
+#include "tests/support/small_motion.h"
 
 namespace tress::test_along {
 
 using namespace simulation;
+using testing_support::frequency;
 using testing_support::refusal;
+using testing_support::system_of;
+using testing_support::tip_moved;
 
 constexpr double length = 0.1, radius = 1e-4, youngs = 3e9, density = 1300;
 
@@ -114,65 +117,6 @@ double sag(const Varied& v, double g) {
   });
 }
 
-std::unique_ptr<System> system_of(const Scene& scene) {
-  return scene.model->on_strand(scene.strands.front(), scene.model_options,
-                                make_effects(scene));
-}
-using Numbers = std::vector<double>;
-/// The unknowns at the start.
-struct Start {
-  explicit Start(const System& system)
-      : q(std::size_t(system.layout().coordinates)), v(q) {
-    system.initial_state(q, v);
-  }
-  Numbers q, v;
-};
-double size(const Numbers& x) {
-  double sum = 0;
-  for (const double y : x) sum += y * y;
-  return std::sqrt(sum);
-}
-
-/// The least frequency (rad/s) by inverse iteration. The ratio to the second is at least
-/// 4, squared 16: 30 rounds leave 16^-30.
-double frequency(System& system) {
-  const Start start(system);
-  const std::size_t n = start.q.size();
-  const Numbers zero(n);
-  Numbers x(n), force(n), none(n);
-  EXPECT_EQ(system.residual(0, start.q, zero, zero, none), Status::ok);
-  for (std::size_t i = 0; i < n; ++i) x[i] = 1 + 0.1 * std::sin(double(i));
-  EXPECT_EQ(system.linearize(0, start.q, zero, zero, {0, 0, 1}), Status::ok);
-  double growth = 0;
-  for (int round = 0; round < 30; ++round) {
-    const double before = size(x);
-    EXPECT_EQ(system.residual(0, start.q, zero, x, force), Status::ok);
-    for (std::size_t i = 0; i < n; ++i) force[i] -= none[i];
-    EXPECT_EQ(system.solve(force, x), Status::ok);
-    growth = size(x) / before;
-    for (double& y : x) y /= size(x);
-  }
-  return std::sqrt(1 / growth);
-}
-
-/// The sag of the tip under a small weight: the first step of Newton from the straight
-/// strand is exact to the square of the sag over the length, 1e-8.
-double tip_sag(System& system) {
-  const Start start(system);
-  const std::size_t n = start.q.size();
-  const Numbers zero(n);
-  Numbers r(n), x(n);
-  EXPECT_EQ(system.residual(0, start.q, zero, zero, r), Status::ok);
-  EXPECT_EQ(system.linearize(0, start.q, zero, zero, {0, 0, 1}), Status::ok);
-  for (double& y : r) y = -y;
-  EXPECT_EQ(system.solve(r, x), Status::ok);
-  for (std::size_t i = 0; i < n; ++i) x[i] += start.q[i];
-  MaterialPoints& points = *system.material_points();
-  Numbers places(3 * std::size_t(points.count()));
-  points.positions(0, x, places);
-  return -places.back();
-}
-
 /// Models without constraints; a spline's section is that of its span.
 bool takes_part(const ModelEntry& model) {
   return model.on_strand != nullptr && model.id != "inextensible_strand" &&
@@ -213,7 +157,7 @@ TEST(Along, SagIsThatOfTheVariedBeam) {
         const Scene scene =
             scene_of(text_of(std::string(model.id), elements, v.keys,
                              "[effects.gravity]\ngravity_m_s2 = [0, 0, -1e-3]\n"));
-        return tip_sag(*system_of(scene)) / expected - 1;
+        return -tip_moved(*system_of(scene)).z / expected - 1;
       };
       expect_order_two(off(20), off(40), v.name + ", " + std::string(model.id));
     }

@@ -1,7 +1,6 @@
 #include "experiments/validation/rods/loads.h"
 
 #include "math/gauss_legendre.h"
-#include "math/mat3.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -58,35 +57,6 @@ double TipForce::potential(double, const Points& p) const noexcept {
   double sum = 0;
   for (std::size_t k = 0; k < w.size(); ++k) {
     sum -= w[k] * dot(force, load3(&p.x[3 * (first + k)]));
-  }
-  return sum;
-}
-
-void FollowerForce::add_load(double, const Points& p, InOut f) const noexcept {
-  const std::vector<double>& w = tip_.weights(p);
-  const std::size_t first = p.mass.size() - w.size();
-  for (std::size_t k = 0; k < w.size(); ++k) {
-    const std::size_t at = 3 * (first + k);
-    store3(load3(&f[at]) - (force_ * w[k]) * load3(&p.tangent[at]), &f[at]);
-  }
-}
-
-void FollowerForce::add_direction_derivatives(double, const Points& p, double factor,
-                                              InOut blocks) const noexcept {
-  const std::vector<double>& w = tip_.weights(p);
-  const std::size_t first = p.mass.size() - w.size();
-  for (std::size_t k = 0; k < w.size(); ++k) {
-    add9((-factor * force_ * w[k]) * identity(), &blocks[9 * (first + k)]);
-  }
-}
-
-double FollowerForce::power(double, const Points& p) const noexcept {
-  const std::vector<double>& w = tip_.weights(p);
-  const std::size_t first = p.mass.size() - w.size();
-  double sum = 0;
-  for (std::size_t k = 0; k < w.size(); ++k) {
-    const std::size_t at = 3 * (first + k);
-    sum -= force_ * w[k] * dot(load3(&p.tangent[at]), load3(&p.v[at]));
   }
   return sum;
 }

@@ -62,26 +62,4 @@ class TipForce final : public Effect {
   TipPoints tip_;
 };
 
-/// Force P (N) that pushes the tip back along the strand's tangent there. It acts as -P
-/// w_k t_k on each of the TipPoints, so that its work -P t . dx is that at the tip. It
-/// has no potential.
-class FollowerForce final : public Effect {
- public:
-  FollowerForce(int elements, double force) : tip_(elements), force_(force) {}
-
-  std::string_view name() const override { return "follower_force"; }
-  Needs needs() const override { return {.tangent = true, .directions = true}; }
-  void add_load(double t, const Points& p, InOut f) const noexcept override;
-  void add_derivatives(double, const Points&, double, double,
-                       InOut) const noexcept override {}
-  void add_direction_derivatives(double t, const Points& p, double factor,
-                                 InOut blocks) const noexcept override;
-  double potential(double, const Points&) const noexcept override { return 0; }
-  double power(double t, const Points& p) const noexcept override;
-
- private:
-  TipPoints tip_;
-  double force_;
-};
-
 }  // namespace tress::experiments::validation

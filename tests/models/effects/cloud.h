@@ -15,7 +15,7 @@ using namespace models;
 /// to 3 m/s of which some are small and some 0, tangents of length 1. Reproducible: equal
 /// seeds, equal points.
 struct Cloud {
-  std::vector<double> x, v, tangent, mass, length;
+  std::vector<double> x, v, tangent, mass, length, arc;
 
   explicit Cloud(std::size_t count, unsigned seed = 7) {
     std::mt19937 random(seed);
@@ -33,12 +33,16 @@ struct Cloud {
       for (const double e : {unit.x, unit.y, unit.z}) tangent.push_back(e);
       mass.push_back(0.2 + 0.1 * draw());
       length.push_back(0.3 + 0.2 * draw());
+      arc.push_back((arc.empty() ? 0 : arc.back()) + length.back());
     }
   }
 
   std::size_t count() const { return mass.size(); }
   Points points() const {
-    return {static_cast<int>(count()), x, v, tangent, mass, length};
+    Points p{static_cast<int>(count()), x, v, tangent, mass, length};
+    p.arc = arc;
+    p.longest = arc.back();
+    return p;
   }
   /// The same, NaN where an effect says it does not look.
   Points only(const Needs& needs) {

@@ -45,7 +45,7 @@ class FreePoints {
     return sum;
   }
   void step(double h) {
-    auto& [x, v, tangent, mass, length, blank] = points;
+    auto& [x, v, tangent, mass, length, arc, blank] = points;
     const Numbers a1 = acceleration(time, x, v);
     const Numbers v2 = ahead(v, h / 2, a1);
     const Numbers a2 = acceleration(time + h / 2, ahead(x, h / 2, v), v2);
@@ -71,6 +71,7 @@ inline Cloud straight(std::size_t n, double length, double mass_per_length, doub
     store3(Vec{}, &strand.v[3 * i]);
     store3(Vec{1, 0, 0}, &strand.tangent[3 * i]);
     strand.length[i] = share;
+    strand.arc[i] = (static_cast<double>(i) + 0.5) * share;
     strand.mass[i] = mass_per_length * share;
   }
   return strand;

@@ -46,6 +46,12 @@ Settings lively(std::string_view id) {
             {"t_on_s", "0.1"},       {"amplitude_m", "0.3,0,0.1"},
             {"frequency_hz", "0.7"}, {"ramp_s", "0.5"}};
   }
+  if (id == "point_force") {
+    return {{"at", "0.4"},
+            {"force_n", "1,-2,0.5"},
+            {"follower_n", "0.7"},
+            {"factor_over_time", "0,0.5;1,2"}};
+  }
   if (id == "body") {
     return {{"centre_m", "0.1,-0.05,0.08"},
             {"rotation_rad", "0.3,-0.5,0.2"},
@@ -226,6 +232,7 @@ Cloud alone(const Cloud& cloud, std::size_t i) {
   store3(load3(&cloud.tangent[3 * i]), one.tangent.data());
   one.mass = {cloud.mass[i]};
   one.length = {cloud.length[i]};
+  one.arc = {cloud.arc[i]};
   return one;
 }
 
@@ -254,8 +261,11 @@ void expect_blocks(const Effect& effect, const Cloud& cloud, Member member,
   }
 }
 
-/// An effect acts on a point alone, but for tether, which chooses one of them by length.
-Cloud crowd(const Effect& effect) { return Cloud(effect.name() == "tether" ? 1 : 200); }
+/// An effect acts on a point alone, but for those that choose a place along the strand.
+Cloud crowd(const Effect& effect) {
+  const bool chooses = effect.name() == "tether" || effect.name() == "point_force";
+  return Cloud(chooses ? 1 : 200);
+}
 
 TEST_P(EffectContract, DerivativesByPlaceAreDifferencesOfTheLoad) {
   const Cloud points = crowd(*effect);

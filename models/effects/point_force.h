@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "contract/parameters.h"
+#include "models/effects/effect.h"
+#include "models/motion/root_motion.h"
+
+namespace tress::models {
+
+/// Returns the parameters of the effect.
+std::span<const Parameter> point_force_parameters();
+
+/// A force on one place of the strand, dead or following its tangent. The place has the
+/// arc length `at` times that of the tip. With the factor c(t):
+///
+///     f = c (F + P t),   E = -c F.x,   power = dE/dt at fixed x + c P t.v
+///
+/// F is a force in the world (N), P a force along the unit tangent t (N). A quantity at
+/// the place is sum_k w_k times that of up to four neighbouring points, by the polynomial
+/// through them, and w_k f acts on point k: the same work. At the tip of the models here
+/// it is exact for nodes, cubic splines and rigid links, and of fourth order in the
+/// element for helices and clothoids. O(points).
+class PointForce final : public Effect {
+ public:
+  /// Factor at a time (s), linear between rows and constant beyond them.
+  struct Row {
+    double time, factor;  // s, and the factor there
+  };
+  /// Parameters of the force.
+  struct Settings {
+    double at = 1;          // place along the strand, 0 root to 1 tip
+    Vec force{};            // dead force, N
+    double follower = 0;    // force along the tangent, from root to tip, N
+    std::vector<Row> rows{};  // in order of time; none: factor 1
+  };
+  /// Throws InputError on numbers out of range or not finite, and on times that do not
+  /// increase.
+  explicit PointForce(Settings settings);
+
+  std::string_view name() const override { return "point_force"; }
+  Needs needs() const override {
+    const bool follows = s_.follower != 0;
+    return {.position = !s_.rows.empty(),
+            .velocity = follows,
+            .tangent = follows,
+            .directions = follows};
+  }
+  void add_load(double t, const Points& p, InOut f) const noexcept override;
+  void add_derivatives(double, const Points&, double, double,
+                       InOut) const noexcept override {}
+  void add_direction_derivatives(double t, const Points& p, double factor,
+                                 InOut blocks) const noexcept override;
+  double potential(double t, const Points& p) const noexcept override;
+  double power(double t, const Points& p) const noexcept override;
+  double next_breakpoint(double t) const noexcept override;
+
+ private:
+  /// Shares w_k of the place's neighbours: points from `first` on.
+  struct Shares {
+    std::size_t first = 0, count = 0;
+    std::array<double, 4> weight{};
+  };
+  Shares shares(const Points& p) const noexcept;
+  double factor(double t) const noexcept;
+  double factor_rate(double t) const noexcept;
+  /// Sum of w_k values_k, three numbers each.
+  static Vec mean(const Shares& of, In values) noexcept;
+
+  Settings s_;
+};
+
+/// Makes the effect.
+std::unique_ptr<const Effect> make_point_force(const Parameters& parameters,
+                                               const RootMotion& head);
+
+}  // namespace tress::models
