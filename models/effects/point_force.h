@@ -19,9 +19,9 @@ std::span<const Parameter> point_force_parameters();
 ///
 /// F is a force in the world (N), P a force along the unit tangent t (N). A quantity at
 /// the place is sum_k w_k times that of up to four neighbouring points, by the polynomial
-/// through them, and w_k f acts on point k: the same work. At the tip of the models here
-/// it is exact for nodes, cubic splines and rigid links, and of fourth order in the
-/// element for helices and clothoids. O(points).
+/// through them. Point k bears w_k f, so that the work is the same. At the tip this is
+/// exact for nodes, cubic splines and rigid links, and of fourth order in the element for
+/// helices and clothoids. O(points).
 class PointForce final : public Effect {
  public:
   /// Factor at a time (s), linear between rows and constant beyond them.
