@@ -61,8 +61,7 @@ namespace {
 /// A scene of what has SIMD lanes.
 std::string with_lanes(Draw& draw) {
   const std::string_view model =
-      draw.one_of(
-          {"super_helix", "super_clothoid", "articulated_chain", "mass_spring"});
+      draw.one_of({"super_helix", "super_clothoid", "articulated_chain", "mass_spring"});
   const std::string_view method =
       draw.one_of({"linearly_implicit_euler", "linearly_implicit_euler", "backward_euler",
                    "linearly_implicit_midpoint", "tr_bdf2"});
@@ -181,6 +180,29 @@ std::string effects(Draw& draw, double length, int count) {
   return text;
 }
 
+/// Sections and materials that vary along the strands.
+std::string along(Draw& draw) {
+  std::string text;
+  for (const char* key :
+       {"radius_along", "ellipticity_along", "modulus_along", "density_along"}) {
+    if (!draw.chance(0.1)) continue;
+    text +=
+        fmt::format("{} = [[0, 1], [{:.3g}, {:.3g}], [1, {:.3g}]]\n", key,
+                    draw.of_size(0.1, 0.9), draw.of_size(0.5, 2), draw.of_size(0.5, 2));
+  }
+  return text;
+}
+
+/// Dead and following forces on one place of every strand.
+std::string point_force(Draw& draw) {
+  if (!draw.chance(0.15)) return "";
+  return fmt::format(
+      "[[effects.point_force]]\nat = {:.3g}\nforce_n = [0, {:.3g}, 0]\nfollower_n = "
+      "{:.3g}\nfactor_over_time = [[0, 0], [0.01, 1]]\n",
+      draw.one_of({0.3, 1.0, 1.0}), draw.of_size(1e-8, 1e-6),
+      draw.chance(0.5) ? 0.0 : -draw.of_size(1e-8, 1e-6));
+}
+
 /// Of any model of strands, integrator, option and effect.
 std::string of_anything(Draw& draw) {
   std::vector<const models::ModelEntry*> strand_models;
@@ -217,11 +239,13 @@ std::string of_anything(Draw& draw) {
     text += fmt::format(
         "shape = \"helix\"\ncurl_radius_m = {:.4g}\ncurl_pitch_m = {:.4g}\n", curl, curl);
   }
+  std::string root;
   if (draw.chance(0.6)) {
-    text += fmt::format("[root]\nmotion = \"{}\"\n",
-                        draw.one_of({"shake", "rotate", "stop", "translate", "free"}));
+    root = fmt::format("[root]\nmotion = \"{}\"\n",
+                       draw.one_of({"shake", "rotate", "stop", "translate", "free"}));
   }
-  return text + effects(draw, length, count);
+  const std::string acting = effects(draw, length, count);
+  return text + along(draw) + root + acting + point_force(draw);
 }
 
 }  // namespace
