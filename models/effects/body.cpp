@@ -66,15 +66,16 @@ constexpr Parameter parameters_of_body[] = {
      .max = 1e3},
     {.name = "friction_law",
      .help =
-         "regularised: sticking contacts creep below slip_speed_m_s; exact "
-         "(Signorini-Coulomb): they keep their place on the body to the contact "
-         "tolerance. exact needs a method that solves at the end of a step. With "
+         "law of friction. `regularised`: sticking contacts creep below "
+         "slip_speed_m_s. `exact` (Signorini-Coulomb): they keep their "
+         "place on the body to the contact tolerance. `exact` needs a "
+         "method that solves at the end of a step. With "
          "[effects.strand_friction], rigid contacts are solved together with those of "
          "strands",
      .choices = "regularised|exact"},
     {.name = "normal",
-     .help = "friction_law = exact: the surface gives way as stiffness_n_m2 says, or is "
-             "rigid",
+     .help = "friction_law = exact: surface that gives way with stiffness_n_m2, "
+             "or a rigid one",
      .choices = "compliant|rigid"},
     {.name = "restitution",
      .help = "normal = rigid: speed after an impact over that before, for backward_euler",

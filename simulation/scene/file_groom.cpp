@@ -34,9 +34,9 @@ constexpr Parameter file_keys[] = {
      .min = 0,
      .max = 1e6},
     {.name = "up",
-     .help =
-         "axis of the file that points up. file: that of the file or its format (.usda: "
-         "y), otherwise guessed from hair that bends as it hangs, and printed",
+     .help = "axis of the file that points up. `file` takes that of the file or "
+             "of its format (.usda: y). Without one, the axis is guessed from "
+             "hair that bends as it hangs, and printed",
      .choices = "file|x|y|z|-x|-y|-z"},
     {.name = "position_m",
      .help = "file: place of its origin x, y, z (m)",

@@ -36,8 +36,9 @@ constexpr Parameter parameters[] = {
      .components = 3,
      .fallback = "0,0,0"},
     {.name = "amplitude_m",
-     .help = "shake: a sin(2 pi f t). swing: a (1 - cos(2 pi f t)). drop_pull: by a in "
-             "half a period, back in the next (m)",
+     .help = "amplitude a (m). `shake` moves by a sin(2 pi f t), `swing` by a "
+             "(1 - cos(2 pi f t)). `drop_pull` moves by a in half a period and "
+             "back in the next",
      .number = 0.05,
      .min = -largest_number,
      .max = largest_number},
