@@ -165,7 +165,8 @@ def series(tables):
     strands = [
         *_found(tables, "simulation/run/readout.cpp", r"\badd\("),
         ("tip_x_m, tip_y_m, tip_z_m", "tip, mean over the strands"),
-        ("<effect>_j", "the effect's potential energy"),
+        ("<effect>_j", "potential energy of the effect"),
+        ("force_<support>_x_n, force_<support>_y_n, force_<support>_z_n", "force of a support on the strand"),
     ]
     there = {column for columns, _ in strands for column in columns.split(", ")}
     heads = _found(tables, "experiments/simulate/head_series.cpp", r"\{")
