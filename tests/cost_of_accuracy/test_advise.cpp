@@ -78,7 +78,8 @@ TEST(Advise, ComparesTheWholeScene) {
   EXPECT_EQ(winner_of(process).number("horizon_s"), 0.8);
   const Toy::Result cut = process.run("--advise hair.toml --set horizon_s=0.2" + small);
   ASSERT_EQ(cut.code, 0) << cut.err;  // as asked
-  EXPECT_TRUE(cut.out.starts_with("valid for the first 0.2 s of 0.8 s, as requested: take "))
+  EXPECT_TRUE(
+      cut.out.starts_with("valid for the first 0.2 s of 0.8 s, as requested: take "))
       << cut.out;
   EXPECT_THAT(process.read("hair.advised.toml"),
               HasSubstr("over the first 0.2 s of 0.8 s"));
