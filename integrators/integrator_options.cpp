@@ -95,8 +95,9 @@ const Field fields[] = {
       .max = largest},
      number<&Options::max_step>},
     {{.name = "position_tol_rel",
-      .help = "error of a point over the length for which the step is controlled, 0: "
-              "fixed step. In a scene it excludes dt_s, newton_tolerance and refresh. "
+      .help = "tolerance of error control: estimated error of a point in a "
+              "step, over the length. 0: fixed step. In a scene it excludes dt_s, "
+              "newton_tolerance and refresh. "
               "Methods with rtol take it as rtol, and a hundredth as atol",
       .number = defaults.tolerance,
       .min = 0,
@@ -154,7 +155,8 @@ const Field fields[] = {
       .max = 1},
      number<&Options::contact_tolerance>},
     {{.name = "contact_iterations",
-      .help = "solutions of a step allowed until the law of exact contact holds",
+      .help = "largest number of solutions of a step until the law of "
+              "exact contact is satisfied",
       .number = static_cast<double>(defaults.contact_iterations),
       .min = 1,
       .max = 1000,

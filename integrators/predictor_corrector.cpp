@@ -10,7 +10,7 @@ constexpr Parameter own_predictor_corrector[] = {
     // The impulse that would have caused the correction [Bridson et al. 2002], or no
     // change of the velocity [Provot 1995].
     {.name = "correction",
-     .help = "positions are moved with an impulse, or alone",
+     .help = "correction of the positions with an impulse, or alone",
      .choices = "impulse|position"},
     {.name = "second_filter",
      .help = "an implicit solve after the correction",

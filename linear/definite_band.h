@@ -8,8 +8,8 @@
 namespace tress {
 
 /// Solver for band matrices that are usually symmetric positive definite: L D L^T without
-/// pivoting or scaling. Such matrices need neither: the errors of every entry stay small
-/// compared with the roots of its diagonal entries, whatever the units [Higham 2002,
+/// pivoting or scaling. Such matrices need neither. The error of an entry stays small
+/// compared with the square roots of its two diagonal entries in any units [Higham 2002,
 /// Accuracy and Stability of Numerical Algorithms, section 10.1]. Takes n k^2/2
 /// multiply-adds for half-bandwidth k, a sixth of BandedSolver's time. BandedSolver
 /// solves a matrix that turns out unsymmetric or has a pivot that is not positive.

@@ -61,9 +61,9 @@ T taylor_sum(const T& x) {
 }
 
 /// Taylor series give b = B/s^3, its derivatives and A3/s^8. The others follow without
-/// cancellation from the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A:
+/// cancellation from the m-th derivatives of w^2 B = s - S and w B' + 3 B = s A.
 ///     S = s - w^2 B,  s A = 3 B + w^2 B1,  s A1 = 5 B1 + w^2 B2,  s A2 = 7 B2 + w^2 B3
-/// This function is always inlined: other sources may be compiled with other products
+/// This function is always inlined. Other sources may be compiled with other products
 /// fused, and the linker would keep one version for all.
 template <int terms, class T, class X>
 [[gnu::always_inline]] inline HelixFunctions<T> series(const T& s, const X& x2) {
@@ -146,13 +146,13 @@ HelixFunctions<Pack> one_by_one(const Pack& s, const X& x2) noexcept {
 /// element, or one per lane. `longest` is the largest |s| of the element, so that all its
 /// points, and all elements of a pack, take the same branch.
 ///
-/// Error bounds for given x2, eps = 2^-52: 8 eps relative for ws <= 2. Beyond, where the
-/// functions have zeros, errors are relative to the size of their oscillation s^p/(ws)^m,
-/// m = 1, 2, 2, 3, 4, 4, 5, 5, 6 (or to the value at w = 0, where smaller). The bound is
-/// 15 eps up to ws = 4.5, then 20 eps, then ws eps, as ws itself is rounded; 1e-14 up to
-/// ws = 50. Cost: one of four paths, chosen by w longest. They are branch-free power
-/// series up to 0.17, 1.5 and 4.5 (a full turn is 6.3), and evaluation lane by lane
-/// beyond.
+/// Error bounds for given x2, eps = 2^-52: 8 eps relative for ws <= 2. Beyond ws = 2 the
+/// functions have zeros. There errors are relative to the size of the oscillation
+/// s^p/(ws)^m, or to the value at w = 0 where that is smaller. The exponents are m = 1,
+/// 2, 2, 3, 4, 4, 5, 5, 6. The bound is 15 eps up to ws = 4.5, then 20 eps, then ws eps,
+/// as ws itself is rounded; 1e-14 up to ws = 50. Cost: one of four paths, chosen by w
+/// longest. They are branch-free power series up to 0.17, 1.5 and 4.5 (a full turn is
+/// 6.3), and evaluation lane by lane beyond.
 template <class T, class X>
 HelixFunctions<T> helix_functions(const T& s, const X& x2, const X& longest) noexcept {
   const double x = largest(x2 * (longest * longest));

@@ -21,7 +21,7 @@ import sys
 from collections import Counter, defaultdict, namedtuple
 from pathlib import Path
 
-LIMITS = {"ban": 0, "page_long": 0, "help_long": 0, "help_start": 0, "long": 6,
+LIMITS = {"ban": 0, "page_long": 0, "help_long": 0, "help_start": 0, "long": 0,
           "comment_start": 0, "thin": 0}
 PAGE_MEAN, PAGE_WORDS, HELP_WORDS, COMMENT_WORDS = 20, 35, 25, 30
 

@@ -23,10 +23,10 @@ constexpr double fine_step = 2.5e-4;  // s, of the cantilever's reference
 constexpr double long_run = 0.2;      // s, of wall time
 constexpr double apart = 10;          // lengths from the direct step: unstable
 
-/// Rod of the published example [Hsu et al. 2025, their code's cantilever]: EI = 4 N m^2,
-/// EA = k GA = 100 N, 1 kg/m, 1 m of 10 edges, clamped horizontally and damped. EA is
-/// that of a softened section of 2 mm, so that the rotary inertia of sections is
-/// negligible.
+/// Rod of the published example [Hsu et al. 2025, their code's cantilever], clamped
+/// horizontally and damped. It has EI = 4 N m^2, EA = k GA = 100 N, 1 kg/m and 1 m of 10
+/// edges. EA is that of a softened section of 2 mm, so that the rotary inertia of
+/// sections is negligible.
 const ModelSettings cantilever{{"length_m", "1"},
                                {"radius_m", "0.002"},
                                {"youngs_modulus_pa", "3.183098861837907e11"},

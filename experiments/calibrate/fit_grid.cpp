@@ -57,7 +57,7 @@ constexpr Parameter settings_of_rows[] = {
      .number = 0.95,
      .min = 0.5,
      .max = 0.9999},
-    {.name = "scenes", .help = "scene files that say what the strand is", .text = true},
+    {.name = "scenes", .help = "scene files that define the strand", .text = true},
     {.name = "horizon_s",
      .help = "length of the record of a scene without data, at most the scene's (s)",
      .number = 1.5,

@@ -68,12 +68,12 @@ std::vector<Specimen> strands_of(const Records& records, const Scene& scene);
 ///
 ///     min_x sum_k ((y_k - c_record - s_k(x))/sigma_k)^2,
 ///
-/// with s the simulated signal and c the constant of a displacement, the weighted mean of
-/// y - s. c is removed from residuals and their derivatives, so that statistics are those
-/// of a fit with c unknown. Standard errors count relative to each other; their common
-/// scale is estimated from the residuals. Intervals are exp(x_j +- t sqrt(C_jj s^2)),
-/// with C = (J^T J)^-1. s^2 is the sum of squares over the degrees of freedom and t
-/// Student's quantile.
+/// with s the simulated signal. The constant of a displacement, c, is the weighted mean
+/// of y - s. It is removed from residuals and their derivatives, so that statistics are
+/// those of a fit with c unknown. Standard errors count relative to each other; their
+/// common scale is estimated from the residuals. Intervals are exp(x_j +- t sqrt(C_jj
+/// s^2)), with C = (J^T J)^-1. s^2 is the sum of squares over the degrees of freedom and
+/// t Student's quantile.
 ///
 /// A mode k of a strand of mass per length m decays at (nu/m + gamma c_k)/2, with c_k =
 /// omega_k^2/(EI) for a straight weightless strand. One mode determines only the sum, two

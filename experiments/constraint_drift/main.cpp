@@ -28,7 +28,7 @@ constexpr Column columns[] = {
     {"zeta", "limit: damping ratio beta / (2 sqrt alpha)"},
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance of an adaptive method"},
-    {"suppress_algebraic", "ida: multipliers out of the error test"},
+    {"suppress_algebraic", "ida: whether multipliers are left out of the error test"},
     {"multiplier_atol",
      "ida: absolute tolerance of the multipliers over that of q and v"},
     {"t_end_s", "simulated time"},

@@ -63,7 +63,7 @@ std::string limits(const Row& row) {
         1e2 * row.number("parted_rel"));
   }
   if (row.number("asked_s") < row.number("duration_s")) {
-    return fmt::format("valid for the first {:.3g} s of {:.3g} s, as asked: ",
+    return fmt::format("valid for the first {:.3g} s of {:.3g} s, as requested: ",
                        row.number("horizon_s"), row.number("duration_s"));
   }
   return "";
@@ -94,9 +94,9 @@ bool cut(const Row& row) {
 /// Advice for a search that ended early.
 std::string more(const Row& row) {
   const bool by_the_clock = row.text("search").find("clock") != row.text("search").npos;
-  return fmt::format(
-      "the search did not come to its end ({}): {} goes on", row.text("search"),
-      by_the_clock ? "--timeout with more time" : "--set search_work with more work");
+  return fmt::format("the search is incomplete ({}): continue with a larger {}",
+                     row.text("search"),
+                     by_the_clock ? "--timeout" : "--set search_work");
 }
 
 /// If no run meets the target.
@@ -104,16 +104,17 @@ std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& be
   const double target = 1e2 * best.number("target_error_rel");
   std::vector<std::string> lines{
       cut(best) ? fmt::format("no run within {:.3g} % so far", target)
-                : fmt::format("no run within {:.3g} %, by no method tried", target),
+                : fmt::format("no run within {:.3g} % with any method tried", target),
       "best so far " + configuration_and_price(best)};
   if (const Row* given = find(rows, "as_given")) {
-    lines.push_back("the file as it is: " + configuration_and_price(*given));
+    lines.push_back("your file: " + configuration_and_price(*given));
   }
   if (cut(best)) lines.push_back(more(best));
   return lines;
 }
 
-/// The file's own configuration if it is worse, else the dearest of the replaced choices.
+/// The file's own configuration if it is worse, else the most expensive of the replaced
+/// choices.
 std::string what_not(const std::vector<Row>& rows, const Row& best) {
   const double target = best.number("target_error_rel");
   if (const Row* given = find(rows, "as_given")) {
@@ -121,7 +122,7 @@ std::string what_not(const std::vector<Row>& rows, const Row& best) {
         given->number("wall_s_per_sim_s") / best.number("wall_s_per_sim_s");
     const bool misses = given->number("error_rel") > target;
     if (misses || factor > 1) {
-      return fmt::format("not as the file has it, {}: {}{}", what(*given), price(*given),
+      return fmt::format("your file, {}: {}{}", what(*given), price(*given),
                          misses ? fmt::format(", misses {:.3g} %", 1e2 * target)
                                 : fmt::format(", {:.3g} times the time", factor));
     }
@@ -133,8 +134,8 @@ std::string what_not(const std::vector<Row>& rows, const Row& best) {
       worst = &row;
     }
   }
-  if (worst == nullptr) return "not: nothing else was found that does";
-  return fmt::format("not another {}, {}: {:.3g} times the time", worst->text("choice"),
+  if (worst == nullptr) return "no other configuration was found within the target";
+  return fmt::format("another {}, {}: {:.3g} times the time", worst->text("choice"),
                      what(*worst), worst->number("cost_factor"));
 }
 
@@ -145,10 +146,11 @@ bool beats(const Row& row, const Row& other) {
 
 /// The next best line.
 std::string next_best(const Row* next) {
-  if (next == nullptr) return "next best: no other model or integrator does";
-  return fmt::format(
-      "{} {}", next->text("tied") == "true" ? "within 10 %, a tie with" : "next best",
-      configuration_and_price(*next));
+  if (next == nullptr)
+    return "next best: no other model or integrator was found within the target";
+  return fmt::format("{} {}",
+                     next->text("tied") == "true" ? "tied within 10 %:" : "next best",
+                     configuration_and_price(*next));
 }
 
 }  // namespace
@@ -172,9 +174,9 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   if (best == nullptr) {
     const Row& first = rows.front();
     return {first.status() == "timeout"
-                ? fmt::format("out of time before the first run was compared ({}): "
-                              "references that are complete are kept, --timeout with "
-                              "more time goes on from there",
+                ? fmt::format("time ran out before the first run was compared ({}): "
+                              "complete references are kept, continue with a larger "
+                              "--timeout",
                               first.text("reason"))
                 : fmt::format("no answer: {}", first.text("reason"))};
   }

@@ -35,27 +35,27 @@ struct SearchPlan {
   double slack;
 };
 
-/// Returns the slack with which the cheapest method is never dropped. Where cost grows as
-/// elements x substeps and error falls in both, the cheapest run on the ladders costs at
-/// most r times the method's best between them. r = (ratio of elements) x (ratio of
-/// substeps). The method of the overall best run is then within r of the cheapest run on
-/// the ladders. `noise`: factor by which one run may take longer than usual.
+/// Returns the slack with which the cheapest method is never dropped. Suppose that cost
+/// grows as elements x substeps and that error falls in both. The cheapest run on the
+/// ladders then costs at most r times the method's best between them. The factor r is
+/// (ratio of elements) x (ratio of substeps). The method of the overall best run is then
+/// within r of the cheapest run on the ladders. `noise`: factor by which one run may take
+/// longer than usual.
 double ladder_slack(const SearchPlan& plan, double noise);
 
 /// Search for the cheapest run for each target error, in stages:
 ///
-///   probe    Every method runs once in the middle of the ladders. Those that would meet
-///            the tightest target soonest, by their orders, climb first.
-///   coarse   A method climbs from few elements and long steps. It takes more substeps
-///            until they gain little (the remaining error is spatial), then more
-///            elements. A method of a kind that has climbed begins near the answer of
-///            that kind.
-///   prune    For each target the methods within `slack` of the cheapest continue.
-///   refine   From a method's cheapest run so far, numbers of elements around it are
-///            tried, each with the fewest substeps that meet the target, by bisection.
-///            This is repeated from the cheapest of those until it no longer changes.
-///   sweep    Every method is tried with all numbers of elements, an eighth apart, and
-///            with substeps down from those that may cost as much as the best run.
+/// - probe: every method runs once in the middle of the ladders. Those that would meet
+///   the tightest target soonest, by their orders, climb first.
+/// - coarse: a method climbs from few elements and long steps. It takes more substeps
+///   until they gain little (the remaining error is spatial), then more elements. A
+///   method of a kind that has climbed begins near the answer of that kind.
+/// - prune: for each target the methods within `slack` of the cheapest continue.
+/// - refine: numbers of elements around that of a method's cheapest run are tried, each
+///   with the fewest substeps that meet the target, by bisection. This is repeated from
+///   the cheapest of those until it no longer changes.
+/// - sweep: every method is tried with all numbers of elements, an eighth apart, and with
+///   substeps down from those that may cost as much as the best run.
 ///
 /// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
 /// accurate runs are passed over. `stop` decides how far the search goes; the search

@@ -14,10 +14,11 @@ namespace {
 constexpr Column table_columns[] = {
     {"scene", "name of the scene"},
     {"kind",
-     "winner, runner_up (another model or integrator), without (one choice replaced), "
-     "budget, front (Pareto), as_given (by the scene file). by_step and by_tolerance: of "
-     "one model, the cheapest without and with error control. method: the cheapest of "
-     "one model with one integrator"},
+     "kind of the row: winner, runner_up (another model or integrator), "
+     "without (one choice replaced), budget, front (Pareto) or as_given "
+     "(by the scene file). Kinds by_step and by_tolerance: cheapest run "
+     "of one model without and with error control. Kind method: "
+     "cheapest run of one model with one integrator"},
     {"choice",
      "replaced choice, in kind without; elements: twice, dt_s: half (or the "
      "tolerance that halves the steps)"},
@@ -63,7 +64,7 @@ constexpr Column table_columns[] = {
     {"asked_s", "time that was to be compared: duration_s, or horizon_s of --set"},
     {"duration_s", "duration of the scene"},
     {"parted_rel", "rms distance of the references from there on, over the length"},
-    {"references", "models of the references of your own scene, and how fine they are"},
+    {"references", "models of the references of your own scene, and their resolution"},
     {"wall_s_per_sim_s",
      "wall time per simulated second on one thread, nothing else running", true},
     {"ms_per_frame", "wall time per frame", true},

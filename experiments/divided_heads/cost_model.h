@@ -21,16 +21,16 @@ double border(double ranks);
 ///
 ///     T(n, R) = (n/R) e (k + c (1 - a/sqrt(n))) + G e b + l log2 R,
 ///
-/// where e is the number of elements. k is the cost of one element by itself, which
-/// depends on the number of hairs on the machine, since its cores share the near memory.
-/// c is its cost by its hair's contacts. Hairs near the edge of the scalp have fewer,
-/// a/sqrt(n) of all. Ghosts lie within a depth w of a region's border: with hairs' roots
-/// a distance d apart on average,
+/// where e is the number of elements of a hair. The cost k of an element by itself
+/// depends on the number of hairs on the machine, since its cores share their caches. The
+/// cost of an element's contacts with other hairs is c. Hairs near the edge of the scalp
+/// have fewer contacts, which lowers the mean by the share a/sqrt(n). Ghosts lie within a
+/// depth w of a region's border. With hairs' roots a mean distance d apart,
 ///
 ///     G = border(R) (w/d) sqrt(n),  but at most all hairs of other ranks;
 ///
-/// b is the cost of an element of a ghost, to be sent, received, held and listed. l is
-/// the latency of the values on which all ranks agree in a step.
+/// The cost of sending, receiving, storing and listing an element of a ghost is b. The
+/// latency of the values on which all ranks agree in a step is l.
 struct CostModel {
   /// Cost of a machine's kernel with this number of hairs, ascending: linear in the
   /// logarithm of the number between entries, constant beyond.

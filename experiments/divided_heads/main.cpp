@@ -41,7 +41,9 @@ constexpr Column columns[] = {
     {"effects",
      "effects in addition to gravity: drag; interaction of neighbouring hairs, "
      "and drag"},
-    {"strands", "hairs, as dense on the scalp whatever their number"},
+    {"strands",
+     "number of hairs, which have the same density on the scalp in all "
+     "rows"},
     {"ranks", "processes of mpirun, of one thread each"},
     {"beside", "number of such grooms that run at the same time"},
     {"cores", "cores of the machine", true},

@@ -37,8 +37,8 @@ Horizon horizon(const Side& one, const Side& other, double t_end, int samples,
 /// s are t = 0 and the first `until` samples. The tip's is the root mean square over all
 /// later samples, over `length`. The strand's is PointNorm: the largest |dx|/L or |du|
 /// sqrt(L/g)/L of a point. The deviations are a few random ones of the first velocities,
-/// of size `apart`: the fastest growing one comes to dominate only with time [Benettin et
-/// al. 1980, Meccanica 15, 9]. 0: a run ends before.
+/// of size `apart`. Several are needed because the fastest growing one comes to dominate
+/// only with time [Benettin et al. 1980, Meccanica 15, 9]. 0: a run ends before.
 double growth(const Side& side, double t_end, int samples, int until, double apart);
 
 /// Returns the growth of the deviation of a body without forces: positions grow with the

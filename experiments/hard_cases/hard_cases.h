@@ -47,16 +47,17 @@ std::vector<std::string_view> tried_jacobians(const CommandLine& line,
                                               const ModelEntry& model,
                                               std::string_view integrator);
 
-/// Returns every case on every strand model, and the particle systems that it names, by
-/// every integrator and at every step that the command line selects. Impossible
+/// Returns every case on every strand model, and on the particle systems that it names,
+/// with every integrator and every step that the command line selects. Impossible
 /// combinations are cells too.
 ///
-/// --quick: linearly_implicit_euler, backward_euler and implicit_midpoint at 1/300 and
-/// 1/30 s, bdf2 at 1 ms and tr_bdf2 at a tolerance of 1e-3, models with default options.
-/// Otherwise more integrators, models with every way of keeping lengths, all three steps,
-/// and tolerances of 1e-2 and 1e-4 too. --full: every fixed-step integrator, those with
-/// error control by step too, and both Jacobians. linearly_implicit_euler has the elastic
-/// Jacobian where available.
+/// With --quick, models have their default options. The integrators are
+/// linearly_implicit_euler, backward_euler and implicit_midpoint at 1/300 and 1/30 s,
+/// bdf2 at 1 ms and tr_bdf2 at a tolerance of 1e-3. A normal run has more integrators,
+/// models with every way of keeping lengths, all three steps, and tolerances of 1e-2 and
+/// 1e-4 too. With --full, every integrator runs with fixed steps, those with error
+/// control included, and with both Jacobians. The integrator linearly_implicit_euler has
+/// the elastic Jacobian where available.
 Grid hard_grid(const CommandLine& line, const Settings& settings);
 
 /// With the violated criterion, or the one nearest to its limit; it has a name and a

@@ -8,9 +8,9 @@
 namespace tress::experiments {
 
 /// Effect of one step of a fixed-step method on the violation C of a constraint under
-/// Baumgarte feedback, by the test equation
+/// Baumgarte feedback. The test equation is
 ///     C'' + beta C' + alpha C = 0,   omega^2 = alpha,   beta = 2 zeta omega.
-/// Small violations obey it whatever the motion is, because the feedback acts along the
+/// Small violations obey this equation in any motion, because the feedback acts along the
 /// constraint's own gradient.
 
 /// Spectral radius of the step's matrix on (C, h C') (velocity_verlet: with h^2 C'' too).

@@ -59,10 +59,11 @@ struct TipRun {
   Limit limit;              // of Options that ended it, if any
 };
 
-/// Runs to t_end; samples the tip by TipSamples. With a tolerance steps are long, and the
-/// method itself interpolates the states at the samples' times, within its tolerance.
-/// repeat = 0, or a failure: one untimed run; otherwise the median time, as time_run.
-/// `guard` watches the first run, not the timed ones; a breach is the run's failure.
+/// Runs to t_end; samples the tip by TipSamples. With a tolerance, steps are long, and
+/// the method itself interpolates the states at the samples' times within its tolerance.
+/// With repeat = 0, or after a failure, there is one untimed run. Otherwise the time is
+/// the median, as in time_run. `guard` watches the first run, not the timed ones; a
+/// breach is the run's failure.
 TipRun run_tip(std::string_view integrator, System& system, const Options& options,
                double t_end, int samples, int repeat = 0, Guard* guard = nullptr);
 

@@ -36,7 +36,7 @@ constexpr Column columns[] = {
     {"elements", "links of the strand"},
     {"dt_s", "fixed step"},
     {"steps", "steps of the run of 2 s"},
-    {"wall_s", "median wall time of the run, setting up aside", true},
+    {"wall_s", "median wall time of the run, setup excluded", true},
     {"us_per_step", "median wall time per step", true},
     {"tip_error_rel",
      "rms over the run of the tip's distance from the same simulator's finest run, over "

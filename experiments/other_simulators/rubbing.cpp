@@ -26,10 +26,13 @@ constexpr Column columns[] = {
     {"method", "contact and integrator"},
     {"scene", "slope: a block on a plane, mu = 0.3; capstan: 16 links over a cylinder"},
     {"dt_s", "fixed step"},
-    {"creep_um", "way in half a second at 90 % of what slides"},
+    {"creep_um",
+     "displacement in half a second at 90 % of the exact least load "
+     "that slides"},
     {"slides_at",
-     "slope: tan from which on it slides by 1 mm in half a second. capstan: ratio of "
-     "pulls from which on it slides by 0.3 mm in two"},
+     "least load that slides. Slope: tangent of the angle, for a slide "
+     "of 1 mm in half a second. Capstan: ratio of pulls, for a slide of "
+     "0.3 mm in two seconds"},
     {"exact", "slides_at by Coulomb's law"},
     {"error_rel", "slides_at over exact, less 1"},
 };

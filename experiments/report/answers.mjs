@@ -101,7 +101,7 @@ const configuration = (row) =>
     typeof row.dt_s === 'number' && `dt ${seconds(row.dt_s)}`].filter(Boolean).join(', ');
 
 function accuracy() {
-  const names = { winner: 'take', runner_up: 'next best', as_given: 'as the file has it' };
+  const names = { winner: 'take', runner_up: 'next best', as_given: 'your file' };
   const rows = rows_of('cost_of_accuracy');
   const line = (row) => [configuration(row), percent(row.error_rel),
     typeof row.ms_per_frame === 'number' ? seconds(row.ms_per_frame / 1e3) : row.reason];

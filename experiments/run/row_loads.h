@@ -15,8 +15,9 @@ inline constexpr double most_load = 0.5;
 
 inline constexpr simulation::Column others_load{
     "others_load",
-    "processors that other programs used while the row was timed, on average; of a row "
-    "below half a second: over the last such time; empty: rows ran side by side",
+    "mean number of processors that other programs used while the row "
+    "was timed. A row below half a second has the value of the last "
+    "measurement. Empty: rows ran at the same time",
     true};
 
 /// Load of the processors by other programs while rows ran, one row at a time.

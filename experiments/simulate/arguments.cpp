@@ -64,12 +64,13 @@ void declare(CLI::App& app, Arguments& a) {
          "most 1000 strands and 50 frames: use its .h5, or --as strands")
       ->delimiter(',')
       ->check(CLI::IsMember({"vtk", "usd", "hair", "gltf"}));
-  app.add_option(
-         "--as", a.as,
-         "way to run the strands (default auto). strands runs each by itself. batch runs "
-         "all in one, up to a million, in SIMD lanes or as replicated systems. "
-         "cost_of_accuracy --list prints the matrix. auto takes batch where 1000 strands "
-         "have lanes, or above 10000 strands")
+  app.add_option("--as", a.as,
+                 "way to run the strands (default auto). `strands` runs each by itself. "
+                 "`batch` runs all in one, up to a "
+                 "million, in SIMD lanes or as replicated systems. `auto` takes "
+                 "`batch` from 1000 strands on if the model has lanes, and above "
+                 "10000 strands. `cost_of_accuracy --list` prints which models have "
+                 "lanes")
       ->check(CLI::IsMember({"auto", "strands", "batch"}));
   app.add_option("--precision", a.bits,
                  "floating-point precision of a batch in bits: 64 or 32 (default 64)")
@@ -82,8 +83,9 @@ void declare(CLI::App& app, Arguments& a) {
          "bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
-                 "device for the time steps of a batch: cpu, gpu or auto (default cpu). "
-                 "auto takes gpu if there is one and the scene has gravity and drag only")
+                 "device for the time steps of a batch: cpu, gpu or auto (default "
+                 "cpu). `auto` takes gpu if there is one and the scene has gravity "
+                 "and drag only")
       ->check(CLI::IsMember({"cpu", "gpu", "auto"}));
   app.add_option("--frames", a.frames,
                  "bits of a coordinate in a batch's .h5: 32, 64, or none (default 32)")

@@ -16,8 +16,7 @@ namespace tress::experiments::validation {
 ///     theta'' = Gamma (1 - s) sin theta,   theta(0) = 0,   M(1) = 0.
 ///
 /// Under rotation by alpha t + beta n (t tangent, n normal in the plane) moments change
-/// by X t + Y n, and with GJ/EI = 1/(1 + nu) and the weight below, F = Gamma (1 - s)
-/// down,
+/// by X t + Y n. With GJ/EI = 1/(1 + nu) and the weight below, F = Gamma (1 - s) down,
 ///
 ///     X = (alpha' - k beta)/(1 + nu) + M beta,   X' = k Y - beta F.n,
 ///     Y = beta' + k alpha - M alpha,             Y' = -k X + beta F.t;

@@ -7,9 +7,9 @@
 
 namespace tress::experiments::validation {
 
-/// Equilibrium of a long straight isotropic rod, pulled and twisted at its ends, whose
-/// tilt from the line of the pull decays to both sides of its middle [Coyne 1990; van der
-/// Heijden & Thompson 2000]. The tilt is cos(tilt) = 1 - (1 - cos(largest)) sech^2(decay
+/// Equilibrium of a long straight isotropic rod, pulled and twisted at its ends [Coyne
+/// 1990; van der Heijden & Thompson 2000]. The tilt from the line of the pull decays on
+/// both sides of the middle. The tilt is cos(tilt) = 1 - (1 - cos(largest)) sech^2(decay
 /// (s - 1/2)), in units of the rod's length and EI. Exact for an infinite rod. At the
 /// ends of this one the tilt is 4 exp(-decay/2) sin(largest/2) or less.
 struct LocalisedHelix {

@@ -57,9 +57,9 @@ Strand strand(int elements, double amplitude) {
 }
 
 /// Measures the period at the tip over three periods, by steps of 1/400 of one: (omega
-/// h)^2 = 2.5e-4. The method is bdf2, since such steps do not resolve the stiff modes of
-/// a rigid rod, which have to be damped. implicit_midpoint does not damp them, and its
-/// Newton iteration then fails for most models.
+/// h)^2 = 2.5e-4. Such steps do not resolve the stiff modes of a rigid rod, which bdf2
+/// damps. The method implicit_midpoint does not damp them, and its Newton iteration then
+/// fails for most models.
 double swinging_period(const ModelTrial& trial) {
   const auto system =
       on_strand(trial.variant, strand(trial.elements, trial.parameter), weight());

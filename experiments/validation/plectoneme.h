@@ -69,10 +69,10 @@ TwistWork twist_on_and_back(const ModelVariant& variant, int elements, double fr
 /// The angle a (rad) of the equation above, for T R^2/EI > 0.
 double ply_angle(double tension);
 
-/// Mean radius and angle from its axis of the two plies of a curve through `x` (3 per
-/// point, `apart` m from point to point). The plies are where the curve comes within
-/// `reach` (m) of itself at more than `separation` (m) along it; the three pairs at
-/// either end are excluded. pairs = 0: no plies.
+/// Mean radius of the two plies of a curve and their mean angle from the axis. The curve
+/// goes through `x` (3 per point, `apart` m from point to point). The plies are where the
+/// curve comes within `reach` (m) of itself at more than `separation` (m) along it. The
+/// three pairs at either end are excluded. Without plies, pairs = 0.
 struct Ply {
   int pairs = 0;
   double radius = 0, angle = 0;  // m, rad

@@ -20,9 +20,9 @@ namespace tress::experiments::validation {
 /// with m the mass per length of wire. These are two waves of speeds c_1, c_2, which both
 /// turn and stretch. Clamped above and free below their first modes are (pi/2)
 /// c_k/(length of wire). For flat turns D_11 = GJ/r^2, and the stretching wave has omega
-/// = (pi/2) sqrt(k/m). k = GJ/(r^2 wire) is Love's stiffness [G d^4/(8 D^3 n)] and m the
-/// mass of the wire. The effective mass is 4 m/pi^2 rather than the m/3 of a spring under
-/// a heavy weight.
+/// = (pi/2) sqrt(k/m). Here k = GJ/(r^2 wire) is Love's stiffness [G d^4/(8 D^3 n)], and
+/// m is the mass of the wire. The effective mass is 4 m/pi^2 rather than the m/3 of a
+/// spring under a heavy weight.
 std::vector<ValidationTest> spring_tests();
 
 /// First frequencies (rad/s) of the two waves of the test's spring.

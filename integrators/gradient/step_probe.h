@@ -26,9 +26,9 @@ struct StepTable {
 
   /// Nonlinear part of a step, from combinations of earlier vectors to new vectors.
   struct Operation {
-    /// stage: a with r(q + w.pos a, v + w.vel a, a) = 0. acceleration: the same with
-    /// w.pos = w.vel = 0. accept: (q, v) to (q, v), by History. carry: (q, v, a) to
-    /// (q, v, a), by MovingHistory.
+    /// Kind of operation. A stage finds a with r(q + w.pos a, v + w.vel a, a) = 0. An
+    /// acceleration finds a with w.pos = w.vel = 0. History::accept() maps (q, v) to (q,
+    /// v). MovingHistory::carry() maps (q, v, a) to (q, v, a).
     enum class Kind { stage, acceleration, accept, carry } kind;  // kind of operation
     std::array<Combination, 3> of;                                // q, v and a
     Weights w;          // weights of a in q and v

@@ -18,9 +18,9 @@ namespace tress::integrators {
 ///
 /// at the solutions of the run's stages. A Runge-Kutta, multistep or generalized-alpha
 /// method is linear algebra around the solution of its stages. The same method with the
-/// same steps on these equations therefore gives the exact derivative of its own run
-/// [Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed., VI.4.1, for
-/// Runge-Kutta methods; Bock 1981 for multistep methods].
+/// same steps on these equations therefore gives the exact derivative of its own run.
+/// Sources: [Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed., VI.4.1]
+/// for Runge-Kutta methods and [Bock 1981] for multistep methods.
 ///
 /// The residual is that of these equations times S^-1 (Linearized::excess()) with the
 /// S(w) of the last linearize(), so that the matrix is the identity. Constraints g(q) = 0

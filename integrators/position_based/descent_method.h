@@ -18,8 +18,8 @@ enum class Start {
 inline constexpr Parameter start_option{
     .name = "start",
     .help =
-        "start of the sweeps: with all other forces, or with the part of them that "
-        "the last step's acceleration had",
+        "initial guess of the sweeps: under all other forces, or "
+        "under the share of them in the acceleration of the last step",
     .choices = "inertial|adaptive"};
 
 /// A backward Euler step by BlockDescent: x from the guess, v = (x - q)/h. All forces

@@ -25,7 +25,9 @@ inline constexpr Parameter curvature_option{
 /// Option for DescentChoice::chebyshev.
 inline constexpr Parameter chebyshev_option{
     .name = "chebyshev",
-    .help = "rate of sweeps for which they are accelerated, 0: they are not",
+    .help =
+        "convergence rate for which Chebyshev acceleration of the "
+        "sweeps is set, 0: no acceleration",
     .number = 0,
     .min = 0,
     .max = 1};

@@ -14,7 +14,7 @@ constexpr std::array ida_formulations{Formulation::parametric, Formulation::acce
                                       Formulation::index3};
 constexpr Parameter own_ida[] = {
     {.name = "suppress_algebraic",
-     .help = "multipliers out of the error test",
+     .help = "whether multipliers are left out of the error test",
      .choices = "true|false"},
     {.name = "multiplier_atol",
      .help = "multipliers' absolute tolerance over atol",

@@ -99,7 +99,8 @@ class TurningOf {
       return {};
     }
   }
-  /// Places points as place(), with lanes that wind by more than one part replaced one by one.
+  /// Computes frames as place() does, and replaces lanes that wind by more than one part,
+  /// one by one.
   template <class Rule, class Put>
   FrameOf<Real> place_long(const Rule& rule, Put put) {
     LongTurning long_lanes[Real::lanes];

@@ -17,9 +17,9 @@ namespace tress::models {
 ///     N = k d |g| h(1 - c u_n),   E = k d^2/2
 ///
 /// c damps in proportion to the depth, so the force does not jump when contact begins or
-/// ends [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]. h(s) = s for s >= 1/2 and (s +
-/// 1/2)^2/2 from there down to 0 at s = -1/2, so the contact never pulls. h(1) = 1, so
-/// only the spring acts on a strand at rest.
+/// ends [Hunt & Crossley 1975, J. Appl. Mech. 42, 440]. The factor h(s) is s for s >=
+/// 1/2, (s + 1/2)^2/2 for -1/2 <= s <= 1/2 and 0 below, so the contact never pulls. Since
+/// h(1) = 1, only the spring acts on a strand at rest.
 struct NormalContact {
   double stiffness = 0;  // k, N/m^2
   double damping = 0;    // c, s/m

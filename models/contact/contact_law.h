@@ -17,13 +17,13 @@ namespace tress::models {
 ///     F = K (P - rho)+ d/rho - D w(rho) u,    rho^2 = |d|^2 + (P/1000)^2
 ///     w = 1 up to P, 1 - 3 s^2 + 2 s^3 from P to the outer radius, s in [0, 1]; 0 beyond
 ///
-/// K (P - d) and D follow [Wang, thesis, NCTU, section 5.2]: K = 2e-6, D = 2e-5 or 2e-6,
-/// P_inner = 3 mm, no units, on strands of segments of about l = 1 cm. We read them as
-/// N/m and N s/m per segment. Per length, K/l = 2e-4 N/m^2 and D/l = 2e-3 or 2e-4 N s/m^2
-/// do not depend on the discretisation. Our reconstruction consists of these units, rho
-/// in place of |d|, w and the outer radius. With rho F is smooth and finite where strands
-/// coincide, and beyond P/10 F changes by less than 1e-4 relative. The force of K has a
-/// kink at P, w does not.
+/// K (P - d) and D follow [Wang, thesis, NCTU, section 5.2]. The thesis gives K = 2e-6, D
+/// = 2e-5 or 2e-6 and P_inner = 3 mm, without units, for strands of segments of about l =
+/// 1 cm. We read them as N/m and N s/m per segment. Per length, K/l = 2e-4 N/m^2 and D/l
+/// = 2e-3 or 2e-4 N s/m^2 do not depend on the discretisation. Our reconstruction
+/// consists of these units, rho in place of |d|, w and the outer radius. With rho F is
+/// smooth and finite where strands coincide, and beyond P/10 F changes by less than 1e-4
+/// relative. The force of K has a kink at P, w does not.
 class ContactLaw {
  public:
   /// Coefficients of the law.

@@ -25,9 +25,9 @@ struct GradedCut {
 
 /// Returns `elements` elements that share |kappa'|^(2/3) equally, with kappa(s) the
 /// Darboux vector at rest. The error of kappa, sum h^3 |kappa'|^2/12, is near its minimum
-/// for this number of elements [De Boor 1973]. kappa' follows without differences from
-/// the balance of moments (N the load beyond s, R the frame, K = diag(GJ, EI1, EI2),
-/// kappa_n the natural curvatures),
+/// for this number of elements [De Boor 1973]. The balance of moments gives kappa'
+/// without differences. With N the load beyond s, R the frame, K = diag(GJ, EI1, EI2) and
+/// kappa_n the natural curvatures,
 ///
 ///     kappa' = kappa_n' + K^-1 (-kappa x K (kappa - kappa_n) + (R^T N) x e0),
 ///

@@ -11,9 +11,9 @@
 namespace tress::models {
 
 /// Force of moving air on a strand, with air velocity w(t, x), for any law of air_law.h
-/// and any field of wind_field.h. f = law(v - w), df/dv = law', df/dx = -law' dw/dx. All
-/// its work counts as power; there is no potential. Law and field are types, so still air
-/// costs nothing. O(points).
+/// and any field of wind_field.h. The force is f = law(v - w), with df/dv = law' and
+/// df/dx = -law' dw/dx. All its work counts as power; there is no potential. Law and
+/// field are types, so still air costs nothing. O(points).
 template <class Law, class Wind>
 class AirDrag final : public Effect {
   static constexpr bool uniform = Wind::Flow::uniform;

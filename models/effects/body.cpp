@@ -14,7 +14,8 @@ constexpr Parameter parameters_of_body[] = {
              "ellipsoid; sdf: a signed distance grid",
      .choices = "plane|sphere|capsule|ellipsoid|sdf"},
     {.name = "centre_m",
-     .help = "origin of its frame x, y, z, of a plane any point of it (m)",
+     .help = "origin x, y, z of the frame of the body; for a plane any of "
+             "its points (m)",
      .min = -1e6,
      .max = 1e6,
      .components = 3,
@@ -55,7 +56,8 @@ constexpr Parameter parameters_of_body[] = {
      .min = 0,
      .max = 1e12},
     {.name = "damping_s_m",
-     .help = "part by which the contact force grows per approaching speed (s/m)",
+     .help = "relative increase of the contact force per approach speed "
+             "(s/m)",
      .number = 1,
      .min = 0,
      .max = 1e9},
@@ -66,24 +68,24 @@ constexpr Parameter parameters_of_body[] = {
      .max = 1e3},
     {.name = "friction_law",
      .help =
-         "regularised: sticking contacts creep below slip_speed_m_s; exact "
-         "(Signorini-Coulomb): they keep their place on the body to the contact "
-         "tolerance. exact needs a method that solves at the end of a step. With "
+         "law of friction. `regularised`: sticking contacts creep below "
+         "slip_speed_m_s. `exact` (Signorini-Coulomb): they keep their "
+         "place on the body to the contact tolerance. `exact` needs a "
+         "method that solves at the end of a step. With "
          "[effects.strand_friction], rigid contacts are solved together with those of "
          "strands",
      .choices = "regularised|exact"},
     {.name = "normal",
-     .help = "friction_law = exact: the surface gives way as stiffness_n_m2 says, or is "
-             "rigid",
+     .help = "friction_law = exact: surface that gives way with stiffness_n_m2, "
+             "or a rigid one",
      .choices = "compliant|rigid"},
     {.name = "restitution",
      .help = "normal = rigid: speed after an impact over that before, for backward_euler",
      .min = 0,
      .max = 1},
     {.name = "slip_speed_m_s",
-     .help =
-         "friction_law = regularised: speed below which friction fades: the most that "
-         "sticking creeps (m/s)",
+     .help = "friction_law = regularised: speed below which friction "
+             "fades, and largest creep of a sticking contact (m/s)",
      .number = 1e-3,
      .min = 1e-12,
      .max = 1e3},

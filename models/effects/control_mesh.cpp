@@ -54,7 +54,7 @@ std::span<const Parameter> control_mesh_parameters() {
          .min = 0,
          .max = 1e12},
         {.name = "break_m",
-         .help = "a link breaks that is longer than at rest by more than this (m)",
+         .help = "elongation at which a link breaks (m)",
          .number = 0.02,
          .min = 1e-9,
          .max = 1e3}};

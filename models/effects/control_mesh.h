@@ -28,8 +28,9 @@ std::span<const Parameter> control_mesh_parameters();
 /// than at rest by more than the threshold at the end of a step is gone until restart.
 ///
 /// Strips of triangles between neighbouring guides. The nearest triangle of a strip
-/// pushes and drags a point of a third guide, as a strand does (ContactLaw). d is the
-/// vector from the nearest place on the triangle, and u the velocity relative to it:
+/// pushes and drags a point of a third guide, as a strand does (ContactLaw). With d the
+/// vector from the nearest place on the triangle and u the velocity relative to that
+/// place,
 ///
 ///     F = w (1 - |t.t'|) l ContactLaw(d, u)
 ///

@@ -26,7 +26,8 @@ std::span<const Parameter> self_contact_parameters() {
     const std::span<const Parameter> law = contact_parameters();
     std::vector<Parameter> list(law.begin(), law.end());
     list.push_back({.name = "separation_m",
-                    .help = "along the strand, of parts that touch each other (m)",
+                    .help = "least distance along the strand between parts that may "
+                            "touch (m)",
                     .number = 2e-2,
                     .min = 1e-9,
                     .max = 1e6});

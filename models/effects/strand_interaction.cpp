@@ -31,9 +31,11 @@ std::span<const Parameter> strand_interaction_parameters() {
   static const std::vector<Parameter> all = [] {
     std::vector<Parameter> list{
         {.name = "coupling",
-         .help = "lagged: a strand meets the others at their positions after the last "
-                 "step; with a tolerance they move between two exchanges. monolithic: at "
-                 "their present positions, all strands in one system",
+         .help = "positions at which a strand meets the others. `lagged`: those at "
+                 "the start of the step. With a tolerance, each strand takes its "
+                 "own steps between two exchanges and sees the others move. "
+                 "`monolithic`: the present positions, with all strands in one "
+                 "system",
          .choices = "lagged|monolithic"}};
     const std::span<const Parameter> law = contact_parameters();
     list.insert(list.end(), law.begin(), law.end());

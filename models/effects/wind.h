@@ -20,12 +20,12 @@ std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
 /// Returns the parameters of wind.
 std::span<const Parameter> wind_parameters();
 
-/// Makes the load of moving air: a field of effects/wind_field.h (`profile`) and a law of
-/// effects/air_law.h (`law`) for the relative velocity. Laws of a relative
-/// velocity include the drag: use them instead of linear_drag or quadratic_drag. law =
-/// force is a given force per length along the wind, F w/|U|, independent of the
-/// strand's motion: it has no drag. F is in N/m and U the
-/// given velocity. Throws InputError if U = 0 with law = force.
+/// Makes the load of moving air from a field of effects/wind_field.h (`profile`) and a
+/// law of effects/air_law.h (`law`) for the relative velocity. Laws of a relative
+/// velocity include the drag: use them instead of linear_drag or quadratic_drag. With law
+/// = force, the wind exerts a given force per length, F w/|U|, with F in N/m and U the
+/// given velocity. That force is independent of the strand's motion and includes no drag.
+/// Throws InputError if U = 0 with law = force.
 std::unique_ptr<const Effect> make_wind(const Parameters& parameters,
                                         const RootMotion& head);
 

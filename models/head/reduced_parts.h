@@ -38,8 +38,8 @@ struct ReducedInertia {
   T of_length, acc;  // w.acc density + w.vel drag, and w.acc
 };
 
-/// Inertia that hangs on the tip of an element, in the components of its start, and the
-/// forces that a motion of the element causes on it.
+/// Inertia that hangs on the tip of an element, in the components of the element's start,
+/// and its coupling to the element's motion.
 template <class T>
 struct HangingOnTip {
   Symmetric3<T> ll, aa;       // of the tip

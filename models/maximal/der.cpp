@@ -24,10 +24,10 @@ namespace {
 /// whole turns from then on (wound(), joint_strain.h). The twist of a batch's strand
 /// (models/head/maximal/der_strand.h) stays between -pi and pi.
 ///
-/// Frames are functions of q relative to reference frames, which are fixed until an edge
-/// has turned by more than 60 degrees from its reference. accept() then takes the current
-/// frame as the reference and adds to theta' the turning of the old one, so neither
-/// frames nor spins jump.
+/// Frames are functions of q relative to reference frames. A reference frame is fixed
+/// until its edge has turned by more than 60 degrees from it. The function accept() then
+/// takes the current frame as the reference and adds the turning of the old one to
+/// theta', so neither frames nor spins jump.
 ///
 /// The kinetic energy of the angles uses theta' in place of the section's spin, theta' +
 /// c . e' with c of rod_edge.h, which keeps M constant. The difference grows with the

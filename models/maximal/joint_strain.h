@@ -16,10 +16,10 @@ namespace tress::models {
 ///     kappa_1 = -(t+ . e2- - t- . e2+)/c,    kappa_2 = (t+ . e1- - t- . e1+)/c,
 ///     twist = atan2(e2- . e1+ - e1- . e2+, e1- . e1+ + e2- . e2+).
 ///
-/// These are the strains of [Bergou 2008, 2010]: kb . (e1- + e1+)/2 and kb . (e2- +
-/// e2+)/2 with the curvature binormal kb = 2 t- x t+/c, and the angle that remains after
-/// the minimal rotation of t- to t+. |kappa| = 2 tan(angle/2). Not defined for
-/// antiparallel tangents (c = 0).
+/// These are the strains of [Bergou 2008, 2010]. The curvatures are kb . (e1- + e1+)/2
+/// and kb . (e2- + e2+)/2 with the curvature binormal kb = 2 t- x t+/c. The twist is the
+/// angle that remains after the minimal rotation of t- to t+. |kappa| = 2 tan(angle/2).
+/// Not defined for antiparallel tangents (c = 0).
 template <class T>
 Vec3<T> joint_strain(const FrameOf<T>& minus, const FrameOf<T>& plus) {
   using std::atan2;

@@ -96,10 +96,10 @@ struct Chord {
   }
 };
 
-/// Angle between two edges, as the length of the curvature binormal (kb, delta), kb = 2
-/// e0 x e1/(|e0| |e1| + e0 . e1), so |kb| = 2 tan(angle/2) [Bergou et al. 2008]. Three
-/// points do not define the bending direction of a straight joint. |kb| has a kink there,
-/// which delta rounds off. Not defined for antiparallel edges.
+/// Angle between two edges, as the length of the vector (kb, delta). The curvature
+/// binormal is kb = 2 e0 x e1/(|e0| |e1| + e0 . e1), so |kb| = 2 tan(angle/2) [Bergou et
+/// al. 2008]. Three points do not define the bending direction of a straight joint. |kb|
+/// has a kink there, which delta rounds off. Not defined for antiparallel edges.
 struct Hinge {
   static constexpr int edges = 2;  // number of edges that the strain depends on
   static constexpr double delta = hinge_delta;  // delta of the formula

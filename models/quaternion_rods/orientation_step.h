@@ -4,10 +4,10 @@
 
 namespace tress::models {
 
-/// Orientation of one edge, q of norm 1, at which the edge's pull and its joints are
-/// balanced with all others held and without inertia [Hsu et al. 2025, Stable Cosserat
-/// Rods]. With joints of the isotropic energy 2 K |conj(p) q - r|^2, r at rest, q
-/// minimises
+/// Orientation of one edge, q of norm 1, at which the pull on the edge balances its
+/// joints [Hsu et al. 2025, Stable Cosserat Rods]. All other unknowns are held fixed, and
+/// inertia is left out. With joints of the isotropic energy 2 K |conj(p) q - r|^2, r at
+/// rest, q minimises
 ///
 ///     -pull . t(q) - b . q,    b = sum 4 K p r.
 ///

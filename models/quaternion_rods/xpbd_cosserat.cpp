@@ -7,8 +7,9 @@ namespace tress::models {
 namespace {
 
 /// Cosserat rod of position-based methods [Kugelstadt & Schoemer 2016, with the
-/// compliances of Deul et al. 2018]: n edges between nodes x_i, a quaternion q_i for the
-/// material frame R of each. With e an edge and l its length at rest,
+/// compliances of Deul et al. 2018]. The rod has n edges between nodes x_i, and edge i
+/// has a quaternion q_i for its material frame R. With e an edge and l its length at
+/// rest,
 ///
 ///     C_s = R^T e/l - e0                            stretch and shear
 ///     C_b = 2 vec(conj(q_j) q_{j+1} - its rest)     twist and bending

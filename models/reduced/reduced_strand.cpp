@@ -16,10 +16,9 @@ namespace {
 
 constexpr Parameter own_parameters[] = {
     {.name = "modes",
-     .help =
-         "unknowns of an element. bend_twist: bending about e1 and e2, and twist. bend: "
-         "without twist. bend_planar: bending about e1 alone, in the plane of tangent "
-         "and e2",
+     .help = "unknowns of an element. `bend_twist`: bending about e1 and e2, "
+             "and twist. `bend`: without twist. `bend_planar`: bending about e1 "
+             "alone, in the plane of tangent and e2",
      .choices = "bend_twist|bend|bend_planar"},
     {.name = "solver",
      .help = "linear solver; recursive_plain is the textbook update (loses digits)",

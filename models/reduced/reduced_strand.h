@@ -59,9 +59,10 @@ struct ReducedSegmentOf {
 /// Segment of linear strains.
 using ReducedSegment = ReducedSegmentOf<>;
 
-/// Terms of the Jacobian. exact: all. elastic: mass, friction, elasticity, and effects
-/// made semidefinite. elastic_local: the elastic Jacobian, solved by our
-/// reconstruction of a recursion that is "less implicit" than the composite matrix.
+/// Terms of the Jacobian. The exact Jacobian has all terms. The elastic one has mass,
+/// friction, elasticity, and effects made semidefinite. With elastic_local, the elastic
+/// Jacobian is solved by our reconstruction of a recursion that is "less implicit" than
+/// the composite matrix.
 enum class ReducedJacobian { exact, elastic, elastic_local };
 
 /// Options of reduced models.

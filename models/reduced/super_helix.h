@@ -9,9 +9,9 @@
 namespace tress::models {
 
 /// Super-helix [Bertails, Audoly, Cani, Querleux, Leroy, Leveque 2006]: an inextensible
-/// Kirchhoff rod of N segments, each a helix of constant Darboux vector; unknowns are its
-/// components (twist, curvature 1, curvature 2 in 1/m; fewer by `modes`). Equations of
-/// motion
+/// Kirchhoff rod of N segments, each a helix of constant Darboux vector. The unknowns are
+/// the components of that vector: twist, curvature 1 and curvature 2, in 1/m, or fewer
+/// with `modes`. Equations of motion
 ///
 ///     M(q) q'' + gamma l q' + K (q - q_rest) + gyroscopic terms = sum J^T f
 ///

@@ -22,7 +22,7 @@ namespace tress::models {
 ///   5.
 ///
 /// Sections are circles. Those of the plants follow the pipe model [Shinozaki et al.
-/// 1964; da Vinci's rule]: the area is proportional to the length of all that grows
+/// 1964; da Vinci's rule]. The area is proportional to the length of all that grows
 /// beyond, so areas add up at a fork. Arcs are in the natural shape; limbs droop or rise
 /// by the tropism of [Prusinkiewicz & Lindenmayer 1990, section 1.10]. `initial` is the
 /// natural shape, not bent by gravity at t = 0.

@@ -90,10 +90,10 @@ class GuideHair {
   void keep_shapes(std::span<const Vec> guides, const Frame& head,
                    std::span<const Vec> hairs);
 
-  /// Computes one frame, in the world. guides: guide after guide, root to tip; head: maps
-  /// components in the head's frame to world components; hairs (out): in the same order
-  /// as their roots. Throws InputError if a length is not guides x points or hairs x
-  /// points. O((guides + 3 hairs) points).
+  /// Computes one frame, in the world. `guides` has the points guide after guide, from
+  /// root to tip. `head` maps components in the head's frame to world components. `hairs`
+  /// receives the hairs in the order of their roots. Throws InputError if a length is not
+  /// guides x points or hairs x points. O((guides + 3 hairs) points).
   void grow(std::span<const Vec> guides, const Frame& head, std::span<Vec> hairs) const;
 
  private:

@@ -43,13 +43,13 @@ struct FitWeights {
 ///
 ///     1/L^3 int |x(s) - c(s)|^2 ds + w1 sum |l (k_{i+1} - k_i)|^2 + w2 sum |l_i tau_i|^2
 ///
-/// over all Darboux vectors and the frame at the root. l is the mean of two lengths, tau
-/// the twist; the integral uses 3 Gauss points per element [Levenberg 1944; Marquardt
-/// 1963]. The start is the curvature of the twistless frame, averaged over each element.
-/// That alone is ten times as far away, since errors of angle add up along the strand.
-/// The two small weights determine what the curve leaves open: the twist of a straight
-/// part, and strains that oscillate from element to element. O(n^3) for each of a dozen
-/// steps at most.
+/// over all Darboux vectors and the frame at the root [Levenberg 1944; Marquardt 1963].
+/// Here l is the mean of two lengths and tau the twist. The integral uses 3 Gauss points
+/// per element. The start is the curvature of the twistless frame, averaged over each
+/// element. That alone is ten times as far away, since errors of angle add up along the
+/// strand. The two small weights determine what the curve leaves open: the twist of a
+/// straight part, and strains that oscillate from element to element. O(n^3) for each of
+/// a dozen steps at most.
 HelixChain fit_helices(const SpaceCurve& curve, std::span<const double> joints,
                        const FitWeights& weights = {});
 

@@ -11,9 +11,10 @@ namespace tress::simulation {
 /// Smooth curve through points: the cubic spline over the length u of their polyline, and
 /// its arc length s. The second derivative is extrapolated linearly from the two inner
 /// knots next to an end (not-a-knot), so that the curve keeps its curvature there. For
-/// points of a smooth curve at distances h, places are off by O(h^4) and the curvature by
-/// O(h^2), up to the ends [de Boor 2001, chapter IV; Floater & Surazhsky 2006]. Through
-/// two points it is straight, through three a parabola, through four one cubic.
+/// points of a smooth curve at distances h, positions are exact to O(h^4) and the
+/// curvature to O(h^2), ends included. Sources: [de Boor 2001, chapter IV] and [Floater &
+/// Surazhsky 2006]. Through two points it is straight, through three a parabola, through
+/// four one cubic.
 class SpaceCurve {
  public:
   /// Points nearer to each other than this are refused, m.

@@ -22,10 +22,10 @@ struct EnergyMeasure {
 };
 
 /// Bound of the energy of a motion. In a frame that moves with the clamp, the clamp does
-/// no work. x is the position and v the velocity of a point of mass m, w = V + omega x r
-/// the velocity of the frame there, and u = v - w. f are the loads of all effects, P the
-/// power (in the world's frame) of their non-potential part, and V_p the potential of the
-/// rest. With a_w = A + alpha x r + omega x (omega x r) (the Coriolis term does no work),
+/// no work. A point of mass m has position x and velocity v. The frame has velocity w = V
+/// + omega x r there, and u = v - w. The loads of all effects are f. Their non-potential
+/// part has the power P in the world's frame, and the rest has the potential V_p. The
+/// Coriolis term does no work. With a_w = A + alpha x r + omega x (omega x r),
 ///
 ///     E = sum m u^2/2 + V_p,   dE/dt <= P - sum (f.w + m a_w.u),
 ///

@@ -35,9 +35,9 @@ constexpr Parameter file_keys[] = {
      .min = 0,
      .max = 1e6},
     {.name = "up",
-     .help =
-         "axis of the file that points up. file: that of the file or its format (.usda: "
-         "y), otherwise guessed from hair that bends as it hangs, and printed",
+     .help = "axis of the file that points up. `file` takes that of the file or "
+             "of its format (.usda: y). Without one, the axis is guessed from "
+             "hair that bends as it hangs, and printed",
      .choices = "file|x|y|z|-x|-y|-z"},
     {.name = "position_m",
      .help = "file: place of its origin x, y, z (m)",
@@ -66,19 +66,20 @@ constexpr Parameter file_keys[] = {
              ".hair or .usda, which vary along a strand",
      .choices = "material|file"},
     {.name = "strand_points",
-     .help = "file: points of every strand of a .ply that does not say; 0: it says",
+     .help = "file: points of every strand of a .ply file without strand "
+             "sizes; 0: given in the file",
      .number = 0,
      .min = 0,
      .max = 1e6,
      .whole = true},
     {.name = "mesh",
-     .help =
-         "file: where elements end: half by length and half by turning, or all equal, "
-         "as a batch needs them",
+     .help = "file: placement of the elements: half by length and half by "
+             "turning, or all equal, as SIMD lanes need",
      .choices = "turning|equal"},
     {.name = "fit",
-     .help = "file: a distance counts from the helices between joints, or from straight "
-             "edges between nodes, as of models of nodes",
+     .help = "file: shape from which distances are measured: helices "
+             "between joints, or straight edges between nodes for models "
+             "of nodes",
      .choices = "helices|edges"},
 };
 

@@ -34,17 +34,17 @@ constexpr Parameter gradient_keys[] = {
      .help = "points to differentiate: the tip, all points, or the tip at the last frame",
      .choices = "tip|points|last_tip"},
     {.name = "way",
-     .help =
-         "direction of the derivatives in time. forward goes along with the run, with "
-         "one more solution per parameter. adjoint goes backward after it, with one "
-         "solution per differentiated number, 3 for each point and frame. auto takes "
-         "adjoint where there are more than 3 parameters per number",
+     .help = "direction of the derivatives in time. `forward` runs along with the motion "
+             "and takes one more solution "
+             "per parameter. `adjoint` runs backward after it and takes one "
+             "solution per differentiated number, 3 for each point and frame. "
+             "`auto` takes `adjoint` where there are more than 3 parameters per "
+             "number",
      .choices = "auto|forward|adjoint"},
     {.name = "start",
-     .help =
-         "start of the run. damped takes two short steps of backward Euler, as_run "
-         "none. auto takes damped where a parameter moves the shape at rest, the start "
-         "or the root",
+     .help = "start of the run. `damped` takes two short steps of backward "
+             "Euler, `as_run` none. `auto` takes `damped` where a parameter "
+             "moves the shape at rest, the start or the root",
      .choices = "auto|damped|as_run"},
 };
 

@@ -109,12 +109,14 @@ constexpr Parameter detail_keys[] = {
      .min = 0,
      .max = 1e3},
     {.name = "tolerance_px",
-     .help = "tolerance in pixels of the screen, where the hair is nearest to it",
+     .help = "tolerance in pixels of the screen, for hair at its least "
+             "distance from the camera",
      .number = 0,
      .min = 0,
      .max = 1e6},
     {.name = "pixels_per_m",
-     .help = "there: pixels by metre, the focal length in pixels over the distance in m",
+     .help = "pixels per metre for tolerance_px: focal length in pixels "
+             "over distance in m",
      .number = 0,
      .min = 0,
      .max = 1e9},

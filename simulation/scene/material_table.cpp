@@ -37,9 +37,9 @@ constexpr double anisotropy = 3.89 / 0.89;
 /// size that [Bertails et al. 2006] give for African and wavy Caucasian hair.
 ///
 /// Internal friction: 1e-10 kg m^3/s, fitted to an oscillating curly clump [Bertails et
-/// al. 2006, in the course notes of 2008, figure 1.8]: a damping time, friction over E I,
-/// of 13 to 20 ms. That of a lone hair is not known; the family of the experiments draws
-/// 0.3 to 10 ms.
+/// al. 2006, in the course notes of 2008, figure 1.8]. The damping time, friction over E
+/// I, is then 13 to 20 ms. That of a lone hair is not known; the family of the
+/// experiments draws 0.3 to 10 ms.
 struct Named {
   std::string_view name;
   Values values;

@@ -35,7 +35,8 @@ constexpr Parameter top[] = {
      .min = 1e-6,
      .max = 1e6},
     {.name = "checkpoint_s",
-     .help = "simulated time between saved states (s), 0: by the clock, once a minute",
+     .help = "simulated time between saved states (s), 0: once a minute "
+             "of the clock",
      .number = 0,
      .min = 0,
      .max = 1e6},
@@ -59,8 +60,8 @@ constexpr Parameter top[] = {
          "at rest in their shape at t = 0, under the loads at t = 0 (the mean of wind)",
      .choices = "natural|inverse"},
     {.name = "unstable",
-     .help = "rest = inverse: strands too soft to stay: made twice as stiff as they must "
-             "be, left to fall, or left out by simulate",
+     .help = "rest = inverse: treatment of strands too soft to stay: made "
+             "twice as stiff as needed, left to fall, or left out",
      .choices = "stiffen|keep|drop"},
     {.name = "seed",
      .help = "seed of every random choice",
@@ -199,8 +200,9 @@ std::vector<TableEntry> table_entries() {
                  .parameters = support_table_parameters(),
                  .many = true});
   all.push_back({.name = "gradient",
-                 .summary = "derivatives of the motion by numbers of the scene, which "
-                            "simulate --gradient writes; without it of no effect",
+                 .summary = "derivatives of the motion by numbers of the scene. "
+                            "`simulate --gradient` writes them; without that option the "
+                            "table has no effect",
                  .parameters = gradient_table_parameters()});
   return all;
 }

@@ -123,8 +123,8 @@ constexpr std::string_view defaults_head =
     "source = \"simulate --print-defaults\"\n";
 
 /// Keys shown, in the order of the page. Some have a value that suits the scene better
-/// than the default. These are a method that does not damp what it should keep, the
-/// internal friction of measured hair (E I times 2 ms, E = 3.9 GPa) and the drag of
+/// than the default. One is a method that hardly damps the resolved motion. Others are
+/// the internal friction of measured hair (E I times 2 ms, E = 3.9 GPa) and the drag of
 /// still air on a hair, 72 um thick.
 struct Shown {
   std::string_view table, keys;

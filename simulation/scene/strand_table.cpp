@@ -56,9 +56,10 @@ constexpr Parameter own_parameters[] = {
          "them at t = 0, as in a knot",
      .choices = "points|straight"},
     {.name = "mesh",
-     .help = "placement of the elements: by grading, or with equal shares of the "
-             "curvature at rest, clamped and under its weight. rest_linear: for "
-             "curvature that is linear in an element (super_clothoid)",
+     .help = "placement of the elements: by grading, or with equal shares of "
+             "the curvature at rest, clamped and under its weight. "
+             "`rest_linear` is for curvature that is linear in an element "
+             "(super_clothoid)",
      .choices = "grading|rest|rest_linear"},
     {.name = "tolerance_m",
      .help = "largest distance (m) from the shape at rest, which chooses the number of "
@@ -141,8 +142,8 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
   const Parameters& p = table.values();
   const double length = p.number("length_m"), tolerance = p.number("tolerance_m");
   if (p.word("mesh") != "grading") {
-    refuse_if(!clamped, "no rest of a strand that nothing holds", table.place("mesh"),
-              "leave out one of them");
+    refuse_if(!clamped, "a strand that nothing holds has no shape at rest",
+              table.place("mesh"), "leave out one of them");
     refuse_grading(table, "cuts at rest");
     refuse_varied(table, "cuts at rest");
     return cut_at_rest(table, {material.material,

@@ -35,7 +35,7 @@ TEST(Advice, TakesWhatIsBothCheaperAndMoreAccurate) {
 TEST(Advice, CallsATieATie) {
   const auto lines = advice({configured("winner", 0.009, 1),
                              configured("runner_up", 0.0095, 1.05).set("tied", true)});
-  EXPECT_TRUE(lines[1].starts_with("within 10 %, a tie with der,")) << lines[1];
+  EXPECT_TRUE(lines[1].starts_with("tied within 10 %: der,")) << lines[1];
 }
 
 TEST(Advice, BeginsWithTheTimeForWhichItIsValid) {

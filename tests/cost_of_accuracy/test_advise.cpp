@@ -59,7 +59,7 @@ TEST(Advise, SaysWhatToTakeAndWritesASceneThatRuns) {
   EXPECT_THAT(line_of(result.out, "take "), HasSubstr("take super_helix"));
   EXPECT_THAT(line_of(result.out, "take "), HasSubstr("over the whole 0.1 s"));
   EXPECT_THAT(result.out, HasSubstr("\nrobust: the worst of 6 neighbours is "));
-  EXPECT_THAT(result.out, HasSubstr("not as the file has it, der"));
+  EXPECT_THAT(result.out, HasSubstr("your file, der"));
   EXPECT_THAT(result.out, HasSubstr("\ntable: table.csv\n"));
   const Scene scene = parse_scene(process.read("hair.advised.toml"), "hair.advised.toml");
   EXPECT_EQ(scene.model->id, "super_helix");
@@ -78,7 +78,8 @@ TEST(Advise, ComparesTheWholeScene) {
   EXPECT_EQ(winner_of(process).number("horizon_s"), 0.8);
   const Toy::Result cut = process.run("--advise hair.toml --set horizon_s=0.2" + small);
   ASSERT_EQ(cut.code, 0) << cut.err;  // as asked
-  EXPECT_TRUE(cut.out.starts_with("valid for the first 0.2 s of 0.8 s, as asked: take "))
+  EXPECT_TRUE(
+      cut.out.starts_with("valid for the first 0.2 s of 0.8 s, as requested: take "))
       << cut.out;
   EXPECT_THAT(process.read("hair.advised.toml"),
               HasSubstr("over the first 0.2 s of 0.8 s"));

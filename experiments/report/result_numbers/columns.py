@@ -22,8 +22,8 @@ _OF_CLAIMS = {
     "statement": "the claim in words",
     "value": "quantity measured for each hair",
     "hairs": "hairs or rods that give an answer",
-    "no_answer": "hairs or rods without an answer",
-    "reasons": "number of hairs or rods without an answer, by status",
+    "no_answer": "number of inconclusive hairs or rods",
+    "reasons": "number of inconclusive hairs or rods, by status",
     "holds_share": "share of the hairs or rods for which the claim is true",
     "decile_1": "first decile of the value",
     "median": "median of the value",
@@ -165,7 +165,8 @@ def series(tables):
     strands = [
         *_found(tables, "simulation/run/readout.cpp", r"\badd\("),
         ("tip_x_m, tip_y_m, tip_z_m", "tip, mean over the strands"),
-        ("<effect>_j", "the effect's potential energy"),
+        ("<effect>_j", "potential energy of the effect"),
+        ("force_<support>_x_n, force_<support>_y_n, force_<support>_z_n", "force of a support on the strand"),
     ]
     there = {column for columns, _ in strands for column in columns.split(", ")}
     heads = _found(tables, "experiments/simulate/head_series.cpp", r"\{")

@@ -48,7 +48,7 @@ def _change(x):
 
 
 def _spread(row, text=number):
-    silent = f"; {row['no_answer']} gave no answer" if row["no_answer"] > 0 else ""
+    silent = f"; {row['no_answer']} inconclusive" if row["no_answer"] > 0 else ""
     return f"median {text(row['median'])}, deciles {text(row['decile_1'])} and {text(row['decile_9'])}{silent}"
 
 
@@ -74,7 +74,7 @@ def _sentence(tables, text, row):
     """Returns the statement for hair, its best predictor, and the share of the other rods."""
     rule = _rule(row)
     predictor = f". The best predictor is {rule}" if rule else ""
-    return f"{text}{predictor}. It is true for {_held(claim(tables, row['claim'], 'rods'))} of other materials"
+    return f"{text}{predictor}. The statement is true for {_held(claim(tables, row['claim'], 'rods'))} of other materials"
 
 
 def _statements(tables, family):
@@ -86,7 +86,7 @@ def summary(tables, family="hair"):
     """Returns one row per claim."""
     return table(
         ["statement", "true for", "decile, median, decile", "value", "strongest rank correlation"],
-        [[row["statement"], f"{_held(row)}{f'; no answer: ' + row['reasons'] if row['no_answer'] > 0 else ''}",
+        [[row["statement"], f"{_held(row)}{f'; inconclusive: ' + row['reasons'] if row['no_answer'] > 0 else ''}",
           _deciles(row) if row["hairs"] > 0 else "", row["value"],
           f"{_named(row['correlated_with'])} ({number(row['rank_correlation'])})" if is_number(row["rank_correlation"]) else ""]
          for row in _statements(tables, family)])
@@ -96,8 +96,8 @@ def ranges(tables, family="hair"):
     """Returns one row per claim, one column per range of the gravito-bending number."""
     def cell(row):
         if row["hairs"] == 0:
-            return f"no answer from {row['no_answer']}" if row["no_answer"] > 0 else ""
-        missing = f"; {row['no_answer']} without answer" if row["no_answer"] > 0 else ""
+            return f"{row['no_answer']} inconclusive" if row["no_answer"] > 0 else ""
+        missing = f"; {row['no_answer']} inconclusive" if row["no_answer"] > 0 else ""
         return f"{_share(row)} of {row['hairs']}{missing}"
 
     return table(["statement", *_RANGES],
@@ -112,8 +112,8 @@ def exact_step(tables):
         return f"{number(1e3 * x)} ms"
 
     return _sentence(
-        tables, f"stable at every step tried up to 100 ms for {_held(twisted)}, and without twist for {_share(bent)}. The largest "
-        f"stable step: {_spread(twisted, ms)}; without twist: median {ms(bent['median'])}", twisted)
+        tables, f"stable at every step tried up to 100 ms for {_held(twisted)}, and without twist for {_share(bent)} (largest "
+        f"stable step: {_spread(twisted, ms)}; without twist: median {ms(bent['median'])})", twisted)
 
 
 def model_steps(tables):
@@ -124,13 +124,14 @@ def model_steps(tables):
 
 def twist_straight(tables):
     row = claim(tables, "twist_straight_negligible")
-    return _sentence(tables, f"moves the tip of a hair straightened at rest by less than 1 % of its length for {_held(row)} "
+    return _sentence(tables, f"Leaving out twist displaces the tip of a hair straightened at rest by less than 1 % of its length for {_held(row)} "
                      f"({_spread(row, _change)})", row)
 
 
 def twist_curly(tables):
     row = claim(tables, "twist_curly_matters")
-    return f"with its own curls, by more than that for {_held(row)} ({_spread(row, _change)})"
+    return (f"Leaving out twist displaces the tip of a hair with its own curls by more than 1 % of its length for {_held(row)} "
+            f"({_spread(row, _change)})")
 
 
 def bdf(tables):
@@ -264,5 +265,6 @@ def tolerance(tables):
     for row in records(met):
         count = solved(tables, row["model"], row["integrator"])
         words.append(f"{count['within']} of {count['all']} hairs with `{row['model']}` ({count['unsolved']} without a solution, "
-                     f"{count['silent']} without an answer)")
-    return (f"`tr_bdf2`, asked for {', '.join(map(percent, asked))} of the length, stays within that for {', '.join(words)}")
+                     f"{count['silent']} inconclusive)")
+    return (f"With a tolerance of {', '.join(map(percent, asked))} of the length, the error of `tr_bdf2` stays within the tolerance for "
+            f"{', '.join(words)}")

@@ -3,7 +3,7 @@ import re
 
 from . import report
 from .tables import groups, records
-from .words import duration, percent, table
+from .words import duration, percent, span, table
 
 
 def judged(tables):
@@ -86,14 +86,39 @@ def _at_longest_step(tables, integrator):
     rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
     rows = rows[(rows["integrator"] == integrator) & (rows["dt_s"] == rows["dt_s"].max())]
     return (f"survives {rows['survives'].sum()} of {len(rows)} pairs of case and model and is accurate in "
-            f"{(rows['outcome'] == 'stable and accurate').sum()}")
+            f"{(rows['outcome'] == 'stable and accurate').sum()} of them")
 
 
 def guarded(tables):
     """Returns what `guarded` and `backward_euler` survive at the longest step, over all models."""
     longest = duration(judged(tables)["dt_s"].max())
-    return (f"At steps of {longest}, `guarded` {_at_longest_step(tables, 'guarded')}; "
+    return (f"At steps of {longest}, `guarded` {_at_longest_step(tables, 'guarded')}. "
             f"`backward_euler` {_at_longest_step(tables, 'backward_euler')}")
+
+
+def longest_step(tables):
+    rows = judged(tables)
+    return duration(rows[~rows["by_tolerance"]]["dt_s"].max())
+
+
+def accepted(tables):
+    """Returns the largest error of an accurate run."""
+    return span(judged(tables)["error_limit"].dropna(), percent)
+
+
+def longest_step_table(tables):
+    """Returns, for each method at the longest step: survivors, accurate runs, and the errors of survivors."""
+    rows = judged(tables)
+    rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
+    lines = []
+    for integrator, members in groups(rows[rows["dt_s"] == rows["dt_s"].max()], "integrator"):
+        compared = members[members["survives"] & members["outcome"].isin(["stable", "stable and accurate"])]
+        low, middle, high = (percent(compared["error_rel"].quantile(share)) for share in (0.1, 0.5, 0.9))
+        accurate = (members["outcome"] == "stable and accurate").sum()
+        lines.append([f"`{integrator}`", f"{members['survives'].sum()} of {len(members)}", f"{accurate} of {len(compared)}",
+                      middle, f"{low} and {high}"])
+    return table(["method", "survives, of the pairs that it can run", "accurate, of the survivors with a reference",
+                  "median error of these", "lowest and highest decile"], lines)
 
 
 # Models of fewer cases are not compared. So many are named.

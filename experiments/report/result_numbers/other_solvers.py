@@ -1,4 +1,6 @@
 """Other solver packages on published problems: digits and costs of their runs."""
+import re
+
 from .machine import minutes_of
 from .tables import groups, known, records
 from .words import code, counted, duration, is_number, must, number, spaced, span, table
@@ -50,11 +52,11 @@ def own_table(tables):
     """Returns the runs of tress that have no relative tolerance: fixed steps, and errors of a point."""
     rows = tables["other_solvers"]
     lines = [[spaced(row["problem"]), f"`{row['solver']}`", row["formulation"],
-              f"step {duration(row['dt_s'], 3)}" if number(row["dt_s"]) else f"error {number(row['position_tol_rel'])}",
+              f"step {duration(row['dt_s'], 3)}" if number(row["dt_s"]) else f"tolerance {number(row['position_tol_rel'])}",
               number(row["digits"]) if row["status"] == "ok" else spaced(row["status"]), _whole(row["steps"]),
               _whole(row["evaluations"]), duration(row["wall_s"])]
              for row in records(rows[~known(rows["rtol"])])]
-    return table(["problem", "method", "formulation", "drive", "digits", "steps", "evaluations", "time"], lines)
+    return table(["problem", "method", "formulation", "step or tolerance", "digits", "steps", "evaluations", "time"], lines)
 
 
 def failures(tables):
@@ -124,6 +126,17 @@ def beam_ratio(tables):
     return must(min(high) > 1, f"{span(high)} times")
 
 
+def beam_ida(tables):
+    """Returns steps and digits of IDA on the Beam at the middle tolerance, and those of CVODE with order 2."""
+    rows = _common(tables)
+    rows = records(rows[(rows["problem"] == "beam") & (rows["rtol"] == _tolerances(rows)[1])])
+    ida = next(row for row in rows if row["solver"] == "ida")
+    limited = next(row for row in rows if row["solver"] == "cvode_bdf" and number(row["max_order"]) == "2")
+    return must(ida["steps"] > limited["steps"],
+                f"`ida` took {_whole(ida['steps'])} steps for {number(ida['digits'])} digits. `cvode_bdf` limited to order 2 took "
+                f"{_whole(limited['steps'])} steps for {number(limited['digits'])} digits")
+
+
 def index3(tables):
     """Returns how many runs of the DAE solvers ended on the forms with positions as constraints."""
     rows = tables["other_solvers"]
@@ -133,6 +146,10 @@ def index3(tables):
 
 
 def replaced(tables):
-    """Returns which runs were made later than the others, from the record of the table."""
-    later = tables.manifest("other_solvers").get("merged_from", [])
-    return f"Later runs are part of the table: {'; '.join(later)}." if later else ""
+    """Returns how many runs were made later than the others, by commit, from the record of the table."""
+    counts = {}
+    for line in tables.manifest("other_solvers").get("merged_from", []):
+        count, commit = re.fullmatch(r"(\d+) runs? replaced at commit (\w+)", line).groups()
+        counts[commit] = counts.get(commit, 0) + int(count)
+    of = ", ".join(f"{counted(count, 'run')} at commit {commit}" for commit, count in counts.items())
+    return f"Later runs replaced earlier ones of the table: {of}." if counts else ""

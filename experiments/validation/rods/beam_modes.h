@@ -18,10 +18,10 @@ namespace tress::experiments::validation {
 double heavy_rod_mode(double gamma, int mode);
 
 /// Returns omega of the `mode`-th vibration in the plane of a rod, in the same unit. The
-/// rod is naturally an arc of angle `opening` (rad), clamped at one end. u and w are
-/// tangential and normal displacements, theta the turn of the tangent, and M, T, N moment
-/// and force over EI/L and EI/L^2. The linearised equations of an inextensible rod of
-/// curvature k = opening are
+/// rod is naturally an arc of angle `opening` (rad), clamped at one end. The tangential
+/// and normal displacements are u and w, and the tangent turns by theta. The moment over
+/// EI/L is M, and the components of the force over EI/L^2 are T and N. The linearised
+/// equations of an inextensible rod of curvature k = opening are
 ///
 ///     u' = k w,   w' = theta - k u,   theta' = M,
 ///     M' = -N,   T' = k N - omega^2 u,   N' = -k T - omega^2 w,

@@ -5,7 +5,7 @@
 namespace tress::experiments::validation {
 
 /// Planar inextensible rod clamped horizontally, under its own weight and a force P down
-/// on its tip. theta is the angle below the horizontal and s the arc length from the
+/// on its tip. Its angle below the horizontal is theta, at the arc length s from the
 /// clamp, over the length. With Gamma = rho g S L^3/EI and alpha = P L^2/EI,
 ///
 ///     theta'' = -(Gamma (1 - s) + alpha) cos theta,   theta(0) = 0,   theta'(1) = 0,

@@ -12,9 +12,9 @@
 
 namespace tress::experiments::validation {
 
-/// One strand model and its equilibria: r(q) = G^T lambda + C^T e under the load t, g =
-/// 0, c = 0. g are the model's own constraints and c the end conditions. Newton's
-/// iteration solves for all unknowns. Dense, O(n^3): for a few hundred unknowns.
+/// One strand model and its equilibria: r(q) = G^T lambda + C^T e under the load t, with
+/// g = 0 and c = 0. Here g are the model's own constraints and c the end conditions.
+/// Newton's iteration solves for all unknowns. Dense, O(n^3): for a few hundred unknowns.
 class Statics {
  public:
   /// Starts at the strand's initial state. Under the load t the strand has the weight of

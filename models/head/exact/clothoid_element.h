@@ -148,8 +148,8 @@ class ExactElement<ClothoidKind<T>> {
     return kept_.shape.turn_of(static_cast<int>(k));
   }
 
-  /// Writes derivatives at the tip, which dq turns by theta: d(E^T y) = E^T (dy + y x
-  /// theta).
+  /// Moves the tip by a change dq. The tip then turns by theta, and d(E^T y) = E^T (dy +
+  /// y x theta).
   void move_tip(Factors& e) const {
     const Vec &omega = kept_.omega, &alpha = kept_.alpha, &p = kept_.position,
               &u = kept_.moving.tip;

@@ -252,7 +252,7 @@ class ExactElimination {
     }
     return all;
   }
-  /// Returns what a column passes on without the unknowns.
+  /// Returns the wrench that a column passes on after the unknowns are eliminated.
   static Wrench passed(const Factors& e, const Column& of) {
     Wrench w{of.force, of.moment};
     for (std::size_t f = 0; f < functions; ++f) {

@@ -54,7 +54,7 @@ struct VariedWrench {
 /// d_j.
 template <class T, std::size_t functions = 1>
 struct ElementSums {
-  /// Elements of three unknowns each.
+  /// Three unknowns of each function, a matrix row per unknown.
   using Each = std::array<Matrix3<T>, functions>;
 
   T one;                 // w

@@ -6,8 +6,8 @@
 namespace tress::models {
 
 /// The joint's strains from turn(a, b) = (axis a before) . (axis b of the edge), and
-/// their gradients by the rotation of the edge in its components:
-/// models/maximal/joint_strain.h with all products written out.
+/// their gradients by the rotation of the edge in its components. The formulas are those
+/// of models/maximal/joint_strain.h with all products written out.
 template <class T>
 struct DerJoint {
   /// Vector of these scalars.

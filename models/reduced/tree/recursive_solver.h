@@ -29,10 +29,11 @@ namespace tress::models {
 /// A pivot may be nearly singular although the whole matrix is not. Exact Jacobians,
 /// which are not definite, have such pivots by contact, wind and drag. Symmetric ones
 /// have them by a joint that is soft compared with the inertia of its link, where its
-/// unknowns turn the link about its own axis. Without row exchange the
-/// corresponding digits are lost: up to five in 300 random exact states, eleven in soft
-/// chains. solve() then applies iterative refinement [Higham 2002, Accuracy and Stability
-/// of Numerical Algorithms, chapter 12], which leaves a difference of a few eps cond(S).
+/// unknowns turn the link about its own axis. Without row exchange the corresponding
+/// digits are lost: up to five in 300 random exact states, eleven in soft chains. The
+/// function solve() then applies iterative refinement [Higham 2002, Accuracy and
+/// Stability of Numerical Algorithms, chapter 12]. A difference of a few eps cond(S)
+/// remains.
 template <class Shape, TreeMethod method = TreeMethod::recursive>
 class RecursiveSolver final : public TreeSolver<Shape> {
  public:
