@@ -240,8 +240,7 @@ TEST_P(DividedHead, GoesOnWhenItIsDividedAnew) {
 
 std::vector<Scalp> scalps() {
   std::vector<Scalp> all;
-  for (const std::string model :
-       {"super_helix", "super_clothoid", "articulated_chain"}) {
+  for (const std::string model : {"super_helix", "super_clothoid", "articulated_chain"}) {
     all.push_back({"free", "", model});
     // By longer steps rigid links come apart on a body.
     all.push_back({"body",
