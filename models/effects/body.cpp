@@ -4,6 +4,7 @@
 
 #include "contract/input_error.h"
 #include "models/effects/exact_body.h"
+#include "models/motion/signals.h"
 
 namespace tress::models {
 namespace {
@@ -47,8 +48,21 @@ constexpr Parameter parameters_of_body[] = {
              "fastest, < 0 inside (m)",
      .text = true},
     {.name = "moves",
-     .help = "motion of the body: none, or that of the head",
-     .choices = "fixed|head"},
+     .help = "motion of the body: none, that of the head, or that of its own keyframes",
+     .choices = "fixed|head|keyframes"},
+    {.name = "keyframes",
+     .help = "moves = keyframes: rows of t, x, y, z, angle (s, m, rad) relative to its "
+             "place, as those of [root]. The angle is about `axis` through centre_m",
+     .min = -1e6,
+     .max = 1e6,
+     .components = 5,
+     .rows = true},
+    {.name = "axis",
+     .help = "moves = keyframes: direction of the axis of the angle; any length",
+     .min = -1e6,
+     .max = 1e6,
+     .components = 3,
+     .fallback = "0,0,1"},
     {.name = "stiffness_n_m2",
      .help = "contact force per length and depth (N/m^2). At 10 a hair at rest sinks by "
              "6 um, and fixed steps of 1 ms allow little more",
@@ -119,6 +133,22 @@ Frame turned_by(const Vec& turn) {
   return angle > 0 ? rotation((1 / angle) * turn, angle) : Frame{};
 }
 
+/// The prescribed motion of the body; none: it is fixed.
+std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion& head) {
+  const std::string_view moves = parameters.word("moves");
+  const In rows = parameters.numbers("keyframes");
+  const bool own = moves == "keyframes";
+  refuse_if(own && rows.empty(), "moves = \"keyframes\" without keyframes", "effect body",
+            "give rows of t, x, y, z, angle");
+  refuse_if(!own && !rows.empty(), "keyframes of a body that does not follow them",
+            "effect body", "set moves = \"keyframes\", or leave them out");
+  if (own) {
+    return keyframe_motion(rows, parameters.vec("axis"), parameters.vec("centre_m"));
+  }
+  if (moves == "head") return head;
+  return {};
+}
+
 }  // namespace
 
 std::span<const Parameter> body_parameters() { return parameters_of_body; }
@@ -132,8 +162,7 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                         .offset = parameters.number("strand_radius_m")};
   const StrandPlace place{parameters.vec("centre_m"),
                           turned_by(parameters.vec("rotation_rad"))};
-  std::optional<RootMotion> follows;
-  if (parameters.word("moves") == "head") follows = head;
+  std::optional<RootMotion> follows = motion(parameters, head);
   const bool rigid = parameters.word("normal") == "rigid";
   if (parameters.word("friction_law") == "exact") {
     return std::make_unique<ExactBody>(

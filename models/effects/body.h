@@ -48,6 +48,9 @@ class Body final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return contact_.body.penetration(t, x);
   }
+  double next_breakpoint(double t) const noexcept override {
+    return contact_.body.next_breakpoint(t);
+  }
   std::optional<Outline> outline(double t) const override {
     return contact_.body.outline(t);
   }

@@ -31,6 +31,9 @@ class ExactBody final : public Effect, private Multipliers {
   std::optional<double> penetration(double t, In x) const override {
     return body_->penetration(t, x);
   }
+  double next_breakpoint(double t) const noexcept override {
+    return body_->next_breakpoint(t);
+  }
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
 
   std::unique_ptr<Effect> for_strand(std::size_t points) const override;

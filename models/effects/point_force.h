@@ -30,9 +30,9 @@ class PointForce final : public Effect {
   };
   /// Parameters of the force.
   struct Settings {
-    double at = 1;          // place along the strand, 0 root to 1 tip
-    Vec force{};            // dead force, N
-    double follower = 0;    // force along the tangent, from root to tip, N
+    double at = 1;            // place along the strand, 0 root to 1 tip
+    Vec force{};              // dead force, N
+    double follower = 0;      // force along the tangent, from root to tip, N
     std::vector<Row> rows{};  // in order of time; none: factor 1
   };
   /// Throws InputError on numbers out of range or not finite, and on times that do not

@@ -49,8 +49,11 @@ Drawn drawn(const DistanceGrid&) { return {}; }
 }  // namespace
 
 RigidBody::RigidBody(BodyShape shape, const StrandPlace& place, double offset,
-                     std::optional<RootMotion> head)
-    : shape_(std::move(shape)), place_(place), offset_(offset), head_(std::move(head)) {
+                     std::optional<RootMotion> motion)
+    : shape_(std::move(shape)),
+      place_(place),
+      offset_(offset),
+      motion_(std::move(motion)) {
   if (!std::visit([](const auto& one) { return has_size(one); }, shape_)) {
     throw InputError("its size is not positive or not finite", "effect body",
                      "give radius and half axes > 0, length >= 0 in m");
@@ -63,7 +66,7 @@ RigidBody::RigidBody(BodyShape shape, const StrandPlace& place, double offset,
     throw InputError("its place is not finite or its frame no rotation", "effect body",
                      "give a finite place and orthogonal axes of length 1");
   }
-  if (head_) check(*head_, "effect body");
+  if (motion_) check(*motion_, "effect body");
   if (const auto* grid = std::get_if<DistanceGrid>(&shape_)) {
     // Between points the interpolant may lie 1.2 spacings below the least value: the
     // negative weights of two directions sum to 0.28, the values differ by 3 sqrt(2).
@@ -77,15 +80,15 @@ RigidBody::RigidBody(BodyShape shape, const StrandPlace& place, double offset,
 }
 
 BodyPose RigidBody::pose(double t) const {
-  if (!head_) return {place_.x, place_.frame, {}, {}};
-  const RootPose head = head_->at(t);
-  const auto carry = [&](const Vec& a) { return head.frame * head_->frame.back(a); };
-  const Vec arm = carry(place_.x - head_->position);
+  if (!motion_) return {place_.x, place_.frame, {}, {}};
+  const RootPose now = motion_->at(t);
+  const auto carry = [&](const Vec& a) { return now.frame * motion_->frame.back(a); };
+  const Vec arm = carry(place_.x - motion_->position);
   const Frame& f = place_.frame;
-  return {head.x + arm,
+  return {now.x + arm,
           {carry(f.e0), carry(f.e1), carry(f.e2)},
-          head.v + cross(head.omega, arm),
-          head.omega};
+          now.v + cross(now.omega, arm),
+          now.omega};
 }
 
 std::optional<Outline> RigidBody::outline(double t) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <variant>
 
@@ -27,17 +28,22 @@ struct BodyPose {
 /// Shape and motion of a body that strands touch.
 class RigidBody {
  public:
-  /// Constructs a body at `place`. `offset`: radius of the strand (m). `head`: motion
-  /// that the body follows; the body is at `place` while the head is at rest, and stays
-  /// there without a head. Throws InputError on numbers that are negative or not finite
+  /// Constructs a body at `place`. `offset`: radius of the strand (m). `motion`: that of
+  /// the head, or its own; the body is at `place` while it is at rest, and stays there
+  /// without a motion. Throws InputError on numbers that are negative or not finite
   /// and on a frame that is not a rotation. Also throws on a grid whose surface comes
   /// within two spacings of contact with its second layer, where contact would go
   /// undetected.
   RigidBody(BodyShape shape, const StrandPlace& place, double offset,
-            std::optional<RootMotion> head);
+            std::optional<RootMotion> motion);
 
   /// Returns position and motion at t (s).
   BodyPose pose(double t) const;
+  /// Returns the first breakpoint of the motion after t (s), or infinity.
+  double next_breakpoint(double t) const {
+    return motion_ ? motion_->next_breakpoint(t)
+                   : std::numeric_limits<double>::infinity();
+  }
   /// Empty for a distance grid.
   std::optional<Outline> outline(double t) const;
   /// Largest depth (m) of the strand's surface in the body over the points at x.
@@ -105,7 +111,7 @@ class RigidBody {
   BodyShape shape_;
   StrandPlace place_;
   double offset_;  // m
-  std::optional<RootMotion> head_;
+  std::optional<RootMotion> motion_;
 };
 
 }  // namespace tress::models

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -129,6 +130,22 @@ Signal rests(const std::vector<double>& times, const std::vector<double>& values
     return moved;
   };
   return {value, times};
+}
+
+RootMotion keyframe_motion(std::span<const double> rows, const Vec& axis,
+                           const Vec& centre) {
+  constexpr std::size_t columns = 5;
+  std::array<std::vector<double>, columns> all;
+  for (std::size_t i = 0; i < rows.size(); ++i) all[i % columns].push_back(rows[i]);
+  const auto& [t, x, y, z, angle] = all;
+  RootMotion motion;
+  motion.position = centre;
+  motion.centre = centre;
+  motion.translations = {{{1, 0, 0}, keyframes(t, x)},
+                         {{0, 1, 0}, keyframes(t, y)},
+                         {{0, 0, 1}, keyframes(t, z)}};
+  motion.rotations = {{axis, keyframes(t, angle)}};
+  return motion;
 }
 
 }  // namespace tress::models

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "models/motion/root_motion.h"
@@ -38,5 +39,11 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
 /// there. Between two times it is the quintic of smooth_step(), C^2 everywhere. Throws
 /// InputError on other times.
 Signal rests(const std::vector<double>& times, const std::vector<double>& values);
+
+/// Returns a rigid motion by rows of t, x, y, z, angle (s, m, rad): each column is a
+/// signal of keyframes(). The angle is about an axis (any length) through `centre`, where
+/// the body is at rest. Throws InputError on rows out of order.
+RootMotion keyframe_motion(std::span<const double> rows, const Vec& axis,
+                           const Vec& centre);
 
 }  // namespace tress::models

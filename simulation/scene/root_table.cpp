@@ -151,14 +151,6 @@ Signal head_angle(const Parameters& p) {
   return sum(std::move(angle), driven_oscillator(body, periods / body.frequency));
 }
 
-void add_keyframes(RootMotion& motion, const Parameters& p, Vec axis) {
-  const auto [t, x, y, z, angle] = columns<5>(p.numbers("keyframes"));
-  motion.translations.push_back({{1, 0, 0}, keyframes(t, x)});
-  motion.translations.push_back({{0, 1, 0}, keyframes(t, y)});
-  motion.translations.push_back({{0, 0, 1}, keyframes(t, z)});
-  motion.rotations.push_back({axis, keyframes(t, angle)});
-}
-
 void add_parts(RootMotion& motion, const Parameters& p, Vec along, Vec axis) {
   const std::string_view word = p.word("motion");
   const double amplitude = p.number("amplitude_m"), frequency = p.number("frequency_hz");
@@ -176,7 +168,9 @@ void add_parts(RootMotion& motion, const Parameters& p, Vec along, Vec axis) {
   if (word == "translate") {
     translate(smooth_step(p.number("distance_m"), 0, p.number("time_s")));
   }
-  if (word == "keyframes") add_keyframes(motion, p, axis);
+  if (word == "keyframes") {
+    motion = keyframe_motion(p.numbers("keyframes"), axis, motion.centre.value());
+  }
   if (word == "head") rotate(head_angle(p));
 }
 

@@ -47,6 +47,17 @@ std::string body(Draw& draw, double reach) {
       draw.of_size(0.1, 300), draw.one_of({0.0, 0.3, 2.0}));
 }
 
+/// A sphere that moves towards the strands by its own keyframes, or nothing.
+std::string moving_body(Draw& draw, double length) {
+  if (!draw.chance(0.1)) return "";
+  return fmt::format(
+      "[[effects.body]]\nshape = \"sphere\"\nradius_m = {:.4g}\ncentre_m = [{:.4g}, 0, "
+      "{:.4g}]\nmoves = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], [0.01, 0, 0, "
+      "{:.4g}, "
+      "1]]\n",
+      0.2 * length, 0.2 + 0.5 * length, -0.5 * length, 0.4 * length);
+}
+
 std::string wind(Draw& draw) {
   return fmt::format(
       "[effects.wind]\nvelocity_m_s = [{:.3g}, 0, 1]\nprofile = \"{}\"\nlaw = \"{}\"\n",
@@ -113,7 +124,7 @@ std::string with_lanes(Draw& draw) {
   if (single && !springs && draw.chance(0.2)) {
     text += "[effects.strand_interaction]\ncoupling = \"lagged\"\n";
   }
-  return text;
+  return text + moving_body(draw, length);
 }
 
 /// Some options of a model or a method, each a word of its choices.
@@ -245,7 +256,8 @@ std::string of_anything(Draw& draw) {
                        draw.one_of({"shake", "rotate", "stop", "translate", "free"}));
   }
   const std::string acting = effects(draw, length, count);
-  return text + along(draw) + root + acting + point_force(draw);
+  return text + along(draw) + root + acting + point_force(draw) +
+         moving_body(draw, length);
 }
 
 }  // namespace
