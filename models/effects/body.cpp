@@ -1,5 +1,7 @@
 #include "models/effects/body.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "contract/input_error.h"
@@ -48,14 +50,21 @@ constexpr Parameter parameters_of_body[] = {
              "fastest, < 0 inside (m)",
      .text = true},
     {.name = "moves",
-     .help = "motion of the body: none, that of the head, or that of its own keyframes",
-     .choices = "fixed|head|keyframes"},
+     .help = "motion of the body: none, that of the head, or that of its own rows",
+     .choices = "fixed|head|keyframes|poses"},
     {.name = "keyframes",
      .help = "moves = keyframes: rows of t, x, y, z, angle (s, m, rad) relative to its "
              "place, as those of [root]. The angle is about `axis` through centre_m",
      .min = -1e6,
      .max = 1e6,
      .components = 5,
+     .rows = true},
+    {.name = "poses",
+     .help = "moves = poses: rows of t, x, y, z and angles about x, y and z (s, m, rad) "
+             "relative to its place, as those of [root]. It turns about centre_m",
+     .min = -1e6,
+     .max = 1e6,
+     .components = 7,
      .rows = true},
     {.name = "axis",
      .help = "moves = keyframes: direction of the axis of the angle; any length",
@@ -136,14 +145,19 @@ Frame turned_by(const Vec& turn) {
 /// The prescribed motion of the body; none: it is fixed.
 std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion& head) {
   const std::string_view moves = parameters.word("moves");
-  const In rows = parameters.numbers("keyframes");
-  const bool own = moves == "keyframes";
-  refuse_if(own && rows.empty(), "moves = \"keyframes\" without keyframes", "effect body",
-            "give rows of t, x, y, z, angle");
-  refuse_if(!own && !rows.empty(), "keyframes of a body that does not follow them",
-            "effect body", "set moves = \"keyframes\", or leave them out");
-  if (own) {
-    return keyframe_motion(rows, parameters.vec("axis"), parameters.vec("centre_m"));
+  for (const std::string_view key : {"keyframes", "poses"}) {
+    const bool own = moves == key, given = !parameters.numbers(key).empty();
+    refuse_if(own && !given, fmt::format("moves = \"{}\" without {}", moves, key),
+              "effect body", "give their rows");
+    refuse_if(!own && given, fmt::format("{} of a body that does not follow them", key),
+              "effect body", fmt::format("set moves = \"{}\", or leave them out", key));
+  }
+  const Vec axis = parameters.vec("axis"), centre = parameters.vec("centre_m");
+  if (moves == "keyframes") {
+    return keyframe_motion(parameters.numbers("keyframes"), {&axis, 1}, centre);
+  }
+  if (moves == "poses") {
+    return keyframe_motion(parameters.numbers("poses"), world_axes, centre);
   }
   if (moves == "head") return head;
   return {};

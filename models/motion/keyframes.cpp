@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -132,19 +131,19 @@ Signal rests(const std::vector<double>& times, const std::vector<double>& values
   return {value, times};
 }
 
-RootMotion keyframe_motion(std::span<const double> rows, const Vec& axis,
+RootMotion keyframe_motion(std::span<const double> rows, std::span<const Vec> axes,
                            const Vec& centre) {
-  constexpr std::size_t columns = 5;
-  std::array<std::vector<double>, columns> all;
-  for (std::size_t i = 0; i < rows.size(); ++i) all[i % columns].push_back(rows[i]);
-  const auto& [t, x, y, z, angle] = all;
+  std::vector<std::vector<double>> all(4 + axes.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) all[i % all.size()].push_back(rows[i]);
   RootMotion motion;
   motion.position = centre;
   motion.centre = centre;
-  motion.translations = {{{1, 0, 0}, keyframes(t, x)},
-                         {{0, 1, 0}, keyframes(t, y)},
-                         {{0, 0, 1}, keyframes(t, z)}};
-  motion.rotations = {{axis, keyframes(t, angle)}};
+  for (std::size_t k = 0; k < std::size(world_axes); ++k) {
+    motion.translations.push_back({world_axes[k], keyframes(all[0], all[1 + k])});
+  }
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    motion.rotations.push_back({axes[k], keyframes(all[0], all[4 + k])});
+  }
   return motion;
 }
 

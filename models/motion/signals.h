@@ -40,10 +40,13 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
 /// InputError on other times.
 Signal rests(const std::vector<double>& times, const std::vector<double>& values);
 
-/// Returns a rigid motion by rows of t, x, y, z, angle (s, m, rad): each column is a
-/// signal of keyframes(). The angle is about an axis (any length) through `centre`, where
-/// the body is at rest. Throws InputError on rows out of order.
-RootMotion keyframe_motion(std::span<const double> rows, const Vec& axis,
+/// Returns a rigid motion by rows of t, x, y, z and an angle about each axis (s, m, rad):
+/// each column is a signal of keyframes(). The axes (any length) pass through `centre`,
+/// where the body is at rest; the first one turns it first. Throws InputError on rows out
+/// of order.
+RootMotion keyframe_motion(std::span<const double> rows, std::span<const Vec> axes,
                            const Vec& centre);
+/// Axes of rows of t, x, y, z and the angles about x, y and z.
+inline constexpr Vec world_axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 }  // namespace tress::models

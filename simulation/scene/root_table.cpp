@@ -15,7 +15,7 @@ constexpr Parameter parameters[] = {
     {.name = "motion",
      .help = "motion of all roots",
      .choices = "fixed|shake|rotate|shake_rotate|swing|stop|drop_pull|translate|"
-                "keyframes|head|free"},
+                "keyframes|poses|head|free"},
     {.name = "direction",
      .help = "direction of shake, swing, stop, drop_pull and translate; any length",
      .min = -largest_number,
@@ -78,6 +78,14 @@ constexpr Parameter parameters[] = {
      .components = 5,
      .rows = true,
      .fallback = "0,0,0,0,0;1,0,0,0.1,0"},
+    {.name = "poses",
+     .help = "rows of t, x, y, z and three angles (s, m, rad), as keyframes: the head "
+             "turns about x, then y, then z, axes of the world through centre_m",
+     .min = -largest_number,
+     .max = largest_number,
+     .components = 7,
+     .rows = true,
+     .fallback = "0,0,0,0,0,0,0;1,0,0,0.1,0,0,0"},
     {.name = "torque_n_m",
      .help = "head: amplitude of the torque about the axis (N m)",
      .number = 0.5,
@@ -127,6 +135,7 @@ constexpr Use uses[] = {
     {"drop_pull", "direction|amplitude_m|frequency_hz"},
     {"translate", "direction|distance_m|time_s"},
     {"keyframes", "axis|centre_m|keyframes"},
+    {"poses", "centre_m|poses"},
     {"head",
      "axis|centre_m|torque_n_m|frequency_hz|periods|inertia_kg_m2|"
      "damping_n_m_s|stiffness_n_m"},
@@ -169,7 +178,10 @@ void add_parts(RootMotion& motion, const Parameters& p, Vec along, Vec axis) {
     translate(smooth_step(p.number("distance_m"), 0, p.number("time_s")));
   }
   if (word == "keyframes") {
-    motion = keyframe_motion(p.numbers("keyframes"), axis, motion.centre.value());
+    motion = keyframe_motion(p.numbers("keyframes"), {&axis, 1}, motion.centre.value());
+  }
+  if (word == "poses") {
+    motion = keyframe_motion(p.numbers("poses"), world_axes, motion.centre.value());
   }
   if (word == "head") rotate(head_angle(p));
 }
@@ -189,7 +201,7 @@ RootMotion head_motion(const Table& root) {
     add_parts(motion, root.values(), along, axis);
   } catch (const InputError& error) {
     // A signal knows its numbers but not their location in the file.
-    if (word != "keyframes" && word != "head") throw;
+    if (word != "keyframes" && word != "poses" && word != "head") throw;
     throw InputError(error.what(), root.place(word == "head" ? "frequency_hz" : word),
                      "change the keys of [root]");
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "simulation/table/rows_file.h"
 
 namespace tress::simulation {
 namespace {
@@ -15,8 +16,10 @@ std::string_view wanted(const Parameter& p) {
   if (p.text) return p.rows ? "a list of strings" : "a string";
   if (p.choices == "true|false") return "true or false";
   if (!p.choices.empty()) return "a string";
-  if (p.rows)
-    return p.components > 1 ? "a list of lists of numbers" : "a list of numbers";
+  if (p.rows) {
+    return p.components > 1 ? "a list of lists of numbers, or a file of rows"
+                            : "a list of numbers, or a file of rows";
+  }
   return p.components > 1 ? "a list of numbers" : "a number";
 }
 
@@ -80,6 +83,11 @@ std::string texts(const Parameter& p, const toml::node& node, const std::string&
   return text;
 }
 
+/// A path relative to the scene's folder.
+std::string beside_scene(const std::string& path, const std::string& scene) {
+  return (std::filesystem::path(scene).parent_path() / path).string();
+}
+
 std::string value_text(const Parameter& p, const toml::node& node,
                        const std::string& file) {
   if (p.text && p.rows) return texts(p, node, file);
@@ -88,7 +96,10 @@ std::string value_text(const Parameter& p, const toml::node& node,
     if (!node.is_string() && !flag) wrong_type(p, node, file);
     std::string text = printable(scalar_text(node));
     if (!p.text || !p.name.ends_with("file") || text.empty()) return text;
-    return (std::filesystem::path(file).parent_path() / text).string();
+    return beside_scene(text, file);
+  }
+  if (p.rows && node.is_string()) {
+    return rows_of_file(p, beside_scene(printable(scalar_text(node)), file));
   }
   if (p.rows) return rows_text(p, node, file);
   return p.components > 1 ? tuple_text(p, node, file) : number_text(p, node, file);

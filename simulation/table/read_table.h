@@ -14,7 +14,8 @@ namespace tress::simulation {
 
 /// Reads a scene's table with `declared` parameters. A number is a TOML number, an option
 /// value or a text a string (or true, false). Components are a list of numbers, rows a
-/// list of such lists. The text of a parameter whose name ends in file is a path relative
+/// list of such lists, or a string: a file with a row in each line (rows_file.h). The
+/// text of a parameter whose name ends in file is a path relative
 /// to the scene's folder. Keys in `nested` are left to the caller. Throws InputError with
 /// file:line:column, naming the nearest key if there is one.
 Table read_table(const toml::table& table, std::span<const Parameter> declared,

@@ -1,9 +1,12 @@
 // Bodies that move by keyframes of their own: as the head by the same ones, and as a belt
 // that carries a strand.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "contract/input_error.h"
@@ -80,6 +83,55 @@ TEST(MovingBody, CarriesAStrandThatSticks) {
       EXPECT_NEAR(after[i] - before[i], i % 3 == 1 ? 0.05 : 0, 1e-6) << i;
     }
   }
+}
+
+/// Rows of a file are those of a list, with blanks or commas, a header and comments; and
+/// poses that turn about z alone are keyframes about z.
+TEST(MovingBody, ReadsItsRowsFromAFile) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("tress_rows_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  };
+  write("poses.csv",
+        "t,x,y,z,about_x,about_y,about_z\n# a comment\n0,0,0,0,0,0,0\n\n0.1 0.01 0 0 0 0 "
+        "+0.3\r\n");
+  const auto end = [&](const std::string& moves) {
+    World world(parse_scene(
+        text_of("der", "id = \"backward_euler\"\ndt_s = 1e-3",
+                "[strand]\nlength_m = 0.1\nelements = 6\nposition_m = [0.052, 0, 0.05]\n"
+                "root_tangent = [0, 0, -1]\n[effects.gravity]\n[[effects.body]]\n"
+                "shape = \"sphere\"\nradius_m = 0.05\n" +
+                    moves),
+        (folder / "scene.toml").string()));
+    EXPECT_EQ(world.advance(0.1), Status::ok) << world.failure();
+    return world.positions();
+  };
+  const auto of_file = end("moves = \"poses\"\nposes = \"poses.csv\"\n");
+  EXPECT_EQ(of_file,
+            end("moves = \"poses\"\nposes = [[0, 0, 0, 0, 0, 0, 0], [0.1, 0.01, 0, "
+                "0, 0, 0, 0.3]]\n"));
+  EXPECT_LE(
+      apart(of_file, end("moves = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], [0.1, "
+                         "0.01, 0, 0, 0.3]]\n")),
+      1e-9);
+  const struct {
+    const char *text, *reason;
+  } bad[] = {{"0,0,0,0,0,0,0\n1,0,0\n", "poses.csv:2: a row of 3 numbers"},
+             {"0,0,0,0,0,0,0\n1,0,0,x,0,0,0\n", "'x' is not a number"},
+             {"t,x\nt,x\n", "'t' is not a number"},
+             {"# nothing\n", "no row of poses"}};
+  for (const auto& [text, reason] : bad) {
+    write("poses.csv", text);
+    const std::string said =
+        refusal([&] { end("moves = \"poses\"\nposes = \"poses.csv\"\n"); });
+    EXPECT_NE(said.find(reason), std::string::npos) << text << ": " << said;
+  }
+  EXPECT_NE(
+      refusal([&] { end("moves = \"poses\"\nposes = \"none.csv\"\n"); }).find("none.csv"),
+      std::string::npos);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(MovingBody, RefusesKeyframesThatItDoesNotFollow) {
