@@ -26,7 +26,7 @@ double uniform_load(const GuardedStrand& strand) {
 double softest_bending(const Strand& strand) {
   double least = std::numeric_limits<double>::infinity();
   for (const Segment& segment : strand.segments) {
-    const Vec moduli = stiffness(strand.material, segment.section);
+    const Vec moduli = stiffness(strand, segment);
     least = std::min({least, moduli.y, moduli.z});
   }
   return least;
@@ -53,8 +53,8 @@ Lumps lumps(const Strand& strand) {
         segment.parent < 0 ? 0 : static_cast<std::size_t>(segment.parent) + 1;
     for (const std::size_t end : {start, i + 1}) {
       all.length[end] += segment.length / 2;
-      all.mass[end] +=
-          strand.material.density * segment.section.area() * segment.length / 2;
+      all.mass[end] += strand.material_of(segment).density * segment.section.area() *
+                       segment.length / 2;
     }
   }
   return all;

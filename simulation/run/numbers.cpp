@@ -20,14 +20,15 @@ double rms_root_acceleration(const Scene& scene, const RootMotion& root) {
 
 /// kg/m of the first segment.
 double line_density(const Strand& strand) {
-  return strand.material.density * strand.segments.front().section.area();
+  const models::Segment& first = strand.segments.front();
+  return strand.material_of(first).density * first.section.area();
 }
 
 }  // namespace
 
 ScaleNumbers scale_numbers(const Scene& scene) {
   const Strand& strand = scene.strands.front();
-  const Vec moduli = stiffness(strand.material, strand.segments.front().section);
+  const Vec moduli = stiffness(strand, strand.segments.front());
   const double bending = std::min(moduli.y, moduli.z);
   const double scale = line_density(strand) * std::pow(strand.length(), 3) / bending;
   Vec fall;
