@@ -17,19 +17,28 @@ struct RodJoint {
   Vec friction;   // moment per rate of strain, N m s
 };
 
-/// The joint that represents half of each neighbour; for a clamp (`before` null), half of
-/// the first segment.
+/// Returns the modulus of two pieces in series, of which the first is this share; exactly
+/// that of both if they are equal.
+inline double in_series(double share, double first, double second) {
+  return first == second ? first : 1 / (share / first + (1 - share) / second);
+}
+
+/// Returns the joint that represents half of each neighbour; for a clamp (`before` null),
+/// half of the first segment. The halves bear the same moment, in series: of second order
+/// also where the stiffness jumps.
 inline RodJoint rod_joint(const Strand& strand, const Segment* before,
                           const Segment& after, const Vec& rest) {
-  const double l = (after.length + (before != nullptr ? before->length : 0)) / 2;
-  Vec weighted = after.length / 2 * stiffness(strand, after);
-  double friction = strand.material_of(after).internal_friction / l;
-  if (before != nullptr) {
-    const double share = before->length / (2 * l);
-    weighted = weighted + before->length / 2 * stiffness(strand, *before);
-    friction += share * (strand.material_of(*before).internal_friction / l - friction);
-  }
-  return {rest, 1 / (l * l) * weighted, {friction, friction, friction}};
+  const Segment& other = before != nullptr ? *before : after;
+  const double first = before != nullptr ? before->length / 2 : 0,
+               second = after.length / 2, l = first + second, share = first / l;
+  const Vec a = stiffness(strand, other), b = stiffness(strand, after);
+  const Vec mean{in_series(share, a.x, b.x), in_series(share, a.y, b.y),
+                 in_series(share, a.z, b.z)};
+  const double friction = in_series(share, strand.material_of(other).internal_friction,
+                                    strand.material_of(after).internal_friction) /
+                          l;
+  return {
+      rest, 1 / (l * l) * (second * mean + first * mean), {friction, friction, friction}};
 }
 
 /// A member of every joint, three numbers each.

@@ -117,10 +117,10 @@ double sag(const Varied& v, double g) {
   });
 }
 
-/// Models without constraints; a spline's section is that of its span.
+/// Models without constraints, with derivatives of their own.
 bool takes_part(const ModelEntry& model) {
   return model.on_strand != nullptr && model.id != "inextensible_strand" &&
-         model.id != "force_transport";
+         model.id != "dynamic_spline" && model.id != "force_transport";
 }
 
 /// Errors with 20 and 40 elements: 0.3 % with 40, and order 2 where they exceed 1e-4.

@@ -41,8 +41,7 @@ TEST(MovingBody, MovesAsTheHeadByTheSameKeyframes) {
   const std::string keyframes =
       "keyframes = [[0, 0, 0, 0, 0], [0.05, 0, 0.01, 0, 0.3], [0.2, 0.01, 0, 0, 0]]\n"
       "axis = [0, 0, 1]\ncentre_m = [0, 0, 0]\n";
-  for (const char* model :
-       {"super_helix", "der", "articulated_chain", "dynamic_spline"}) {
+  for (const char* model : {"super_helix", "der", "articulated_chain", "corde"}) {
     SCOPED_TRACE(model);
     const auto end = [&](const std::string& moves) {
       World world(scene_of(text_of(
@@ -118,7 +117,7 @@ TEST(MovingBody, ReadsItsRowsFromAFile) {
       1e-9);
   const struct {
     const char *text, *reason;
-  } bad[] = {{"0,0,0,0,0,0,0\n1,0,0\n", "poses.csv:2: a row of 3 numbers"},
+  } bad[] = {{"0,0,0,0,0,0,0\n1,0,0\n", "a row of 3 numbers where poses has 7"},
              {"0,0,0,0,0,0,0\n1,0,0,x,0,0,0\n", "'x' is not a number"},
              {"t,x\nt,x\n", "'t' is not a number"},
              {"# nothing\n", "no row of poses"}};
