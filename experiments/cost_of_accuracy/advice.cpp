@@ -146,8 +146,9 @@ bool beats(const Row& row, const Row& other) {
 
 /// The next best line.
 std::string next_best(const Row* next) {
-  if (next == nullptr)
+  if (next == nullptr) {
     return "next best: no other model or integrator was found within the target";
+  }
   return fmt::format("{} {}",
                      next->text("tied") == "true" ? "tied within 10 %:" : "next best",
                      configuration_and_price(*next));
