@@ -150,7 +150,7 @@ def esdirk(tables):
 def equal(tables):
     row = claim(tables, "reduced_cheaper")
     return _sentence(tables, f"`super_helix` needs less time for 1 % than `der` for {_held(row)} (ratio of `der` to `super_helix`: "
-                     f"{_spread(row)}; 100 and 0.01 if a model never reaches 1 %)", row)
+                     f"{_spread(row)}; 100 and 0.01 where one model never reaches this error)", row)
 
 
 def equal_curly_wind(tables):
