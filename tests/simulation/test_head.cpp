@@ -124,8 +124,8 @@ void PrintTo(const Acting& a, std::ostream* out) { *out << a.name; }  // NOLINT
 constexpr const char* models_in_all[] = {"super_helix", "super_clothoid",
                                          "articulated_chain"};
 /// Those whose heads have all methods, and their tables with the exact Jacobian.
-constexpr const char* models_by_all[] = {
-    "super_helix", "super_clothoid", "articulated_chain", "mass_spring", "corde"};
+constexpr const char* models_by_all[] = {"super_helix", "super_clothoid",
+                                         "articulated_chain", "mass_spring", "corde"};
 std::string exact(const std::string& model, int points) {
   return model == "mass_spring" || model == "corde"
              ? fmt::format("id = \"{}\"\n", model)
@@ -950,7 +950,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {.model = "id = \"corde\"\n",
                     .integrator = "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"},
                    "corde with a tolerance",
-                   "dt_s instead of tolerance"},
+                   "dt_s instead of position_tol_rel"},
         Replicated{"CosseratByTrBdf2",
                    {.model = "id = \"xpbd_cosserat\"\n",
                     .integrator = "id = \"tr_bdf2\"\ndt_s = 1e-3\n"},
