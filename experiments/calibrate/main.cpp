@@ -69,7 +69,8 @@ constexpr Column columns[] = {
     {"profile", "whether intervals by profiles were computed"},
     {"profile_low",
      "lower end of the interval by the profile. There the sum of squares, with the "
-     "other values fitted again, rises as much as the confidence level says. Empty: "
+     "other values fitted again, rises by the amount that belongs to the confidence "
+     "level. Empty: "
      "not computed, or no end"},
     {"profile_high", "upper end of the interval by the profile"},
     {"step_shift",

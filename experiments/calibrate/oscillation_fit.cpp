@@ -325,7 +325,7 @@ std::vector<Specimen> strands_of(const Records& records, const Scene& scene) {
   for (const Record& record : records.all) {
     if (!record.of_strand.empty()) {
       const auto& [key, value, where] = record.of_strand.front();
-      throw InputError("the scene says itself what '" + key + "' is", where,
+      throw InputError("the scene defines '" + key + "' itself", where,
                        "leave out the column, or --scene");
     }
     check_last_time(scene, "t_s", record.t.back(), record.end);

@@ -146,8 +146,9 @@ bool beats(const Row& row, const Row& other) {
 
 /// The next best line.
 std::string next_best(const Row* next) {
-  if (next == nullptr)
+  if (next == nullptr) {
     return "next best: no other model or integrator was found within the target";
+  }
   return fmt::format("{} {}",
                      next->text("tied") == "true" ? "tied within 10 %:" : "next best",
                      configuration_and_price(*next));
@@ -173,12 +174,12 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   const Row* best = advised(rows);
   if (best == nullptr) {
     const Row& first = rows.front();
-    return {first.status() == "timeout"
-                ? fmt::format("time ran out before the first run was compared ({}): "
-                              "complete references are kept, continue with a larger "
-                              "--timeout",
-                              first.text("reason"))
-                : fmt::format("no answer: {}", first.text("reason"))};
+    return {
+        first.status() == "timeout"
+            ? fmt::format("out of time before the first run was compared ({}): complete "
+                          "references are kept, continue with a larger --timeout",
+                          first.text("reason"))
+            : fmt::format("no answer: {}", first.text("reason"))};
   }
   if (best->status() == "no_answer") return best_so_far(rows, *best);
   if (best->status() == "file_differs") {

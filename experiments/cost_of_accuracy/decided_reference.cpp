@@ -240,8 +240,8 @@ class Refinement {
   std::string why_not() const {
     std::string why =
         deadline_.passed()
-            ? "out of time before two models reached the end: --timeout and "
-              "--set answer_s with more time go on"
+            ? "out of time before two models reached the end: continue with a "
+              "larger --timeout and --set answer_s"
             : "fewer than two models reached the end";
     for (const Side& side : sides_) {
       if (!side.failure().empty()) why += "; " + side.failure();

@@ -91,7 +91,7 @@ constexpr Column table_columns[] = {
      "time of the search's winner over that of the cheapest run of a grid of "
      "every method; empty: not requested (exhaustive)",
      true},
-    {"tied", "whether the time cannot be told from the winner's", true},
+    {"tied", "whether the time cannot be distinguished from that of the winner", true},
     {"runs", "runs that the search took", true},
     {"work", "million elements x steps of all of them", true},
     {"passed_over", "cheaper runs whose neighbours miss a target: lucky", true},

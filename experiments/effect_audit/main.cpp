@@ -236,7 +236,7 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
     } else if (effect == "none") {
       lines.push_back(fmt::format(
           "{}: its elements and steps are off by {:.2g} % of the length, over the whole "
-          "scene; wanted accuracy {:.2g} %",
+          "scene; target accuracy {:.2g} %",
           scene, 1e2 * row.number("discretisation_rel"),
           1e2 * row.number("accuracy_rel")));
     } else {

@@ -156,11 +156,10 @@ std::vector<Case> cases(const CommandLine& line) {
   const std::size_t looked_at = plan.comparison.hairs,
                     fine = static_cast<std::size_t>(plan.comparison.elements);
   if (looked_at * fine > held_at_once.elements) {
-    throw InputError(fmt::format("{} hairs of {} elements", looked_at, fine),
-                     "--set hairs",
-                     fmt::format("give at most {} elements in all, as reference_elements "
-                                 "says how many a hair has",
-                                 held_at_once.elements));
+    throw InputError(
+        fmt::format("{} hairs of {} elements", looked_at, fine), "--set hairs",
+        fmt::format("give at most {} elements in all: hairs times reference_elements",
+                    held_at_once.elements));
   }
   for (const std::string& file : scenes_of(settings)) {
     const Scene given = read_head_scene(file);

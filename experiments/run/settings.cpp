@@ -81,7 +81,7 @@ void Settings::leave_models_to_the_scene() const {
   for (const auto& [key, value] : line_.set) {
     const std::string where = line_.place("set:" + key);
     if (owner(key, where) != Owner::models) continue;
-    throw InputError(fmt::format("a scene says itself what '{}' is", key), where,
+    throw InputError(fmt::format("the scene defines '{}' itself", key), where,
                      "leave it out, or change the scene");
   }
 }
@@ -126,11 +126,11 @@ Settings::Owner Settings::owner(std::string_view key, const std::string& where) 
 
 void leave_strands_to_the_scene(const CommandLine& line) {
   if (!line.models.empty()) {
-    throw InputError("a scene says itself which model it has", line.place("models"),
+    throw InputError("the scene names its model itself", line.place("models"),
                      "leave it out, or change the scene's [model]");
   }
   if (!line.elements.empty()) {
-    throw InputError("a scene says itself how its strands are cut",
+    throw InputError("the scene has the elements of its strands itself",
                      line.place("elements"),
                      "leave it out, or change the scene's elements");
   }

@@ -323,7 +323,7 @@ std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& sc
     if (bar.strands.size() > 1) words += fmt::format(" ({} strands)", bar.parted());
   }
   if (part == "time" && scene.options.tolerance > 0) {
-    words += fmt::format("; asked for {:g}", scene.options.tolerance);
+    words += fmt::format("; requested tolerance {:g}", scene.options.tolerance);
   }
   return words;
 }

@@ -28,9 +28,8 @@ class StopRequest {
     if (!ranks) changed_.wait(lock, answered);
     if (ranks && !changed_.wait_for(lock, before_mpirun_kills, answered)) {
       throw std::runtime_error(
-          "its ranks do not answer (mpirun says if one was killed): the same command "
-          "with "
-          "--resume goes on from the last saved state");
+          "its ranks do not answer (mpirun prints if one was killed): the "
+          "same command with --resume continues from the last saved state");
     }
     if (!problem_.empty()) throw std::runtime_error(problem_);
   }

@@ -118,7 +118,7 @@ std::vector<std::string> stability_answer(const std::vector<Row>& rows) {
     lines.push_back(fmt::format("{}: {}", subject(*row), line));
   }
   for (const auto& [of, methods] : cannot) {
-    lines.push_back(fmt::format("{}: not driven by {} (--list says why)", of,
+    lines.push_back(fmt::format("{}: not driven by {} (--list prints the reason)", of,
                                 fmt::join(methods, ", ")));
   }
   return lines;

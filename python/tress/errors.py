@@ -1,4 +1,4 @@
-"""The exceptions of tress. Their text is that which the programs print."""
+"""The exceptions of tress. Their texts are those that the programs print."""
 
 import re
 
@@ -10,7 +10,7 @@ class InputError(ValueError):
     """Bad input. ``str(error)`` is one line: what is wrong (where): what to do.
 
     Attributes: ``problem``, ``place`` (file:line:column, option, key or argument) and
-    ``remedy``; place and remedy are empty where the text has no such parts.
+    ``remedy``. Place and remedy are empty if the text has no such parts.
     """
 
     def __init__(self, text):
@@ -22,13 +22,13 @@ class InputError(ValueError):
 class SolveError(RuntimeError):
     """An evaluation or a step without a result.
 
-    ``frames``: those of a run of a scene up to there (tress.Frames), else None.
+    ``frames``: frames of the run of a scene before the failure (tress.Frames), else None.
     """
 
     frames = None
 
 
 class ProgramError(RuntimeError):
-    """An experiment's program has ended by an internal error. ``code``: its exit code."""
+    """An internal error of the program of an experiment. ``code``: its exit code."""
 
     code = 1

@@ -15,7 +15,7 @@ from .tables import Table
 
 @dataclass
 class Fit:
-    """Fitted parameters of scenes, K of them, and what limits them."""
+    """K fitted parameters of scenes, and the limits of their accuracy."""
 
     names: list  # (K)
     units: list  # (K)
@@ -44,7 +44,7 @@ class Fit:
     fitted: list  # of each record: the same of the fitted scene, m
 
     def __getitem__(self, name):
-        """(value, low, high) of one parameter."""
+        """Returns (value, low, high) of one parameter."""
         if name not in self.names:
             raise InputError(f"no parameter '{name}' (fit): one of {', '.join(self.names)}")
         k = self.names.index(name)
@@ -86,21 +86,21 @@ def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shift
     """Fits parameters of a scene to points of its strands: Fit.
 
     scene: a Scene, whose values the fit starts from; a list with one for each record.
-    record: a CSV file with the columns time_s, x_m, y_m, z_m, where needed strand, point
-        (default: the tip) and sigma_m, or a dict of such columns; a list of several, which
+    record: a CSV file with the columns time_s, x_m, y_m, z_m, and optionally strand, point
+        (default: the tip) and sigma_m; or a dict of such columns; or a list of records, which
         share the parameters. nan is a coordinate that was not measured.
     by: names of parameters, as in ``Scene.gradient``; None: those of [gradient].
     bounds: {name: (low, high)} in the units of the parameters.
-    priors: {name: (value, sigma)}, what is known without the records.
-    confidence: of the intervals.
+    priors: {name: (value, sigma)}, known without the records.
+    confidence: confidence level of the intervals.
     shifts: runs again with half the step and with twice the elements, for ``step_shift``,
         ``elements_shift`` and the statuses time_error and space_error.
-    profile: also finds ``profile_low`` and ``profile_high``, where the sum of squares, with
-        the other values fitted again, rises as much as the confidence level asks for.
+    profile: also finds ``profile_low`` and ``profile_high``. There the sum of squares, with
+        the other values fitted again, has risen by the amount of the confidence level.
     progress: function of (evaluations, rms in m), called after each run.
 
     Least squares by Gauss-Newton steps within a trust region, with the exact derivatives of
-    the runs; `calibrate` does the same. InputError with the place and the remedy.
+    the runs; `calibrate` does the same. Raises InputError with the place and the remedy.
     """
     records = _list(record, (str, Path, dict, Table))
     texts = [_text(one, number) for number, one in enumerate(records)]

@@ -34,14 +34,15 @@ class Gradient:
     time_error: np.ndarray = None
 
     def by(self, name):
-        """(F, P, 3): the derivatives by one parameter. InputError where there is none."""
+        """Returns the derivatives by one parameter, (F, P, 3). Raises InputError if the
+        parameter is unknown."""
         if name not in self.names:
             raise InputError(f"no parameter '{name}' (by): one of {', '.join(self.names)}")
         return self.jacobian[..., self.names.index(name)]
 
     def relative(self):
-        """(F, P, 3, K) m: derivatives times the parameters. A hundredth of it is the change
-        of a point, in m, with 1 % of the parameter."""
+        """Returns the derivatives times the parameters, (F, P, 3, K) m. A hundredth of a value
+        is the change of the coordinate for a change of the parameter by 1 %."""
         return self.jacobian * self.parameters
 
 

@@ -19,7 +19,7 @@ def _refuse_former(value, name):
 
 @dataclass
 class Frames:
-    """Frames of a run. F frames, P points, strand after strand from root to tip."""
+    """Frames of a run: F frames of P points, strand after strand from root to tip."""
 
     times: np.ndarray  # (F) s
     positions: np.ndarray  # (F, P, 3) m
@@ -41,48 +41,53 @@ class Frames:
         return _refuse_former(self, name)
 
     def of_strand(self, k):
-        """(F, points, 3) m: the points of one strand."""
+        """Returns the positions of the points of one strand, (F, points, 3) m."""
         return self.positions[:, self.strand == k]
 
 
 class StrandsRun:
-    """A run of a scene, strands one by one. ``advance(t)``, then read."""
+    """A run of a scene, strands one by one: call ``advance(t)``, then read its values."""
 
     def __init__(self, scene, threads=1):
         self._core = _core.StrandsRun(scene._core, threads)
 
     def advance(self, t):
-        """Runs to t (s) without the interpreter's lock; SolveError gives the reason."""
+        """Runs to t (s) without the interpreter's lock. Raises SolveError with the reason if
+        a step has no solution."""
         self._core.advance(t)
 
     @property
     def time(self):
+        """Present time, s."""
         return self._core.time
 
     @property
     def positions(self):
-        """(P, 3) m: the run's own memory, for reading, until the next advance()."""
+        """Positions (P, 3), m: a view of the memory of the run, valid until the next
+        advance()."""
         return self._core.positions
 
     @property
     def velocities(self):
-        """(P, 3) m/s, as positions."""
+        """Velocities (P, 3), m/s: a view as positions."""
         return self._core.velocities
 
     @property
     def strand(self):
+        """Number of the strand of each point (P)."""
         return self._core.strand
 
     @property
     def energies(self):
-        """(kinetic, elastic, [of each effect]), J."""
+        """Energies (kinetic, elastic, [of each effect]), J."""
         return self._core.energies
 
     def frame(self):
-        """Everything of this instant, as copies."""
+        """Returns all values of this instant, as copies."""
         return self._core.frame()
 
     def gather(self, frames):
+        """Returns the Frames of a list of frame()."""
         core = self._core
         series = np.array([frame["series"] for frame in frames])
         channels = np.array([frame["channels"] for frame in frames])
@@ -103,8 +108,8 @@ class StrandsRun:
 
 
 class BatchRun:
-    """A run of all strands of a scene as one batch. InputError gives the reason where a scene
-    cannot run as one.
+    """A run of all strands of a scene as one batch. Raises InputError with the reason if the
+    scene cannot run as a batch.
 
     threads: number of threads; precision: floating-point precision, 64 or 32 bits."""
 
@@ -116,8 +121,8 @@ class BatchRun:
         self._core = _core.BatchRun(scene._text, scene.file, precision, threads)
 
     def advance(self, t):
-        """Runs to t (s) in equal steps of at most dt_s of the scene, or in those that its
-        error control chooses."""
+        """Runs to t (s) in equal steps of at most dt_s of the scene, or in steps that the error
+        control chooses."""
         self._core.advance(t)
 
     def __getattr__(self, name):
@@ -125,27 +130,30 @@ class BatchRun:
 
     @property
     def time(self):
+        """Present time, s."""
         return self._core.time
 
     @property
     def positions(self):
-        """(P, 3) m."""
+        """Positions (P, 3), m."""
         return self._core.positions()
 
     @property
     def energies(self):
-        """(kinetic, elastic, gravity), J, of all strands."""
+        """Energies (kinetic, elastic, gravity) of all strands, J."""
         return self._core.energy()
 
     @property
     def failed(self):
-        """Strands without a solution, or in a state that physics rules out."""
+        """Numbers of the strands without a solution, or in a state that physics rules out."""
         return self._core.failed()
 
     def frame(self):
+        """Returns time, positions and energies of this instant."""
         return {"t": self.time, "positions": self.positions, "energies": self.energies}
 
     def gather(self, frames):
+        """Returns the Frames of a list of frame()."""
         core = self._core
         points = core.points
         strand = np.repeat(np.arange(core.strands, dtype=np.int32), points)

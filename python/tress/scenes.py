@@ -16,10 +16,11 @@ _MANY = 1000
 
 
 class Scene:
-    """A scene as a value: what a scene file says, checked and complete.
+    """A checked scene.
 
-    ``Scene(tables)`` of nested dicts with the keys of a scene file, ``Scene.parse(text)``,
-    ``Scene.read(file)``. InputError with file:line:column where it is not one.
+    Made with ``Scene(tables)`` from nested dicts with the keys of a scene file, with
+    ``Scene.parse(text)`` or ``Scene.read(file)``. Raises InputError with file:line:column if
+    there is a mistake.
     """
 
     def __init__(self, tables, file="scene.toml"):
@@ -31,13 +32,15 @@ class Scene:
 
     @classmethod
     def parse(cls, text, file="scene.toml"):
-        """Of TOML text; files that it names are relative to the folder of ``file``."""
+        """Makes a scene from TOML text. Files that it names are relative to the folder of
+        ``file``."""
         scene = cls.__new__(cls)
         scene._set(text, file)
         return scene
 
     @classmethod
     def read(cls, file):
+        """Reads a scene file."""
         path = Path(file)
         try:
             text = path.read_text()
@@ -47,14 +50,14 @@ class Scene:
 
     @property
     def tables(self):
-        """What the scene gives, as nested dicts: a copy."""
+        """Tables of the scene as nested dicts: a copy, without defaults."""
         return tomllib.loads(self._text)
 
     def changed(self, changes):
-        """The scene with other values: {"strand.elements": 40, "effects.wind": {...}}.
+        """Returns the scene with other values: {"strand.elements": 40, "effects.wind": {...}}.
 
-        Keys are paths; None removes what is there; a number in a path is the index of one of
-        several tables, as in "groom.0.count". InputError as when reading.
+        Keys are paths. None removes a key or a table. A number in a path is the index of one of
+        several tables, as in "groom.0.count". Raises InputError as read() does.
         """
         tables = self.tables
         for path, value in changes.items():
@@ -84,55 +87,61 @@ class Scene:
         raise InputError(f"there is no table '{word}' ({path}): count from 0 to {len(tables) - 1}")
 
     def text(self):
-        """The scene as a file, without what is default; reading it gives the same scene."""
+        """Returns the scene as the text of a file, without defaults. Reading it gives the same
+        scene."""
         return self._core.text()
 
     @property
     def name(self):
+        """Name of the scene: that of its file without the ending."""
         return self._core.name
 
     @property
     def title(self):
+        """Title of the scene."""
         return self._core.title
 
     @property
     def model(self):
+        """Id of the model."""
         return self._core.model
 
     @property
     def integrator(self):
+        """Id of the integrator."""
         return self._core.integrator
 
     @property
     def step(self):
-        """dt_s, s."""
+        """Key dt_s of the scene, s."""
         return self._core.step
 
     @property
     def duration(self):
-        """s."""
+        """Simulated time, s."""
         return self._core.duration
 
     @property
     def strands(self):
-        """Number of strands; 0: a mechanism."""
+        """Number of strands; 0 for a mechanism."""
         return self._core.strands
 
     @property
     def effects(self):
-        """Ids of its effects."""
+        """Ids of the effects."""
         return self._core.effects
 
     def times(self):
-        """Of its frames, s."""
+        """Returns the times of the frames, s."""
         return self._core.times()
 
     def system(self, strand=0):
-        """One strand with the effects on it alone, or the mechanism, as a System."""
+        """Returns one strand, with the effects that act on it alone, or the mechanism, as a
+        System."""
         return System(self._core.system(strand))
 
     def gradient(self, of="tip", by=None, start=None, time_errors=False):
-        """Exact derivatives of the run by numbers of the scene: Gradient.
+        """Computes exact derivatives of the run by numbers of the scene: Gradient.
 
         of: "tip" or "points".
         by: names of parameters, as in [gradient] of a scene file (docs/start/gradients.md);
@@ -141,29 +150,29 @@ class Scene:
             "auto".
         time_errors: runs again with half the step to estimate ``Gradient.time_error``.
 
-        InputError names a parameter that is none, or the reason why the run has no
+        Raises InputError for an unknown parameter, or with the reason why the run has no
         derivatives. A step without a solution raises SolveError.
         """
         return gradients.gradient(self, of, by, start, time_errors)
 
     def linearized_step(self, t=0.0, dt=None, by=(), strand=0):
-        """Matrices of one step of the run: LinearizedStep, or A, B = linearized_step(...).
+        """Computes the matrices of one step: LinearizedStep, or A, B = linearized_step(...).
 
-        The derivatives of the state after the step by the state before it, A, and by
-        parameters, B: state-transition matrices for control and estimation.
+        A has the derivatives of the state after the step by the state before it, B those by
+        the parameters: state-transition matrices for control and estimation.
 
         t: start of the step, s; the scene runs to it first.
         dt: length of the step, s; None: dt_s of the scene.
         by: names of parameters, as in ``gradient``, which act during the step alone:
             "root_position_m.z", "wind.velocity_m_s.x".
 
-        InputError where the method's step depends on more than (q, v), as that of bdf2 and
-        generalized_alpha, or the model has constraints.
+        Raises InputError if the step depends on more than (q, v), as with bdf2 and
+        generalized_alpha, or if the model has constraints.
         """
         return gradients.linearized_step(self, t, dt, by, strand)
 
     def start(self, threads=1, kind="strands"):
-        """The run at t = 0, for loops of your own: StrandsRun, or BatchRun of a batch.
+        """Returns the run at t = 0, for loops of your own: StrandsRun, or BatchRun of a batch.
 
         kind: "strands" or "batch".
         """
@@ -173,14 +182,14 @@ class Scene:
     def run(self, threads=1, kind="auto", progress=None, every=1):
         """Runs the scene to its end: Frames.
 
-        kind: "strands" runs them one by one; "batch" all together, up to a million; "auto" as
-            a batch, where the scene can be one and has at least 1000 strands.
+        kind: "strands" runs the strands one by one, "batch" all together, up to a million.
+            "auto" takes a batch if the scene has at least 1000 strands and can run as one.
         progress: True for a line on standard error, or a function of (time, duration), s.
-        every: keep each frame, each second one ...
+        every: n keeps every n-th frame, and the last one.
 
         A step without a solution or an impossible state raises SolveError, whose ``frames``
-        are those before. Ctrl-C raises KeyboardInterrupt after the present frame, of a batch
-        after the present step.
+        are those before it. Ctrl-C raises KeyboardInterrupt after the present frame; in a
+        batch, after the present step.
         """
         _check_kind(kind, ("auto", "strands", "batch"))
         run = None

@@ -34,47 +34,53 @@ def _texts(options):
 
 
 def models():
-    """{id: (summary, source)} of all models."""
+    """Returns {id: (summary, source)} of all models."""
     return {id: (summary, source) for id, summary, source in _core.models()}
 
 
 def model_options(id):
-    """{name: (default, choices, help with unit)} of the options of ``model(id, ...)``."""
+    """Returns {name: (default, choices, help with unit)} of the options of ``model(id, ...)``."""
     return {name: rest for name, *rest in _core.model_options(id)}
 
 
 def integrators():
-    """{id: (order, summary, source)} of all integrators."""
+    """Returns {id: (order, summary, source)} of all integrators."""
     return {id: (order, summary, source) for id, order, summary, source in _core.integrators()}
 
 
 def integrator_options():
-    """{name: (default, choices, help with unit, its method or "")} of all integrators."""
+    """Returns {name: (default, choices, help with unit, method)} of the options of all
+    integrators. The method is empty for options of several methods."""
     return {name: rest for name, *rest in _core.integrator_options()}
 
 
 def model(id, **options):
-    """A model of the catalogue; InputError where an option is unknown or out of range.
+    """Makes a system of a model of the catalogue: System.
 
-    A strand takes geometry, material, root and loads as well: ``model_options(id)``.
+    Options are those of the model. A model of a strand also takes geometry, material, root
+    and loads: ``model_options(id)``. Raises InputError if an option is unknown or out of
+    range.
     """
     return System(_core.model(id, _texts(options)))
 
 
 class System:
-    """Built by ``model``, ``Scene.system``, or of an object of your own:
+    """Mechanical system, made with ``model``, ``Scene.system`` or ``System(object)``.
 
-    ``initial_state()``     (q, v), which also say how many coordinates there are
+    An object of your own has these functions:
+
+    ``initial_state()``     (q, v), whose length is the number of coordinates n
     ``residual(t, q, v, a)``   r, an array (n)
     ``tangent(t, q, v, a, acc, vel, pos)``   optional: S, an array (n, n) or scipy.sparse;
-                            without it S is taken by central differences of the residual
+                            by default, S is computed by central differences of the residual
     ``energy(t, q, v)``     optional: (kinetic, potential), J
-    ``power(t, q, v)``      optional: W of what energy leaves out
-    ``scale()``             optional: typical sizes of q and v, else 1; tolerances and
+    ``power(t, q, v)``      optional: power of the forces without a potential, W
+    ``scale()``             optional: typical sizes of q and v, by default 1; tolerances and
                             differences are relative to them
-    ``constant_mass``       optional: True where M is constant
+    ``constant_mass``       optional: True if M is constant
 
-    Such a system has no constraints. What it raises ends the step and is raised again.
+    Such a system has no constraints. An exception in one of these functions ends the step
+    and is raised again.
     """
 
     def __init__(self, system):
@@ -93,7 +99,7 @@ class System:
 
     @property
     def traits(self):
-        """{"constant_mass", "regular_mass"}."""
+        """Properties of the mass matrix: {"constant_mass": bool, "regular_mass": bool}."""
         return self._core.traits
 
     def has(self, form):
@@ -102,15 +108,15 @@ class System:
         return form in self._core.forms()
 
     def initial_state(self):
-        """(q, v), which satisfy the constraints."""
+        """Returns (q, v), which satisfy the constraints."""
         return self._core.initial_state()
 
     def scale(self):
-        """Typical sizes of q and v."""
+        """Returns typical sizes of q and v."""
         return self._core.scale()
 
     def residual(self, t, q, v, a):
-        """r (n)."""
+        """Returns the residual r (n)."""
         return self._core.residual(t, q, v, a)
 
     def _rest(self, v, a):
@@ -118,10 +124,10 @@ class System:
         return zero if v is None else v, zero if a is None else a
 
     def tangent(self, t, q, v=None, a=None, acc=0.0, vel=0.0, pos=0.0):
-        """S = acc dr/da + vel dr/dv + pos dr/dq as scipy.sparse.csc_matrix (n, n).
+        """Returns S = acc dr/da + vel dr/dv + pos dr/dq as scipy.sparse.csc_matrix (n, n).
 
-        v and a are 0 unless given. Of a model without a sparse form by central differences
-        of the residual (exact in a; error 1e-10 of its largest entries), converted.
+        By default v and a are 0. For a model without a sparse form, S is computed by central
+        differences of the residual (exact in a; error 1e-10 of its largest entries).
         """
         made = self._core.tangent(t, q, *self._rest(v, a), acc, vel, pos)
         if isinstance(made, tuple):
@@ -130,29 +136,29 @@ class System:
         return scipy.sparse.csc_matrix(made)
 
     def mass(self, t, q, v=None, a=None):
-        """M = dr/da (n, n)."""
+        """Returns the mass matrix M = dr/da (n, n)."""
         return self.tangent(t, q, v, a, acc=1.0)
 
     def damping(self, t, q, v=None, a=None):
-        """D = dr/dv (n, n)."""
+        """Returns the damping matrix D = dr/dv (n, n)."""
         return self.tangent(t, q, v, a, vel=1.0)
 
     def stiffness(self, t, q, v=None, a=None):
-        """K = dr/dq (n, n)."""
+        """Returns the stiffness matrix K = dr/dq (n, n)."""
         return self.tangent(t, q, v, a, pos=1.0)
 
     def linearize(self, t, q, v, a, acc, vel, pos):
-        """Readies ``solve`` with the model's own form of S."""
+        """Prepares ``solve`` for this S, in the form that the model uses."""
         self._core.linearize(t, q, v, a, acc, vel, pos)
 
     def solve(self, b):
-        """x (n) with S x = b, S as linearize() left it."""
+        """Returns x (n) with S x = b, for the S of the last linearize()."""
         return self._core.solve(b)
 
     def acceleration(self, t, q, v):
-        """a (n) of a model without constraints: M a = f.
+        """Returns a (n) with M a = f, for a model without constraints.
 
-        By the model's explicit form, else by one solve with M."""
+        Uses the explicit form of the model if there is one, else a solve with M."""
         if self.has("explicit"):
             return self._core.acceleration(t, q, v)
         zero = np.zeros(self._n)
@@ -160,47 +166,50 @@ class System:
         return self._core.solve(-self._core.residual(t, q, v, zero))
 
     def energy(self, t, q, v):
-        """(kinetic, potential), J; InputError where the model does not say."""
+        """Returns (kinetic, potential), J. Raises InputError if the model has no energies."""
         return self._core.energy(t, q, v)
 
     def power(self, t, q, v):
-        """W of all forces that energy() leaves out, negative for drag."""
+        """Returns the power of all forces without a potential, W: negative for drag."""
         return self._core.power(t, q, v)
 
     def momentum(self, t, q, v):
-        """(linear, angular about the origin), kg m/s and kg m^2/s; None: not known."""
+        """Returns (linear, angular about the origin), kg m/s and kg m^2/s, or None if the
+        model has no momentum."""
         return self._core.momentum(t, q, v)
 
     def constraints(self, t, q):
-        """g (m), in the model's units."""
+        """Returns the constraints g (m), in the units of the model."""
         return self._core.g(t, q) if self.m else np.zeros(0)
 
     def constraint_rate(self, t, q, v):
-        """G v + dg/dt (m)."""
+        """Returns their rates G v + dg/dt (m)."""
         return self._core.g_rate(t, q, v) if self.m else np.zeros(0)
 
     def jacobian(self, t, q):
-        """G = dg/dq as scipy.sparse.csr_matrix (m, n)."""
+        """Returns the Jacobian of the constraints, G = dg/dq, as scipy.sparse.csr_matrix
+        (m, n)."""
         if not self.m:
             return scipy.sparse.csr_matrix((0, self._n))
         values, rows, starts, (n, m) = self._core.jacobian_transposed(t, q)
         return scipy.sparse.csr_matrix((values, rows, starts), shape=(m, n))
 
     def points(self, t, q):
-        """Places of the material points, (points, 3) m; the last one is the tip."""
+        """Returns the positions of the material points, (points, 3) m. The last one is the
+        tip."""
         return self._core.points(t, q)
 
     def point_velocities(self, t, q, v):
-        """(points, 3) m/s."""
+        """Returns the velocities of the material points, (points, 3) m/s."""
         return self._core.point_velocities(t, q, v)
 
     def before(self):
-        """For each point the one that it is attached to, -1: none."""
+        """Returns for each point the point that it is attached to; -1: none."""
         return self._core.before()
 
     def accept(self, t, q, v):
-        """After a step of your own: (changed, q, v). Moves frames and contact sets; True:
-        the equations have changed."""
+        """Ends a step of your own: moves frames and contact sets. Returns (changed, q, v), with
+        changed = True if the equations have changed."""
         return self._core.accept(t, q, v)
 
     def reset(self):
@@ -212,19 +221,20 @@ class System:
         return self._core.memory()
 
     def recall(self, memory):
+        """Restores the state that ``memory`` returned."""
         self._core.recall(memory)
 
     def next_breakpoint(self, t):
-        """The first time after t at which the equations are not smooth; inf: none."""
+        """Returns the first time after t at which the equations are not smooth; inf: none."""
         return self._core.next_breakpoint(t)
 
 
 class Integrator:
     """One method on one system: ``Integrator("generalized_alpha", system, step=1e-3)``.
 
-    Options are those of ``--set``: ``integrator_options()``. InputError where the method
-    cannot drive the system, with the reason, and on an option of another method. A system
-    must not be stepped by two threads at once (SolveError).
+    Options are those of ``--set``: ``integrator_options()``. Raises InputError with the
+    reason if the method cannot drive the system, and for an option of another method. Two
+    threads that step one system at once raise SolveError.
     """
 
     def __init__(self, id, system, **options):
@@ -242,27 +252,27 @@ class Integrator:
     def advance(self, t_end, observer=None):
         """Steps to t_end exactly, without the interpreter's lock.
 
-        ``observer(t, q, v)`` is called after every step with copies; when it returns False
+        ``observer(t, q, v)`` is called after every step with copies. If it returns False,
         the run ends there and advance returns False. A step without a solution raises
-        SolveError with what happened and when. Ctrl-C raises KeyboardInterrupt within a
+        SolveError with the time and the reason. Ctrl-C raises KeyboardInterrupt within a
         step and 50 ms.
         """
         return self._core.advance(t_end, observer)
 
     @property
     def time(self):
-        """s."""
+        """Present time, s."""
         return self._core.time
 
     @property
     def q(self):
-        """The coordinates: the method's own memory, for reading, until the next
-        advance(). Copy what you keep."""
+        """Coordinates: a view of the memory of the method, valid until the next advance().
+        Copy what you keep."""
         return self._core.q
 
     @property
     def v(self):
-        """Their rates, as q."""
+        """Rates of the coordinates, a view as q."""
         return self._core.v
 
     @property
@@ -272,16 +282,16 @@ class Integrator:
 
 
 def refusal(id, system, formulation="parametric"):
-    """Why an integrator cannot drive a system; empty: it can."""
+    """Returns the reason why an integrator cannot drive a system; empty if it can."""
     system = system if isinstance(system, System) else System(system)
     return _core.refusal(id, system._core, formulation)
 
 
 def first_order(system):
-    """For scipy.integrate.solve_ivp, of a system without constraints: (fun, jac, y0).
+    """Returns (fun, jac, y0) of a system without constraints for scipy.integrate.solve_ivp.
 
-    y = (q, v), y' = (v, a), and the Jacobian [[0, 1], [-M^-1 K, -M^-1 D]] (2n, 2n), in
-    which the derivative of M is part of K: it is taken at the acceleration of the state.
+    y = (q, v), y' = (v, a), and the Jacobian is [[0, 1], [-M^-1 K, -M^-1 D]] (2n, 2n). K is
+    evaluated at the acceleration of the state, so it includes the derivative of M.
     """
     n = system.n
 

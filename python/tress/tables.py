@@ -30,12 +30,15 @@ def unit_of(column):
 
 
 class Table(Mapping):
-    """A table by columns: ``table["dt_s"]`` is an array of float64, empty cells nan; of
-    bool where all cells are true or false; else of str.
+    """A table by columns: ``table["dt_s"]`` is an array.
 
-    ``units``     {column: unit}     ``help``   {column: what it is}, of the manifest
-    ``manifest``  how the table was made; {} where none lies beside it
-    ``complete``  False: the program ended with rows failed or a check that does not hold
+    Its type is float64 with nan for empty cells, bool if all cells are true or false, else
+    str.
+
+    ``units``     {column: unit}
+    ``help``      {column: description}, from the manifest
+    ``manifest``  record of how the table was made; {} if there is none
+    ``complete``  False if rows failed or a check did not hold
     """
 
     def __init__(self, columns, manifest=None, file="", complete=True):
@@ -58,18 +61,21 @@ class Table(Mapping):
 
     @property
     def rows(self):
+        """Number of rows."""
         return len(next(iter(self._columns.values()), ()))
 
     @property
     def units(self):
+        """Unit of each column: {column: unit}."""
         return {column: unit_of(column) for column in self._columns}
 
     @property
     def help(self):
+        """Description of each column: {column: description}."""
         return dict(self.manifest.get("columns", {}))
 
     def where(self, **values):
-        """The rows in which these columns have these values."""
+        """Returns the rows in which these columns have these values."""
         chosen = np.ones(self.rows, dtype=bool)
         for column, value in values.items():
             chosen &= self[column] == value
@@ -77,7 +83,7 @@ class Table(Mapping):
         return Table(columns, self.manifest, self.file, self.complete)
 
     def pandas(self):
-        """As a pandas.DataFrame (package python3-pandas)."""
+        """Returns the table as a pandas.DataFrame (package python3-pandas)."""
         import pandas
 
         return pandas.DataFrame(self._columns)
@@ -95,7 +101,7 @@ def _column(cells):
 
 
 def read_table(file):
-    """A CSV file and the manifest beside it; InputError where it is no table."""
+    """Reads a CSV file and its manifest: Table. Raises InputError if it is not a table."""
     path = Path(file)
     try:
         with path.open(newline="") as lines:
@@ -115,8 +121,10 @@ def read_table(file):
 
 
 def programs_folder():
-    """Where the experiments' programs are: of the environment's TRESS_BUILD, of the build
-    that this module belongs to, or of the clone that holds the working folder."""
+    """Returns the folder with the programs of the experiments.
+
+    It belongs to the build that the environment variable TRESS_BUILD names, else to the build
+    of this module, else to the clone that holds the working folder."""
     folders = [Path(_core.__file__).resolve().parents[2]]
     if "TRESS_BUILD" in os.environ:
         folders = [Path(os.environ["TRESS_BUILD"])]
@@ -134,10 +142,11 @@ def programs_folder():
 def experiment(name, *words, out=None):
     """Runs an experiment's program with these arguments and reads its table.
 
-    ``experiment("stability_limit", "--quick", "--models", "der")``. out: the CSV file to
-    keep; none: a temporary one. InputError with the program's own line on bad input,
-    ProgramError where it fails. Rows that failed and checks that do not hold are in the
-    table (``complete`` is False). Ctrl-C ends the program.
+    Example: ``experiment("stability_limit", "--quick", "--models", "der")``.
+
+    out: the CSV file to keep; by default a temporary one. Raises InputError with the message
+    of the program on bad input, and ProgramError if the program fails. If rows failed or a
+    check did not hold, ``complete`` of the table is False. Ctrl-C ends the program.
     """
     folder = programs_folder()
     there = (folder / "list.txt").read_text().split()

@@ -41,8 +41,8 @@ def _run(words, machine):
 
 COMMAND = Command(
     "ask", "SCENE.toml [OPTIONS]",
-    "answers the questions about one scene: largest stable step of each method, what survives, "
-    "effects that matter, cheapest configuration. Writes answers.html and tables to "
+    "answers the questions about one scene: largest stable step of each method, "
+    "models that survive, effects that matter, cheapest configuration. Writes answers.html and tables to "
     "results/ask/<scene>-<checksum of its path>/.",
     _run,
     example="./tress ask my.toml --timeout 30s",

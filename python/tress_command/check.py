@@ -30,8 +30,8 @@ def _run(words, machine):
 
 COMMAND = Command(
     "check", "LIBRARY...",
-    "runs what plug-ins bring through the contract suites: tangents against differences, purity, "
-    "no allocation, orders, energies. docs/plugins.md describes plug-ins.",
+    "runs the contract suites on the models, effects and integrators of plug-ins: Jacobians against "
+    "differences, purity, no allocation, orders, energies. docs/plugins.md describes plug-ins.",
     _run,
     example="./tress check build/plugin/libexample.so",
     time="minutes to compile the suites the first time, then about a minute.")

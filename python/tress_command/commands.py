@@ -10,8 +10,8 @@ COMMANDS = (build.COMMAND, simulate.COMMAND, run.COMMAND, ask.COMMAND, check.COM
             new.COMMAND, rename.COMMAND, listing.COMMAND, lint.COMMAND, packages.COMMAND)
 HEAD = "tress: testbed for rod and elastic-strand solvers"
 FOOT = (
-    "./tress COMMAND --help prints the options of a command with an example and its time, "
-    "./tress help all those of all commands.",
+    "./tress COMMAND --help prints the options of a command, with an example and its time. "
+    "'./tress help all' prints the options of all commands.",
     "./tress --no-install COMMAND ... installs nothing: if packages are missing, it prints them "
     "and ends with exit code 2.",
     "Paths are relative to the repository. Arguments after -- go to each experiment, ctest, "

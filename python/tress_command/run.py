@@ -92,7 +92,7 @@ COMMAND = Command(
     "run", "[--full] [--resume] [EXPERIMENT...] [-- ARGUMENTS]",
     "runs experiments, those named or all that can run here, and writes results/*.csv and "
     "results/report.html. Builds them, and checks outputs and unfinished runs first. Prints at "
-    "the end what is not done.",
+    "the end the experiments that are not done.",
     _run,
     example="./tress run --resume stability_limit damping -- --jobs 1",
     time="about half an hour on two cores for all experiments; hours for some with --full.",

@@ -62,7 +62,7 @@ COMMAND = Command(
     "simulate", "SCENE.toml [OPTIONS]\n--print-defaults",
     "simulates one scene and writes its time series and a page with its motion. They are in "
     "results/simulate/<scene>-<checksum of its path>/. Builds the program first: in a new clone "
-    "a slower one in build/first, which compiles sooner.",
+    "a version in build/first, which compiles sooner and runs slower.",
     _run,
     example="./tress simulate scenes/cantilever.toml --error-bars",
     time="seconds for most shipped scenes; a first build takes about a quarter of an hour of "

@@ -32,9 +32,9 @@ CLUSTER = Command(
     "cluster", "slurm|snakemake [OPTIONS] EXPERIMENT [ARGUMENTS]\n"
     "status|resume|merge FOLDER\nestimate [--out FILE] [--timeout TIME] [EXPERIMENT...]",
     "runs an experiment in parts, as a job array of Slurm or by Snakemake, and joins their "
-    "tables. docs/cluster.md describes it. status prints what is finished, resume submits what "
-    "is missing, merge joins all parts; estimate times some rows of experiments and writes what "
-    "all rows take.",
+    "tables. docs/cluster.md describes it. status prints the finished parts, resume submits the "
+    "missing ones, merge joins all parts; estimate times some rows of experiments and writes the "
+    "estimated time of all rows.",
     _cluster,
     example="./tress cluster slurm --parts 3 --folder results/cluster/springs stability_limit "
             "--quick --models mass_spring",
@@ -52,7 +52,7 @@ CLUSTER = Command(
 COMPARE = Command(
     "compare", "A B [OPTIONS]",
     "compares two folders of results row by row, or two commits or builds by benchmarks that "
-    "take turns. Writes a table and a page to results/compare/. Exit code 3 if something is "
+    "run in turns. Writes a table and a page to results/compare/. Exit code 3 if something is "
     "slower, changed or missing. docs/compare.md describes it.",
     _compare,
     example="./tress compare HEAD~1 HEAD --filter step",

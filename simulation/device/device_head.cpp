@@ -252,7 +252,7 @@ std::optional<models::HeadRefusal> refused_by_device(const Head& head) {
   }
   if (auto no = source->refused_by_device()) {
     return models::HeadRefusal{
-        "device code knows gravity and linear drag only, not " + no->reason,
+        "device code supports gravity and linear drag only, not " + no->reason,
         no->remedy + ", or --device cpu"};
   }
   return {};

@@ -37,7 +37,7 @@ std::string reason() {
 
 [[noreturn]] void failed(const std::string& file, const char* what) {
   throw InputError(std::string("cannot ") + what + ": " + reason(), file,
-                   "free space or write elsewhere; a damaged file is written anew "
+                   "free space or write elsewhere; a damaged file is written again "
                    "without --resume");
 }
 

@@ -75,7 +75,8 @@ std::string in_words(const std::vector<FittedStrand>& strands, const GroomFit& f
   if (!fit.has_tolerance()) return text;
   fmt::format_to(
       std::back_inserter(text),
-      "; the turning alone says enough elements for {:.3g} % of them",
+      "; the estimate by turning gives enough elements for {:.3g} % of "
+      "them",
       100.0 * static_cast<double>(by_rule) / static_cast<double>(strands.size()));
   if (beyond > 0) {
     fmt::format_to(std::back_inserter(text),

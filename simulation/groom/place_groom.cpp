@@ -180,8 +180,8 @@ double unit_of(const GroomFile& read, const std::string& file,
   if (read.metres) return *read.metres;
   if (read.format_metres) {
     notes.push_back(
-        fmt::format("the file has no unit: {:g} m, as its format has it (unit_m = {:g} "
-                    "says so)",
+        fmt::format("the file has no unit: {:g} m, the unit of its format (same as "
+                    "unit_m = {:g})",
                     *read.format_metres, *read.format_metres));
     return *read.format_metres;
   }
@@ -191,8 +191,8 @@ double unit_of(const GroomFile& read, const std::string& file,
   }
   const FileUnit& unit = guessed_unit(middle);
   notes.push_back(
-      fmt::format("the unit is guessed: {}, by which half the strands are longer than "
-                  "{:.3g} m (unit = \"{}\" says so)",
+      fmt::format("the unit is guessed: {}, so that half of the strands are longer "
+                  "than {:.3g} m (same as unit = \"{}\")",
                   unit.name, middle * unit.metres, unit.name));
   return unit.metres;
 }
@@ -204,12 +204,14 @@ FileAxis axis_of(const GroomFile& read, const std::string& file,
   const FileAxis up = read.format_up ? *read.format_up : guessed_up(read.lines, file);
   notes.push_back(
       read.format_up
-          ? fmt::format("the file has no axis that points up: {0}, as its format has it "
-                        "(up = \"{0}\" says so)",
-                        axis_name(up))
-          : fmt::format("the axis that points up is guessed: {0}, against which hair "
-                        "hangs (up = \"{0}\" says so)",
-                        axis_name(up)));
+          ? fmt::format(
+                "the file has no axis that points up: {0}, the axis of its format "
+                "(same as up = \"{0}\")",
+                axis_name(up))
+          : fmt::format(
+                "the axis that points up is guessed: {0}, against which hair hangs "
+                "(same as up = \"{0}\")",
+                axis_name(up)));
   return up;
 }
 

@@ -150,7 +150,7 @@ GroomFile read_hair(ByteStream& from, const GroomReading& reading) {
                               strands, std::min<std::uint32_t>(segments, points) + 1);
   if (const std::uint64_t total = sum_of(each); total != points) {
     throw InputError(
-        fmt::format("strands of {} points where the header says {}", total, points),
+        fmt::format("strands of {} points where the header has {}", total, points),
         fmt::format("{}: byte {}", from.file(), counts_at),
         "the file is damaged: write it again");
   }

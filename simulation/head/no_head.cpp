@@ -69,7 +69,7 @@ std::optional<NoHead> no_quaternions(const Scene& scene) {
     return NoHead{fmt::format("{} with a tolerance, in whose long steps lanes find no "
                               "solution",
                               scene.model->id),
-                  "give [integrator] dt_s instead of tolerance"};
+                  "give [integrator] dt_s instead of position_tol_rel"};
   }
   if (scene.integrator == "tr_bdf2" && scene.model->id == "xpbd_cosserat") {
     return NoHead{
@@ -233,7 +233,7 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
   }
   if (scene.options.tolerance > 0) {
     return NoHead{"strands that touch and choose their steps share their intervals",
-                  "give dt_s instead of tolerance, or --as strands"};
+                  "give dt_s instead of position_tol_rel, or --as strands"};
   }
   return {};
 }

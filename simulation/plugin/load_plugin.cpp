@@ -29,7 +29,7 @@ constexpr BuildStamp stamp_of_this;
 // Commas are between numbers alone: "compiler=GNU 12|", "sizes=8,384,...|".
 static_assert(stamp_of_this.text().find("=,") == std::string_view::npos &&
               stamp_of_this.text().find(" ,") == std::string_view::npos);
-constexpr const char* page = "docs/plugins.md says how one is built";
+constexpr const char* page = "docs/plugins.md describes how to build one";
 constexpr const char* author = "ask its author";
 
 std::vector<LoadedPlugin>& all_loaded() {

@@ -32,7 +32,7 @@ std::string remedy(std::string_view integrator, const Options& options, Limit li
   }
   // docs/theory/models/reconstructions.md
   if (model == "force_transport") {
-    return "small oscillations of force_transport grow whatever the step: try "
+    return "small oscillations of force_transport grow at any step: try "
            "internal_friction_kg_m3_s or [effects.linear_drag], which damp, or another "
            "model";
   }

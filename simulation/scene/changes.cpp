@@ -46,7 +46,7 @@ Ingredient mode(const std::string& name, const std::string& word) {
 template <class Change>
 Scene cut_anew(Scene scene, const Change& changed) {
   if (scene.tables == nullptr) {
-    throw std::logic_error("strands that no table says cannot be cut anew");
+    throw std::logic_error("strands without a table cannot be remeshed");
   }
   auto tables = std::make_shared<StrandTables>(changed(*scene.tables));
   CutStrands cut = StrandSeries(tables, scene.head, scene.seed, held_at_once).all();

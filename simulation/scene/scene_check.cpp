@@ -131,7 +131,7 @@ void check_failed_strands(const Scene& scene, const ScenePlaces& places) {
   }
   if (!places.tolerance.empty()) {
     refuse("strands that touch and choose their steps, which share their intervals",
-           "give dt_s instead of tolerance, or " + leave_out);
+           "give dt_s instead of position_tol_rel, or " + leave_out);
   }
 }
 

@@ -163,7 +163,7 @@ std::string toml_value(const Parameter& parameter, std::string_view text) {
 
 std::string scene_text(const Scene& scene) {
   if (scene.tables == nullptr && !scene.strands.empty()) {
-    throw std::logic_error("strands that no table says cannot be written");
+    throw std::logic_error("strands without a table cannot be written");
   }
   std::string text;
   add_top(text, scene);

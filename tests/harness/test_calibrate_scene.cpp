@@ -146,7 +146,8 @@ TEST(CalibrateScene, RefusesWhatItCannotFitWithTheReason) {
   EXPECT_THAT(refusal(TRESS_SCENES "/palm_tree.toml"), HasSubstr("its own geometry"));
   EXPECT_THAT(refusal(TRESS_SCENES "/hair_under_wind.toml"), HasSubstr("records are of"));
   const std::string file = file_of("refused.toml", hair());
-  EXPECT_THAT(refusal(file, {{"length_m", "0.1"}}), HasSubstr("says itself"));
+  EXPECT_THAT(refusal(file, {{"length_m", "0.1"}}),
+              HasSubstr("defines 'length_m' itself"));
   EXPECT_THAT(refusal(file, {{"signal", "envelope"}}), HasSubstr("displacement"));
   EXPECT_THAT(refusal(file, {{"signal", "envelope"}, {"fit", "stiffness"}}),
               HasSubstr("no frequency"));

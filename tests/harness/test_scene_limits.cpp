@@ -205,10 +205,9 @@ TEST_F(SceneLimit, OfAMethodThatTheModelCannotTakeIsARefusal) {
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().status(), "refused");
   EXPECT_THAT(std::string(found.front().text("reason")), HasSubstr("xpbd"));
-  EXPECT_EQ(
-      stability_answer(found),
-      std::vector<std::string>{
-          "helix, super_helix: not driven by xpbd (jacobian exact) (--list says why)"});
+  EXPECT_EQ(stability_answer(found),
+            std::vector<std::string>{"helix, super_helix: not driven by xpbd (jacobian "
+                                     "exact) (--list prints the reason)"});
 }
 
 TEST_F(SceneLimit, EndsWithItsWork) {

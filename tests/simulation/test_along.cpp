@@ -123,9 +123,9 @@ bool takes_part(const ModelEntry& model) {
          model.id != "dynamic_spline" && model.id != "force_transport";
 }
 
-/// Errors with 20 and 40 elements: 0.3 % with 40, and order 2 where they exceed 1e-4.
+/// Errors with 24 and 48 elements: 0.3 % with 48, and order 2 where they exceed 1e-4.
 void expect_order_two(double coarse, double fine, const std::string& what) {
-  std::printf("%s: %.1e with 20, %.1e with 40\n", what.c_str(), coarse, fine);
+  std::printf("%s: %.1e with 24, %.1e with 48\n", what.c_str(), coarse, fine);
   EXPECT_LE(std::abs(fine), 3e-3);
   if (std::abs(fine) > 1e-4) {
     EXPECT_GE(std::abs(coarse / fine), 3) << what;
@@ -142,7 +142,7 @@ TEST(Along, FrequencyIsThatOfTheVariedBeam) {
         const Scene scene = scene_of(text_of(std::string(model.id), elements, v.keys));
         return frequency(*system_of(scene)) / expected - 1;
       };
-      expect_order_two(off(20), off(40), v.name + ", " + std::string(model.id));
+      expect_order_two(off(24), off(48), v.name + ", " + std::string(model.id));
     }
   }
 }
@@ -159,7 +159,7 @@ TEST(Along, SagIsThatOfTheVariedBeam) {
                              "[effects.gravity]\ngravity_m_s2 = [0, 0, -1e-3]\n"));
         return -tip_moved(*system_of(scene)).z / expected - 1;
       };
-      expect_order_two(off(20), off(40), v.name + ", " + std::string(model.id));
+      expect_order_two(off(24), off(48), v.name + ", " + std::string(model.id));
     }
   }
 }

@@ -953,7 +953,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {.model = "id = \"corde\"\n",
                     .integrator = "id = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"},
                    "corde with a tolerance",
-                   "dt_s instead of tolerance"},
+                   "dt_s instead of position_tol_rel"},
         Replicated{"CosseratByTrBdf2",
                    {.model = "id = \"xpbd_cosserat\"\n",
                     .integrator = "id = \"tr_bdf2\"\ndt_s = 1e-3\n"},

@@ -98,7 +98,7 @@ mapfile -t ranks < <(pgrep -P "$job" -x simulate)
 ((${#ranks[@]} == 2)) || fail "${#ranks[@]} ranks run"
 kill -9 "${ranks[1]}"
 wait "$job" && fail "a killed rank went unnoticed"
-lines=$(grep -c '^simulate: .*--resume goes on from the last saved state' log || true)
+lines=$(grep -c '^simulate: .*--resume continues from the last saved state' log || true)
 ((lines == 1)) || { cat log; fail "$lines lines say what to do"; }
 [[ -s killed/head.state ]] || fail "nothing to go on from"
 head killed 4 --resume 2>log || { cat log; fail "resumed by four"; }

@@ -72,7 +72,7 @@ _PATTERNS = [
     (r"\bexit code is 3\b", "an exit code"),
     (r"\bthree typical strands\b", "the default of strands"),
     (r"\babout 15 cm\b", "the length by which a unit is guessed"),
-    (r"\bfour times as long as the median or a tenth of it\b", "bounds of what is reported"),
+    (r"\bfour times as long as the median or a tenth as long\b", "bounds of what is reported"),
     # Last: they leave a number before them bare.
     (r"\b1/(s²|m)", "a unit"),
 ]

@@ -90,15 +90,16 @@ def winners_by_target(tables):
 
 
 def _tally(tables, column):
-    """Returns "`esdirk43` on 3 of 7 scenes (and tied on 1)". A tie is no win."""
+    """Returns "`esdirk43` on 3 of 7 scenes (and tied on 1), `bdf2` on 2". A tie is no win."""
     rows = winners(tables, _TARGET)
     counts = []
     for name, members in groups(rows, column):
         others = (_tied_with(tables, row) for row in records(members))
         counts.append((name, len(members), sum(other is not None and other[column] != name for other in others)))
     counts.sort(key=lambda count: count[2] - count[1])
-    return ", ".join(f"`{name}` on {count - ties} of {len(rows)} scenes{f' (and tied on {ties})' if ties > 0 else ''}"
-                     for name, count, ties in counts)
+    words = [f"`{name}` on {count - ties}" + (f" of {len(rows)} scenes" if k == 0 else "") + (f" (and tied on {ties})" if ties > 0 else "")
+             for k, (name, count, ties) in enumerate(counts)]
+    return ", ".join(words)
 
 
 def winning_integrators(tables):

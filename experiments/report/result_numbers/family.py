@@ -149,8 +149,8 @@ def esdirk(tables):
 
 def equal(tables):
     row = claim(tables, "reduced_cheaper")
-    return _sentence(tables, f"`super_helix` needs less time for 1 % than `der` for {_held(row)} (time of `der` over that of "
-                     f"`super_helix`: {_spread(row)}; 100 and 0.01 where one of them never gets there)", row)
+    return _sentence(tables, f"`super_helix` needs less time for 1 % than `der` for {_held(row)} (ratio of `der` to `super_helix`: "
+                     f"{_spread(row)}; 100 and 0.01 where one model never reaches this error)", row)
 
 
 def equal_curly_wind(tables):

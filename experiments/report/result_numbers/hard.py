@@ -78,7 +78,8 @@ def survivors(tables):
     counts.sort(key=lambda one: -one[1] / one[2])
     shown = [one for k, one in enumerate(counts) if k < _BEST or one[0] == "super_helix"]
     return (f"at steps of {duration(longest)}, "
-            + ", ".join(f"`{model}` survives {kept} of {of} cases" for model, kept, of in shown))
+            + ", ".join(f"`{model}` {'survives ' if k == 0 else ''}{kept} of {of}{' cases' if k == 0 else ''}"
+                        for k, (model, kept, of) in enumerate(shown)))
 
 
 def _at_longest_step(tables, integrator):
