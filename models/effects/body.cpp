@@ -60,8 +60,9 @@ constexpr Parameter parameters_of_body[] = {
      .components = 5,
      .rows = true},
     {.name = "poses",
-     .help = "moves = poses: rows of t, x, y, z and angles about x, y and z (s, m, rad) "
-             "relative to its place, as those of [root]. It turns about centre_m",
+     .help =
+         "moves = poses: rows of t, x, y, z and three angles (s, m, rad) relative to its "
+         "place, as those of [root]. It turns about x, y and z through centre_m",
      .min = -1e6,
      .max = 1e6,
      .components = 7,

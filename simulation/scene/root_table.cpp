@@ -79,8 +79,9 @@ constexpr Parameter parameters[] = {
      .rows = true,
      .fallback = "0,0,0,0,0;1,0,0,0.1,0"},
     {.name = "poses",
-     .help = "rows of t, x, y, z and three angles (s, m, rad), as keyframes: the head "
-             "turns about x, then y, then z, axes of the world through centre_m",
+     .help =
+         "rows of t, x, y, z and three angles (s, m, rad), as keyframes. The head "
+         "turns about x, then y, then z, which are axes of the world through centre_m",
      .min = -largest_number,
      .max = largest_number,
      .components = 7,

@@ -34,9 +34,9 @@ class ReducedHead : public testing::TestWithParam<Case> {};
 // chains by 3e-11: what hangs on a joint is as good as free to turn about it in a short
 // step, so of its inertia about the joint, some elements^3 times that of a link, nothing
 // but the joint's stiffness is left, and three digits cancel where bending of an element
-// leaves some of it. Of clothoids by 4e-12: an element eliminates twice the unknowns, with
-// four times the products. Where steps are iterated, a step leaves Newton's tolerance,
-// which is a change of the state by as much.
+// leaves some of it. Of clothoids by 4e-12: an element eliminates twice the unknowns,
+// with four times the products. Where steps are iterated, a step leaves Newton's
+// tolerance, which is a change of the state by as much.
 TEST_P(ReducedHead, StrandsMoveAsTheyDoAlone) {
   const Case& c = GetParam();
   constexpr int steps = 100;
