@@ -58,7 +58,8 @@ constexpr Parameter parameters_of_body[] = {
      .min = -1e6,
      .max = 1e6,
      .components = 5,
-     .rows = true},
+     .rows = true,
+     .fallback = "0,0,0,0,0;1,0,0,0.1,0"},
     {.name = "poses",
      .help =
          "moves = poses: rows of t, x, y, z and three angles (s, m, rad) relative to its "
@@ -66,7 +67,8 @@ constexpr Parameter parameters_of_body[] = {
      .min = -1e6,
      .max = 1e6,
      .components = 7,
-     .rows = true},
+     .rows = true,
+     .fallback = "0,0,0,0,0,0,0;1,0,0,0.1,0,0,0"},
     {.name = "axis",
      .help = "moves = keyframes: direction of the axis of the angle; any length",
      .min = -1e6,
@@ -146,12 +148,12 @@ Frame turned_by(const Vec& turn) {
 /// The prescribed motion of the body; none: it is fixed.
 std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion& head) {
   const std::string_view moves = parameters.word("moves");
-  for (const std::string_view key : {"keyframes", "poses"}) {
-    const bool own = moves == key, given = !parameters.numbers(key).empty();
-    refuse_if(own && !given, fmt::format("moves = \"{}\" without {}", moves, key),
-              "effect body", "give their rows");
-    refuse_if(!own && given, fmt::format("{} of a body that does not follow them", key),
-              "effect body", fmt::format("set moves = \"{}\", or leave them out", key));
+  for (const Parameter& rows : parameters_of_body) {
+    if (!rows.rows || rows.name == moves) continue;
+    refuse_if(parameters.text(rows.name) != rows.default_text(),
+              fmt::format("{} of a body that does not follow them", rows.name),
+              "effect body",
+              fmt::format("set moves = \"{}\", or leave them out", rows.name));
   }
   const Vec axis = parameters.vec("axis"), centre = parameters.vec("centre_m");
   if (moves == "keyframes") {

@@ -55,7 +55,8 @@ constexpr Parameter keys[] = {
      .min = -most_curvature,
      .max = most_curvature,
      .components = 4,
-     .rows = true},
+     .rows = true,
+     .fallback = "0,0,0,0"},
 };
 constexpr std::array factors{"radius_along", "ellipticity_along", "modulus_along",
                              "density_along"};
@@ -164,8 +165,8 @@ void set_radius(const Strand& strand, double radius, Segment& segment) {
 
 Shape shape_along(const Table& table, double length) {
   const Along<3> along(table, "darboux_along");
-  refuse_if(along.empty(), "shape = \"along\" without darboux_along",
-            table.place("shape"), "give darboux_along");
+  refuse_if(along.empty(), "darboux_along has no rows", table.place("darboux_along"),
+            "give rows of arc length, twist and two curvatures");
   return [along, length](double s) {
     const auto [twist, first, second] = along.at(s / length);
     return Vec{twist, first, second};

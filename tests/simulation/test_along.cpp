@@ -209,7 +209,7 @@ TEST(Along, RefusesWhatIsNoTable) {
       {"density_along = [[0, 1], [0.5, 0], [1, 0]]", "density_along is 0"},
       {"radius_along = [[0, 1]]\nmesh = \"rest\"", "cannot be combined with cuts"},
       {"modulus_along = [[0, 1]]\ntolerance_m = 1e-3", "combined with a tolerance"},
-      {"shape = \"along\"", "without darboux_along"},
+      {"shape = \"along\"\ndarboux_along = []", "has no rows"},
       {"darboux_along = [[0, 0, 1, 0]]", "darboux_along"}};
   for (const auto& [keys, reason] : bad) {
     const std::string said = refusal([&] { scene_of(text_of("super_helix", 4, keys)); });

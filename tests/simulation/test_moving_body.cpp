@@ -137,7 +137,7 @@ TEST(MovingBody, RefusesKeyframesThatItDoesNotFollow) {
   const struct {
     const char *keys, *reason;
   } bad[] = {
-      {"moves = \"keyframes\"", "without keyframes"},
+      {"poses = [[0, 0, 0, 0, 0, 0, 0]]", "does not follow them"},
       {"keyframes = [[0, 0, 0, 0, 0]]", "does not follow them"},
       {"moves = \"keyframes\"\nkeyframes = [[1, 0, 0, 0, 0], [0, 0, 0, 0, 0]]",
        "not in order"},
