@@ -240,8 +240,8 @@ std::optional<models::HeadRefusal> refused_by_device(const Head& head) {
   const HelixSource* const source = head.source();
   if (source == nullptr) {
     return models::HeadRefusal{
-        "there is device code only for super_helix with linearly_implicit_euler and "
-        "jacobian = \"elastic\"",
+        "there is device code only for uniform strands of super_helix with "
+        "linearly_implicit_euler and jacobian = \"elastic\"",
         "use these, or --device cpu"};
   }
   if (const int n = source->shape().elements; n > models::most_elements) {

@@ -226,8 +226,11 @@ PlacedGroom place_groom(GroomFile read, const std::string& file,
   const FileAxis up = axis_of(read, file, placing, placed.notes);
   Cleaning cleaning(read, file, placing.bad);
   cleaning.lines.points.reserve(read.lines.points.size() / placing.every);
-  refuse_if(placing.widths && read.lines.widths.empty(), "the file has no widths", file,
-            "leave out widths = \"file\", or export the file with them");
+  refuse_if(
+      placing.widths && read.lines.widths.empty(),
+      "the file has no widths that can be read", file,
+      "leave out widths = \"file\", or export one width, one for each curve, or one "
+      "for each control point (attribute widths of a .usda)");
   std::vector<Vec> x;
   std::vector<double> widths;
   for (std::size_t k = 0; k < read.lines.size(); k += placing.every) {

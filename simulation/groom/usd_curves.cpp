@@ -212,7 +212,7 @@ void UsdCurves::finish_widths(GroomFile& made) {
   if (reading_.widths && std::ranges::any_of(sets_, &Set::unread)) {
     made.notes.emplace_back(
         "widths are read where there is one for all curves, one for each, or one for "
-        "each control point; those of some curves are not");
+        "each control point; those of some curves have another number");
   }
   const bool none =
       std::ranges::all_of(lines_.widths, [](double x) { return std::isnan(x); });

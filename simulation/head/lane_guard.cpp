@@ -49,7 +49,7 @@ class LaneGuard::Reader {
     const std::size_t count =
         guard.at_.empty() ? numbers_ / 3 : guard.at_.size() * guard.elements_;
     for (auto* list : {&x_, &v_, &tangent_, &load_, &u_}) list->resize(3 * count);
-    for (auto* list : {&mass_, &length_}) list->resize(count);
+    for (auto* list : {&mass_, &length_, &arc_}) list->resize(count);
   }
 
   std::size_t strands() const { return each_.size(); }
@@ -201,9 +201,16 @@ class LaneGuard::Reader {
     store3(v, &v_[3 * i]);
     store3(tangent, &tangent_[3 * i]);
     length_[i] = length;
+    const std::size_t n = guard_.at_.size();
+    const double place =
+        n == 0 ? static_cast<double>(i) : static_cast<double>(i / n) + guard_.at_[i % n];
+    arc_[i] = place * strand().length;
   }
   Points points() const {
-    return {static_cast<int>(mass_.size()), x_, v_, tangent_, mass_, length_};
+    Points p{static_cast<int>(mass_.size()), x_, v_, tangent_, mass_, length_};
+    p.arc = arc_;
+    p.longest = whole_length();
+    return p;
   }
   bool reaches(const Effect& effect) const {
     const double longest = (guard_.stretches_ ? 1 + most_stretch : 1) * whole_length();
@@ -231,7 +238,7 @@ class LaneGuard::Reader {
   std::vector<double> darboux_, darboux_rates_;     // of helices, as Head::state()
   std::optional<ClothoidPoints> clothoid_;          // of elements of linear curvature
   std::vector<double> x_, v_, tangent_, load_, u_;  // (3 points)
-  std::vector<double> mass_, length_;               // (points)
+  std::vector<double> mass_, length_, arc_;         // (points)
 };
 
 LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_rest)

@@ -141,7 +141,7 @@ std::optional<NoHead> no_strands(const Scene& scene) {
       return NoHead{"elements of different lengths", "leave out grading"};
     }
     const bool widths = source.file && p.word("widths") == "file";
-    if (widths || varies_along(source.table)) {
+    if (widths || !varied_key(source.table).empty()) {
       return NoHead{"a section or material that varies along the strand",
                     "leave out widths, and the keys that end with _along"};
     }

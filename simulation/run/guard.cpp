@@ -157,8 +157,7 @@ Points Guard::points_of(const GuardedStrand& strand, std::size_t first) {
   const auto part = [&](const std::vector<double>& all) {
     return In(all).subspan(3 * first, 3 * count);
   };
-  return {strand.points(), part(x_),          part(u_),
-          part(tangent_),  strand.lumps.mass, strand.lumps.length};
+  return strand.lumps.points(part(x_), part(u_), part(tangent_));
 }
 
 /// Transforms from the world's frame to the clamp's; leaves the relative velocities in

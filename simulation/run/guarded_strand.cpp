@@ -12,8 +12,7 @@ namespace {
 /// Sum of the magnitudes of all uniform loads.
 double uniform_load(const GuardedStrand& strand) {
   const std::vector<double> zeros(3 * strand.rest.size());
-  const Points p{strand.points(),    zeros, zeros, zeros, strand.lumps.mass,
-                 strand.lumps.length};
+  const Points p = strand.lumps.points(zeros, zeros, zeros);
   std::vector<double> load(zeros.size());
   for (const auto& effect : strand.effects) {
     if (strand.uniform(*effect)) effect->add_load(0, p, load);
@@ -47,10 +46,13 @@ Lumps lumps(const Strand& strand) {
   Lumps all;
   all.mass.resize(strand.segments.size() + 1);
   all.length = all.mass;
+  all.arc = all.mass;
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& segment = strand.segments[i];
     const std::size_t start =
         segment.parent < 0 ? 0 : static_cast<std::size_t>(segment.parent) + 1;
+    all.arc[i + 1] = all.arc[start] + segment.length;
+    all.longest = std::max(all.longest, all.arc[i + 1]);
     for (const std::size_t end : {start, i + 1}) {
       all.length[end] += segment.length / 2;
       all.mass[end] += strand.material_of(segment).density * segment.section.area() *

@@ -19,6 +19,21 @@ constexpr double most_stretch = 0.5;
 /// which are the material points of every strand model.
 struct Lumps {
   std::vector<double> mass, length;  // (points) kg, m
+  std::vector<double> arc;           // (points) arc length from the root, m
+  double longest = 0;                // arc length of the farthest tip, m
+
+  /// Returns the points of effects at these places, with these velocities and tangents (3
+  /// numbers each).
+  Points points(In x, In v, In tangent) const {
+    return {.count = static_cast<int>(mass.size()),
+            .x = x,
+            .v = v,
+            .tangent = tangent,
+            .mass = mass,
+            .length = length,
+            .arc = arc,
+            .longest = longest};
+  }
 };
 /// Computes the lumps of a strand at rest.
 Lumps lumps(const Strand& strand);

@@ -255,8 +255,7 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first,
     const Vec d = load3(&x[3 * to]) - load3(&x[3 * from]);
     store3((1 / norm(d)) * d, &tangent_[3 * i]);
   }
-  const Points p{static_cast<int>(points), x, u, tangent_, lumps_[k].mass,
-                 lumps_[k].length};
+  const Points p = lumps_[k].points(x, u, tangent_);
   std::vector<double> load(3 * points);
   std::size_t channel = 2;
   const auto read = [&](const auto& add_load) {

@@ -120,13 +120,14 @@ void change(const Strand& strand, Segment& segment, Change apply) {
 
 std::span<const Parameter> along_parameters() { return keys; }
 
-bool varies_along(const Table& table) {
-  return std::ranges::any_of(
+std::string_view varied_key(const Table& table) {
+  const auto given = std::ranges::find_if(
       factors, [&](const char* key) { return !table.values().numbers(key).empty(); });
+  return given == factors.end() ? std::string_view() : *given;
 }
 
 void vary_along(const Table& table, Strand& strand) {
-  if (!varies_along(table)) return;
+  if (varied_key(table).empty()) return;
   std::vector<Along<1>> along;
   for (const char* key : factors) along.emplace_back(table, key);
   const double length = strand.length();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "models/strand/strand.h"
 #include "simulation/table/table.h"
@@ -12,8 +13,9 @@ namespace tress::simulation {
 /// linear between rows and constant beyond them.
 std::span<const Parameter> along_parameters();
 
-/// Returns whether the table gives a section or a material that varies along a strand.
-bool varies_along(const Table& table);
+/// Returns the first key by which the table varies section or material along a strand;
+/// empty: there is none.
+std::string_view varied_key(const Table& table);
 
 /// Sets section and material of all segments by the table, each to the values at its
 /// middle. Internal friction varies as the mean bending stiffness, so that the damping

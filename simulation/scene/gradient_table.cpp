@@ -142,10 +142,20 @@ class Finder {
   }
 
   const Strand& first() const { return scene_.strands.front(); }
+  static bool varies_radius(const StrandSource& source) {
+    const Parameters& p = source.table.values();
+    return !p.numbers("radius_along").empty() ||
+           (source.file && p.word("widths") == "file");
+  }
 
   bool of_strand(std::string_view name, std::vector<SceneParameter>& to) const {
     const auto found = std::ranges::find(of_strands, name, &OfStrand::name);
     if (found == std::end(of_strands)) return false;
+    for (const StrandSource& source : scene_.tables->sources) {
+      if (name != "radius_m" || !varies_radius(source)) continue;
+      refuse(name, "radius_along or the widths of a file vary the radius",
+             "leave out one of them");
+    }
     for (const Strand& strand : scene_.strands) {
       if (found->value(strand) > 0) continue;
       refuse(name, "it is 0, where a change has no two sides", "give it a small value");

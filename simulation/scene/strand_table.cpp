@@ -248,11 +248,9 @@ void refuse_grading(const Table& table, const std::string& other) {
 }
 
 void refuse_varied(const Table& table, const std::string& other) {
-  refuse_if(
-      varies_along(table),
-      "a section or material that varies along the strand cannot be combined with " +
-          other,
-      table.place(), "leave out one of them");
+  const std::string_view key = varied_key(table);
+  refuse_if(!key.empty(), std::string(key) + " cannot be combined with " + other,
+            key.empty() ? table.place() : table.place(key), "leave out one of them");
 }
 
 }  // namespace tress::simulation

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "contract/input_error.h"
@@ -99,7 +100,14 @@ std::string value_text(const Parameter& p, const toml::node& node,
     return beside_scene(text, file);
   }
   if (p.rows && node.is_string()) {
-    return rows_of_file(p, beside_scene(printable(scalar_text(node)), file));
+    const std::string name = printable(scalar_text(node)),
+                      rows = beside_scene(name, file);
+    std::error_code error;
+    refuse_if(!std::filesystem::is_regular_file(rows, error),
+              fmt::format("{}: there is no file '{}'", p.name, name),
+              place_of(node.source(), file),
+              "name a file of rows relative to the scene's folder, or give a list");
+    return rows_of_file(p, rows);
   }
   if (p.rows) return rows_text(p, node, file);
   return p.components > 1 ? tuple_text(p, node, file) : number_text(p, node, file);

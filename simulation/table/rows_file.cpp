@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <optional>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -14,32 +15,38 @@ namespace tress::simulation {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
-constexpr std::string_view between = " \t\r,;";
+constexpr std::string_view blanks = " \t\r", separators = ",;";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-std::vector<std::string_view> words_of_line(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t from = line.find_first_not_of(between); from < line.size();) {
-    const std::size_t to = std::min(line.find_first_of(between, from), line.size());
-    std::string_view word = line.substr(from, to - from);
-    if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
-    words.push_back(word);
-    from = line.find_first_not_of(between, to);
+/// The cells of a line: between commas or semicolons, and between blanks.
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  bool empty = false;  // whether a separator came last, after which a cell is due
+  for (std::size_t from = 0; from < line.size();) {
+    const char c = line[from];
+    if (blanks.find(c) != blanks.npos) {
+      ++from;
+    } else if (separators.find(c) != separators.npos) {
+      if (empty || cells.empty()) cells.emplace_back();
+      empty = true;
+      ++from;
+    } else {
+      const std::size_t to = std::min(line.find_first_of(" \t\r,;", from), line.size());
+      std::string_view cell = line.substr(from, to - from);
+      if (cell.size() > 1 && cell.front() == '+') cell.remove_prefix(1);
+      cells.push_back(cell);
+      empty = false;
+      from = to;
+    }
   }
-  return words;
+  if (empty) cells.emplace_back();
+  return cells;
 }
 
 bool is_number(std::string_view word) {
   double x = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
-/// The first word of a line that is not a number.
-std::optional<std::string_view> stranger(const std::vector<std::string_view>& words) {
-  for (const std::string_view word : words) {
-    if (!is_number(word)) return word;
-  }
-  return {};
+  return error == std::errc() && end == word.data() + word.size() && std::isfinite(x);
 }
 
 }  // namespace
@@ -50,28 +57,32 @@ std::string rows_of_file(const Parameter& p, const std::string& file) {
   std::string text;
   bool header = false;
   std::size_t number = 0;
-  for (std::size_t from = 0; from < all.size();) {
+  for (std::size_t from = all.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+       from < all.size();) {
     const std::size_t to = std::min(all.find('\n', from), all.size());
-    const std::vector<std::string_view> words =
-        words_of_line(std::string_view(all).substr(from, to - from));
+    const auto cells = cells_of(std::string_view(all).substr(from, to - from));
     from = to + 1;
     ++number;
-    if (words.empty() || words.front().starts_with('#')) continue;
+    if (cells.empty() || cells.front().starts_with('#')) continue;
     const std::string where = fmt::format("{}:{}", file, number);
-    if (const auto bad = stranger(words)) {
-      if (text.empty() && !header) {
-        header = true;
-        continue;
-      }
-      throw InputError(fmt::format("'{}' is not a number", printable(std::string(*bad))),
-                       where, "give rows of numbers");
+    const auto numbers = std::ranges::count_if(cells, is_number);
+    if (numbers == 0 && text.empty() && !header) {
+      header = true;
+      continue;
+    }
+    for (const std::string_view cell : cells) {
+      if (is_number(cell)) continue;
+      throw InputError(cell.empty()
+                           ? std::string("a cell is empty")
+                           : fmt::format("'{}' is not a number", printable(cell)),
+                       where, "give rows of finite numbers");
     }
     refuse_if(
-        words.size() != count,
-        fmt::format("a row of {} numbers where {} has {}", words.size(), p.name, count),
+        cells.size() != count,
+        fmt::format("a row of {} numbers where {} has {}", cells.size(), p.name, count),
         where, fmt::format("give rows of {}: {}", count, p.help));
     if (!text.empty()) text += ';';
-    text += fmt::format("{}", fmt::join(words, ","));
+    text += fmt::format("{}", fmt::join(cells, ","));
   }
   refuse_if(text.empty(), fmt::format("no row of {}", p.name), file,
             fmt::format("give a row of {} numbers in each line", count));

@@ -203,14 +203,15 @@ TEST(Along, NaturalCurvatureFollowsItsRows) {
 TEST(Along, RefusesWhatIsNoTable) {
   const struct {
     const char *keys, *reason;
-  } bad[] = {
-      {"radius_along = [[0.5, 1], [0.2, 1]]", "not in order along the strand"},
-      {"radius_along = [[0, 1], [2, 1]]", "a row at 2 of the length"},
-      {"density_along = [[0, 1], [0.5, 0], [1, 0]]", "density_along is 0"},
-      {"radius_along = [[0, 1]]\nmesh = \"rest\"", "cannot be combined with cuts"},
-      {"modulus_along = [[0, 1]]\ntolerance_m = 1e-3", "combined with a tolerance"},
-      {"shape = \"along\"\ndarboux_along = []", "has no rows"},
-      {"darboux_along = [[0, 0, 1, 0]]", "darboux_along"}};
+  } bad[] = {{"radius_along = [[0.5, 1], [0.2, 1]]", "not in order along the strand"},
+             {"radius_along = [[0, 1], [2, 1]]", "a row at 2 of the length"},
+             {"density_along = [[0, 1], [0.5, 0], [1, 0]]", "density_along is 0"},
+             {"radius_along = [[0, 1]]\nmesh = \"rest\"",
+              "radius_along cannot be combined with"},
+             {"modulus_along = [[0, 1]]\ntolerance_m = 1e-3",
+              "modulus_along cannot be combined with a tolerance"},
+             {"shape = \"along\"\ndarboux_along = []", "has no rows"},
+             {"darboux_along = [[0, 0, 1, 0]]", "darboux_along"}};
   for (const auto& [keys, reason] : bad) {
     const std::string said = refusal([&] { scene_of(text_of("super_helix", 4, keys)); });
     EXPECT_NE(said.find(reason), std::string::npos) << keys << ": " << said;
@@ -323,13 +324,14 @@ TEST(Widths, OfAHairFileAreThoseOfItsPointsOrItsHeader) {
 
 TEST(Widths, AreRefusedWhereThereAreNone) {
   const auto said = [](const FromFile& file) { return refusal([&] { file.scene(); }); };
-  EXPECT_NE(said({".usda", usda("")}).find("the file has no widths"), std::string::npos);
-  EXPECT_NE(said({".hair", hair({}, 0)}).find("the file has no widths"),
+  EXPECT_NE(said({".usda", usda("")}).find("the file has no widths that can be read"),
+            std::string::npos);
+  EXPECT_NE(said({".hair", hair({}, 0)}).find("the file has no widths that can be read"),
             std::string::npos);
   EXPECT_NE(said({".hair", hair({1e-4F, -1e-4F, 1e-4F}, 0)}).find("width -0.0001 m"),
             std::string::npos);
   EXPECT_NE(said({".usda", usda("float[] widths = [1e-4, 1e-4, 1e-4]\n")})
-                .find("the file has no widths"),
+                .find("the file has no widths that can be read"),
             std::string::npos);
 }
 

@@ -94,6 +94,7 @@ TEST(MovingBody, ReadsItsRowsFromAFile) {
     std::ofstream(folder / name) << text;
   };
   write("poses.csv",
+        "\xEF\xBB\xBF"
         "t,x,y,z,about_x,about_y,about_z\n# a comment\n0,0,0,0,0,0,0\n\n0.1 0.01 0 0 0 0 "
         "+0.3\r\n");
   const auto end = [&](const std::string& moves) {
@@ -120,6 +121,10 @@ TEST(MovingBody, ReadsItsRowsFromAFile) {
   } bad[] = {{"0,0,0,0,0,0,0\n1,0,0\n", "a row of 3 numbers where poses has 7"},
              {"0,0,0,0,0,0,0\n1,0,0,x,0,0,0\n", "'x' is not a number"},
              {"t,x\nt,x\n", "'t' is not a number"},
+             {"0,0,0,0,0,0,O\n", "'O' is not a number"},
+             {"0,0,0,0,0,,0\n", "a cell is empty"},
+             {"0,0,0,0,0,0,0,\n", "a cell is empty"},
+             {"0,0,0,0,0,0,nan\n", "'nan' is not a number"},
              {"# nothing\n", "no row of poses"}};
   for (const auto& [text, reason] : bad) {
     write("poses.csv", text);
