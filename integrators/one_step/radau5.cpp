@@ -1,7 +1,7 @@
 #include <cmath>
 #include <memory>
 
-#include "contract/input_error.h"
+#include "integrators/control/controlled_stage.h"
 #include "integrators/entry.h"
 #include "integrators/one_step/one_step.h"
 #include "integrators/one_step/radau.h"
@@ -21,10 +21,7 @@ std::unique_ptr<Integrator> make_radau5(System& system, const Options& options) 
   if (options.tolerance == 0) {
     return std::make_unique<FixedOneStep<RadauStages>>(system, options);
   }
-  if (options.formulation == Formulation::index3) {
-    throw InputError("no error control on index 3", "position_tol_rel",
-                     "use projection, or a fixed step");
-  }
+  check_controlled(system, options);
   Options within = options;
   within.newton_tolerance = newton_part * options.tolerance;
   within.refresh = Refresh::every_step;
