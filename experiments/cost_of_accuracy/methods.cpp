@@ -105,7 +105,9 @@ std::vector<Method> methods(const Scene& given, const MethodChoice& choice) {
       const auto system = on_scene(model, options, given);
       if (system == nullptr) continue;
       for (const IntegratorEntry& entry : integrator_catalogue()) {
-        if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
+        const bool plain =
+            options.empty() && !choice.plain.empty() && wanted(choice.plain, entry.id);
+        if (entry.adaptive || !(plain || wanted(choice.integrators, entry.id))) continue;
         add({{&model, options, std::string(entry.id)}}, *system, given, choice, all);
       }
     }
