@@ -48,7 +48,9 @@ struct IntegratorEntry {
   bool tangent = false;           // solves with the model's tangent
   bool replaces_steps = false;    // backward Euler replaces steps (Stats::replaced)
   int stages = 0;                 // solutions by Newton's method in a step (Stage)
-  Contact contact = Contact::regular;   // contact forces that it can drive
+  Contact contact = Contact::regular;  // contact forces that it can drive
+  /// Contact forces that it can drive with Options::tolerance, if error_controlled.
+  Contact controlled_contact = contact;
   std::vector<Treatment> formulations;  // supported formulations
   std::vector<Gap> gaps = {};           // unsupported formulations with a reason
   /// Options of its own, read by own_options(); methods of a family share their list.

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "contract/constants.h"
-#include "contract/input_error.h"
+#include "integrators/control/controlled_stage.h"
 #include "integrators/control/error_controlled.h"
 #include "integrators/fixed_step.h"
 #include "linear/vector_ops.h"
@@ -38,67 +38,17 @@ class FixedEsdirk final : public FixedStep {
   EsdirkStages stages_;
 };
 
-/// Newton's tolerance over that of the run. Stages enter the estimate with weights of
-/// order one, so that a hundredth of the tolerance is not seen in it. Where a strand
-/// sticks, where multipliers hold it and where stretch drives the next step, more is
-/// seen.
-constexpr double newton_part = 1e-2;
-/// Of smooth equations in reduced coordinates, whose stiff part is linear and is in the
-/// matrix: what an iteration leaves is slow motion. Ten times as much as a hundredth
-/// makes a strand gain energy that swings undamped for 150 s (million_steps of
-/// hard_cases).
-constexpr double smooth_newton_part = 0.03;
-/// Of exact contact: what iterations leave lifts a strand off a stiff surface, where it
-/// has no friction. On a slope at 97 % of the friction, esdirk43 at 1e-3 takes 32 steps
-/// and moves by 10 um with this, 82 steps and 163 um with 1e-2 (super_helix, compliant).
-constexpr double contact_newton_part = 1e-3;
-/// Tolerance from which a matrix is out of date after the first correction, because the
-/// corrections of points are large. New matrices in every iteration take a tenth less
-/// time for tr_bdf2 at 1e-2 and a tenth more at 2e-3. (der on scenes/accuracy.)
-constexpr double loose_tolerance = 3e-3;
-/// Below, after a correction that turns an edge by so much: a fifth less work for
-/// esdirk43 at 1e-3 than without. A tenth of a radian saves another tenth, but ends
-/// iterations so early that a rod that swings undamped for 150 s gains energy
-/// (million_steps of hard_cases).
-constexpr double turned_edge = 0.5;
 /// A jump of velocities below this part of what the tolerance sees needs no step of its
 /// own.
 constexpr double unseen_part = 0.1;
-
-/// Coordinates of constant mass are those of points.
-bool of_points(Dynamics& dynamics) { return dynamics.system().traits().constant_mass; }
-
-bool smooth(Dynamics& dynamics) {
-  return !of_points(dynamics) && dynamics.m() == 0 &&
-         dynamics.system().contact_form() == nullptr;
-}
-
-Options with_control(Dynamics& dynamics, Options options) {
-  options.newton_tolerance =
-      (smooth(dynamics)                              ? smooth_newton_part
-       : dynamics.system().contact_form() != nullptr ? contact_newton_part
-                                                     : newton_part) *
-      options.tolerance;
-  options.refresh = of_points(dynamics) && options.tolerance >= loose_tolerance
-                        ? Refresh::every_iteration
-                        : Refresh::every_step;
-  return options;
-}
-
-/// Newton's tolerance has its margin already.
-Stage::Ending ending(Dynamics& dynamics) {
-  Stage::Ending ending{.remaining = 1, .learns = smooth(dynamics)};
-  if (of_points(dynamics)) ending.turned = turned_edge;
-  return ending;
-}
 
 class ControlledEsdirk final : public ErrorControlled {
  public:
   ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
                         table.share * std::pow(options.tolerance, table.power)),
-        stages_(dynamics(), with_control(dynamics(), options), table,
-                ending(dynamics())) {}
+        stages_(dynamics(), controlled_options(dynamics(), options), table,
+                controlled_ending(dynamics())) {}
 
  private:
   Status try_step(const State& from, double h, Effort effort, State& to, Out error_q,
@@ -135,14 +85,6 @@ EsdirkStages::EsdirkStages(Dynamics& dynamics, const Options& options,
       place_(slides_.front()),
       a_before_(q_bar_) {}
 
-void EsdirkStages::look_back(double t) noexcept {
-  constexpr double rounding = 1e-6;
-  if (h_ > 0 && std::abs(t - t_) <= rounding * h_) return;  // the same step, shorter
-  const bool goes_on = h_ > 0 && std::abs(t - t_ - h_) <= rounding * h_;
-  h_before_ = goes_on ? h_ : 0;
-  if (goes_on) a_before_.swap(a_[0]);
-}
-
 /// By the polynomial through the last stages, of which the start of the step before is
 /// one.
 void EsdirkStages::guess(std::size_t i, double h) noexcept {
@@ -155,8 +97,8 @@ void EsdirkStages::guess(std::size_t i, double h) noexcept {
   for (std::size_t j = i; j-- > 0 && count < guessed_from;) {
     nodes[count++] = {table_.c(j), &a_[j]};
   }
-  if (count < guessed_from && h_before_ > 0) {
-    nodes[count++] = {-h_before_ / h, &a_before_};
+  if (count < guessed_from && steps_.before() > 0) {
+    nodes[count++] = {-steps_.before() / h, &a_before_};
   }
   std::ranges::fill(a_[i], 0.0);
   for (std::size_t j = 0; j < count; ++j) {
@@ -176,14 +118,12 @@ bool EsdirkStages::stopped(double t, In q, In v, double gently) noexcept {
 
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
                           Effort effort) noexcept {
-  look_back(t);
+  if (steps_.begin(t, h) == StepSequence::Start::next) a_before_.swap(a_[0]);
   stage_.leave(t, q);
   stage_.places(t, q, v, place_);
   stage_.slides(t, q, v, slides_[0]);
   impact_ = stopped(t, q, v, gently);
   if (impact_) return damped(t, h, q, v);
-  t_ = t;
-  h_ = h;
   std::ranges::copy(v, v_[0].begin());
   std::ranges::copy(a, a_[0].begin());
   std::ranges::copy(lambda, lambda_.begin());
@@ -249,10 +189,7 @@ void EsdirkStages::difference(double h, Out dq, Out dv) const noexcept {
 std::unique_ptr<Integrator> make_esdirk(const EsdirkTable& table, System& system,
                                         const Options& options) {
   if (options.tolerance > 0) {
-    if (options.formulation == Formulation::index3) {
-      throw InputError("no error control on index 3", "position_tol_rel",
-                       "use projection, or a fixed step");
-    }
+    check_controlled(system, options);
     return std::make_unique<ControlledEsdirk>(system, options, table);
   }
   return std::make_unique<FixedEsdirk>(system, options, table);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "integrators/control/step_sequence.h"
 #include "integrators/stage/stage.h"
 
 namespace tress::integrators {
@@ -63,7 +64,7 @@ class EsdirkStages {
   Status backward_euler(double t, double h, In q, In v) noexcept;
 
   /// The next step does not guess from the last one.
-  void forget() { h_ = 0; }
+  void forget() { steps_.forget(); }
 
   // The end of the last step.
   /// Returns the coordinates at the end of the last step.
@@ -82,8 +83,6 @@ class EsdirkStages {
   bool stopped(double t, In q, In v, double gently) noexcept;
   Status damped(double t, double h, In q, In v) noexcept;
   std::size_t last() const { return table_.stages - 1; }
-  /// Whether the last step ended, or began, where this one begins.
-  void look_back(double t) noexcept;
   void guess(std::size_t i, double h) noexcept;
 
   const EsdirkTable& table_;
@@ -93,10 +92,9 @@ class EsdirkStages {
   std::vector<double> q_bar_, v_bar_, lambda_;
   std::vector<std::vector<double>> slides_;  // of the stages, along bodies
   std::vector<double> place_;                // of the step's start
-  double t_ = 0, h_ = 0;                     // of the last step, h_ = 0: none
-  double h_before_ = 0;                      // of the step before, 0: none
-  std::vector<double> a_before_;             // at its start
-  bool impact_ = false;                      // the last step was that of an impact
+  StepSequence steps_;
+  std::vector<double> a_before_;  // at its start
+  bool impact_ = false;           // the last step was that of an impact
 };
 
 /// The method with a fixed step, or with Options::tolerance. `table` must outlive it.

@@ -232,6 +232,10 @@ void Finalists::replace_choices(const Trial& winner, double target, BestRuns& be
   add("model", [&](const Method& method) { return !model(method); });
   add("integrator",
       [&](const Method& method) { return model(method) && !integrator(method); });
+  for (const std::string_view id : always_shown) {
+    const auto own = [id](const Method& method) { return method.integrator == id; };
+    if (id != won.integrator && std::ranges::any_of(methods_, own)) add(id, own);
+  }
   for (const std::string_view choice : choices_of(*won.model)) {
     if (!varied(won, choice)) continue;
     add(choice, [&](const Method& method) {

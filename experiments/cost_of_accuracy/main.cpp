@@ -188,6 +188,9 @@ StudyPlan plan_of(const CommandLine& line, const Settings& settings) {
     if (line.integrators.empty()) {
       plan.methods.integrators = {"linearly_implicit_euler", "implicit_midpoint",
                                   "linearly_implicit_midpoint", "tr_bdf2", "esdirk43"};
+      if (!plan.advise) {
+        plan.methods.plain.assign(std::begin(always_shown), std::end(always_shown));
+      }
     }
     plan.methods.refreshes = {Refresh::every_step};
     plan.methods.fixed_steps = false;

@@ -76,8 +76,8 @@ void add(Method method, System& system, const Scene& given, const MethodChoice& 
   const auto usable = usable_formulations(entry, system);
   if (usable.empty()) return;
   method.formulation = usable.front();
-  const bool controls = entry.error_controlled && usable.front() != Formulation::index3 &&
-                        may_control(method);
+  const bool controls = entry.error_controlled && may_control(method) &&
+                        preferred_formulation(entry, system, 1) == usable.front();
   if (entry.stages == 0) {
     all.push_back(method);
   } else if (!controls || choice.fixed_steps) {
@@ -105,7 +105,9 @@ std::vector<Method> methods(const Scene& given, const MethodChoice& choice) {
       const auto system = on_scene(model, options, given);
       if (system == nullptr) continue;
       for (const IntegratorEntry& entry : integrator_catalogue()) {
-        if (entry.adaptive || !wanted(choice.integrators, entry.id)) continue;
+        const bool plain =
+            options.empty() && !choice.plain.empty() && wanted(choice.plain, entry.id);
+        if (entry.adaptive || !(plain || wanted(choice.integrators, entry.id))) continue;
         add({{&model, options, std::string(entry.id)}}, *system, given, choice, all);
       }
     }

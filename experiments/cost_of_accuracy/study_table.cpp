@@ -21,7 +21,8 @@ constexpr Column table_columns[] = {
      "cheapest run of one model with one integrator"},
     {"choice",
      "replaced choice, in kind without; elements: twice, dt_s: half (or the "
-     "tolerance that halves the steps)"},
+     "tolerance that halves the steps). radau5, rodas5p: the cheapest run with this "
+     "integrator"},
     {"target_error_rel", "target error"},
     {"budget_ms", "wall time allowed per frame, in kind budget"},
     {"rank", "1 winner, 2 runner-up; 1 as well where the two are tied"},

@@ -92,7 +92,14 @@ struct MethodChoice {
   /// When integrators that iterate rebuild their matrix.
   std::vector<Refresh> refreshes = {Refresh::every_iteration, Refresh::every_step,
                                     Refresh::when_slow};
+  /// Further integrators, tried with the default options of the models.
+  std::vector<std::string> plain = {};
 };
+
+/// Integrators whose cheapest run has a row of its own for each target error, in kind
+/// `without`. Other solver packages are known for these methods.
+inline constexpr std::string_view always_shown[] = {"radau5", "rodas5p"};
+
 std::vector<Method> methods(const Scene& given, const MethodChoice& choice);
 
 /// Methods that differ from `method` in this one option of the model and can represent

@@ -74,9 +74,20 @@ constexpr std::string_view usual[] = {"linearly_implicit_euler",
                                       "rk4"};
 constexpr std::size_t usual_quick = 6;  // the first of them
 
+/// Integrators with error control that are tried at fixed steps, and at tolerances where
+/// they are chosen: their steps are compared with those of methods without.
+constexpr std::string_view usually_by_step[] = {"bdf2", "generalized_alpha"};
+
 /// Whether the integrator is tried at fixed steps.
 bool by_step(const CommandLine& line, const IntegratorEntry& entry) {
-  return line.full || !entry.error_controlled;
+  return line.full || !entry.error_controlled ||
+         std::ranges::count(usually_by_step, entry.id) > 0;
+}
+
+/// Whether the integrator is tried at tolerances.
+bool by_tolerance(const CommandLine& line, const IntegratorEntry& entry) {
+  return entry.error_controlled && (line.full || !line.integrators.empty() ||
+                                    std::ranges::count(usually_by_step, entry.id) == 0);
 }
 
 std::vector<Pace> paces_of(const CommandLine& line, const Parameters& own,
@@ -141,7 +152,7 @@ std::vector<Pace> tried_paces(const CommandLine& line, std::string_view integrat
     if (!short_only) all = {{film}, {substep}};
     if (short_only || !line.quick) all.push_back({fine});
   }
-  if (!entry.error_controlled) return all;
+  if (!by_tolerance(line, entry)) return all;
   for (const double tolerance : {1e-2, usual_tolerance, 1e-4}) {
     if (line.quick && tolerance != usual_tolerance) continue;
     all.push_back({longest_step, tolerance});

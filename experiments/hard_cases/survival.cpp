@@ -29,9 +29,10 @@ std::string text(double x) {
 
 /// Why no formulation is supported: the reason for the most usual one.
 std::string objection(const IntegratorEntry& entry, System& system) {
-  return refusal(entry, system,
-                 system.layout().constraints > 0 ? Formulation::projection
-                                                 : Formulation::parametric);
+  std::string reason = refusal(entry, system,
+                               system.layout().constraints > 0 ? Formulation::projection
+                                                               : Formulation::parametric);
+  return reason.empty() ? "no error control with exact contact" : reason;
 }
 
 /// The reference's tips at one step; empty, with `why`, if there is none.

@@ -17,6 +17,10 @@ std::vector<Formulation> usable_formulations(const IntegratorEntry& entry,
 
 std::optional<Formulation> preferred_formulation(const IntegratorEntry& entry,
                                                  System& system, double tolerance) {
+  if (tolerance > 0 && system.contact_form() != nullptr &&
+      entry.controlled_contact == integrators::Contact::regular) {
+    return {};
+  }
   for (const Formulation each : usable_formulations(entry, system)) {
     if (tolerance == 0 || each != Formulation::index3) return each;
   }

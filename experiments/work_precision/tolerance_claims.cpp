@@ -23,8 +23,10 @@ struct ControlClaim {
 };
 
 constexpr ControlClaim claims[] = {
+    {strand_release.name, "bdf2"},
     {strand_release.name, "tr_bdf2"},
     {strand_release.name, "esdirk43"},
+    {strand_release.name, "generalized_alpha"},
     {swing.name, "tr_bdf2", 2.5,
      "the error of an undamped motion grows with time, and at order 2 falls as the "
      "tolerance to the power 5/6"},

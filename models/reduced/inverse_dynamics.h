@@ -127,10 +127,18 @@ class InverseDynamics {
   void derivatives(double t, double pos, double vel, InOut blocks) const {
     derivatives(t, pos, vel, blocks, [](const Effect&) { return true; });
   }
-  /// Writes derivatives() of the effects that are not viscous.
-  void placed_derivatives(double t, double pos, double vel, InOut blocks) const {
-    derivatives(t, pos, vel, blocks,
-                [](const Effect& effect) { return !effect.viscosity(); });
+  /// Subtracts vel times the drag per velocity of viscous effects from blocks (9 per
+  /// point) of -vel df/dv.
+  void subtract_viscous(double vel, InOut blocks) const {
+    for (const auto& effect : effects_) {
+      const auto viscosity = effect->viscosity();
+      if (!viscosity) continue;
+      for (std::size_t i = 0; i < mass_.size(); ++i) {
+        const double rate =
+            viscosity->per_length * length_[i] + viscosity->per_mass * mass_[i];
+        for (const std::size_t k : {0, 4, 8}) blocks[9 * i + k] -= vel * rate;
+      }
+    }
   }
   /// Writes derivatives() of the effects that couple no points.
   void uncoupled_derivatives(double t, double pos, double vel, InOut blocks) const {

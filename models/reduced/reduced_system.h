@@ -360,8 +360,10 @@ class ReducedSystem : public System,
   In loads(double t) override { return dynamics_.find_placed_loads(t); }
   In stiffness(double t, Weights w) override {
     if (!stiffened()) return {};
-    dynamics_.placed_derivatives(t, -w.pos, -w.vel, by_state_);
+    // Of all effects together; the sweeps have those of viscous ones.
+    dynamics_.derivatives(t, -w.pos, -w.vel, by_state_);
     make_semidefinite(by_state_);
+    dynamics_.subtract_viscous(w.vel, by_state_);
     return by_state_;
   }
 

@@ -158,7 +158,7 @@ TEST(StrandRuns, ByToleranceHaveTheTimeErrorThatWasAskedFor) {
               row.number("error_rel"));
     EXPECT_LE(row.number("error_over_tolerance"), 1);
   }
-  EXPECT_EQ(controlled, 12);  // four methods, three tolerances
+  EXPECT_EQ(controlled, 18);  // six methods, three tolerances
 }
 
 /// Index 3 has no error control: constraints are projected instead.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contract/forms/contact_form.h"
+#include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
 #include "models/effects/exact_body.h"
@@ -106,6 +107,17 @@ TEST_P(FallIntoCone, TakesFewerIterationsWithItsForces) {
     EXPECT_LE(first.contact_violation, 1e-6) << turn;
   }
   EXPECT_LT(3 * with_forces, 2 * by_penalties);
+}
+
+// Impacts make velocities jump, and a multistep formula would carry the jump on.
+TEST(Bdf2, HasNoErrorControlWithExactContact) {
+  const auto system = above_cone("der", 0);
+  Options options;
+  options.contact_tolerance = tolerance_of("der");
+  EXPECT_NO_THROW(integrators::make_integrator("bdf2", *system, options));
+  options.tolerance = 1e-3;
+  EXPECT_NO_THROW(integrators::make_integrator("tr_bdf2", *system, options));
+  EXPECT_THROW(integrators::make_integrator("bdf2", *system, options), InputError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, FallIntoCone,

@@ -146,6 +146,8 @@ _CHOICES = {
     "extrapolated": "extrapolation",
     "mesh": "cuts of elements",
     "refresh": "refresh of the matrix",
+    "radau5": "`radau5`",
+    "rodas5p": "`rodas5p`",
 }
 
 
