@@ -17,7 +17,8 @@ namespace {
 constexpr int order = 2;
 /// The estimate falls as h^3. With the power 3/2 of the tolerance, the error of a run is
 /// proportional to the tolerance (EsdirkTable::power). On strand_release of
-/// work_precision, this share leaves 0.05 to 0.44 of the tolerance (55 runs of 11 models).
+/// work_precision, this share leaves 0.05 to 0.44 of the tolerance (55 runs of 11
+/// models).
 constexpr double estimate_power = 3, share = 1.8;
 /// Impacts make velocities jump, and the formula would carry the jump on.
 constexpr Contact controlled_contact = Contact::regular;
