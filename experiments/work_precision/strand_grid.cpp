@@ -23,6 +23,11 @@ Ladder ladder(const IntegratorEntry& entry, bool implicit, const CommandLine& li
   return {loosest, 2, 0.5, (implicit ? 8 : 4) + more};
 }
 
+/// Models by which strands show an integrator. Constraints that hold lengths come before
+/// forces, which explicit and position-based methods resolve badly.
+constexpr std::string_view first_models[] = {"super_helix", "inextensible_strand",
+                                             "mass_spring", "corde"};
+
 /// Whether step (s) and elements are balanced: both errors are of order 2, so the
 /// cheapest way to a total error keeps step times elements between fixed bounds.
 bool balanced(double step, int elements) {
@@ -38,13 +43,66 @@ class Grid {
   std::vector<StrandCase> cases() {
     if (keeps(settings_, "scene", swing.name)) {
       add_swing_in_time();
+      add_others_to_swing();
       add_swing_in_all();
     }
-    if (keeps(settings_, "scene", strand_release.name)) add_release();
+    if (keeps(settings_, "scene", strand_release.name)) {
+      add_release();
+      add_every_method_to_release();
+    }
     return std::move(all_);
   }
 
  private:
+  /// The first strand model that the integrator can drive, in the order of first_models;
+  /// null: none.
+  const ModelEntry* first_driven(const IntegratorEntry& entry) const {
+    std::vector<const ModelEntry*> models = strand_models();
+    std::ranges::stable_sort(models, {}, [](const ModelEntry* model) {
+      return std::ranges::find(first_models, model->id) - std::begin(first_models);
+    });
+    for (const ModelEntry* model : models) {
+      if (!wanted(line_.models, model->id)) continue;
+      const auto system = model->make(
+          strand_parameters_of(swing, settings_, *model, controlled_elements));
+      if (preferred_formulation(entry, *system)) return model;
+    }
+    return nullptr;
+  }
+
+  /// Integrators without a row of their own, with the defaults of their first model.
+  void add_others_to_swing() {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
+      const bool listed =
+          std::ranges::any_of(methods, [&entry, this](const Variation& m) {
+            return m.integrator == entry.id && (line_.full || !m.full_only);
+          });
+      const ModelEntry* model = listed ? nullptr : first_driven(entry);
+      if (model == nullptr) continue;
+      const Body body{model->id, has_word(*model, "modes", "bend") ? "bend" : "",
+                      first_word(*model, "solver")};
+      const Variation m{
+          entry.id, entry.tangent ? first_word(*model, "jacobian") : std::string_view()};
+      for (const int elements : counts({simulator_elements})) {
+        add_swing("time", body, m, elements, 1);
+      }
+    }
+  }
+
+  /// Every integrator on the first model that it can drive, for the order in time.
+  void add_every_method_to_release() {
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
+      const ModelEntry* model = first_driven(entry);
+      if (model == nullptr) continue;
+      for (const int elements : counts({controlled_elements})) {
+        StrandCase c = released(*model, entry.id, "time", elements);
+        c.adaptive = entry.adaptive;
+        if (!entry.tangent) c.jacobian = "";
+        add(c, ladder(entry, entry.tangent, line_));
+      }
+    }
+  }
+
   void add_swing_in_time() {
     for (const int elements : counts({simulator_elements})) {
       for (const Variation& m : methods) add_swing("time", principal, m, elements, 1);

@@ -82,8 +82,8 @@ Parameters strand_parameters_of(const FollowedStrand& strand, const Settings& se
                                 const ModelEntry& model, int elements);
 
 /// Returns the rows that the command line and its settings select, without those whose
-/// model the integrator refuses. They are the swing by every integrator, and every strand
-/// model on the released hair against the continuous rod.
+/// model the integrator refuses. They are the swing and the released hair by every
+/// integrator, and every strand model on the released hair against the continuous rod.
 std::vector<StrandCase> strand_cases(const CommandLine& line, const Settings& settings);
 
 /// The rows of strand_cases(): error of the tip, root mean square over the run, against

@@ -15,6 +15,9 @@ constexpr std::size_t fitted_points = 4;
 // Errors this close to the reference's own, or to rounding, do not indicate the order.
 constexpr double rounding = 1e-12;
 
+/// Largest gap of a reference that gives an order: 10^-5.5, more than five digits.
+constexpr double largest_gap = 3.2e-6;
+
 struct Point {
   double size, error;  // of a step or an element
 };
@@ -64,6 +67,7 @@ void add_orders(std::vector<Row>& rows) {
   std::map<std::string, std::vector<Point>> series;
   for (const Row& row : rows) {
     if (!fitted(row) || row.text("below_reference") == "true") continue;
+    if (row.has("reference_gap") && row.number("reference_gap") > largest_gap) continue;
     const double x = is_total(row) ? 1 / row.number("elements") : row.number("dt_s");
     if (row.number("error_rel") > rounding) {
       series[series_of(row)].push_back({x, row.number("error_rel")});
