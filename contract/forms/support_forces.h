@@ -13,12 +13,13 @@ class SupportForces {
   virtual ~SupportForces() = default;
   /// Returns the number of supports; fixed for life.
   virtual std::size_t supports() const = 0;
-  /// Computes the force that each support exerts on the strand, (3 supports), N, world
-  /// components. The forces keep the points on their paths at this state, and are the
-  /// multipliers of g'' = 0.
-  virtual Status support_forces(double t, In q, In v, Out forces) = 0;
-  /// Writes the places (m) and the velocities (m/s) of the supports, (3 supports) each.
-  virtual void support_motion(double t, Out x, Out u) const = 0;
+  /// Computes the force (N) and the moment about the held point (N m) that each support
+  /// exerts on the strand, (3 supports) each, world components. They keep points and
+  /// sections on their paths at this state, and are the multipliers of g'' = 0.
+  virtual Status support_forces(double t, In q, In v, Out forces, Out moments) = 0;
+  /// Writes the places (m), the velocities (m/s) and the angular velocities (rad/s) of
+  /// the supports, (3 supports) each.
+  virtual void support_motion(double t, Out x, Out u, Out omega) const = 0;
 };
 
 /// Returns the support forces of a system; null if it has no supports.

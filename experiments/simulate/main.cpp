@@ -260,8 +260,9 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
        control_in_words(scene, run), pictures_in_words(run), came_to_its_end ? "" : "; ",
        run.reason, options.stem);
   if (!run.supports.empty()) {
-    tell("simulate: {}: forces of supports on their strands at {:.9g} s: {}\n",
-         scene.name, run.simulated_s, supports_in_words(run));
+    tell(
+        "simulate: {}: forces and moments of supports on their strands at {:.9g} s: {}\n",
+        scene.name, run.simulated_s, supports_in_words(run));
   }
   for (const std::string& warning : warnings(scene, run)) {
     tell("simulate: warning: {}: {}\n", scene.name, warning);

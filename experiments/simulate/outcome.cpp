@@ -265,10 +265,15 @@ std::string contact_in_words(const Stats& work) {
 
 std::string supports_in_words(const SceneRun& run) {
   std::string words;
-  for (const NamedForce& support : run.supports) {
-    const Vec& f = support.force;
-    words += fmt::format("{}{} ({:.4g}, {:.4g}, {:.4g}) N", words.empty() ? "" : ", ",
-                         support.name, f.x, f.y, f.z);
+  for (const NamedLoad& support : run.supports) {
+    words += fmt::format("{}{}", words.empty() ? "" : ", ", support.name);
+    const auto add = [&](const std::optional<Vec>& load, const char* unit) {
+      if (!load) return;
+      words +=
+          fmt::format(" ({:.4g}, {:.4g}, {:.4g}) {}", load->x, load->y, load->z, unit);
+    };
+    add(support.force, "N");
+    add(support.moment, "N m");
   }
   return words;
 }

@@ -128,9 +128,10 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     run.rejected += static_cast<long>(frame.series.back());
   }
   for (const Frame3d& frame : recording.frames()) {
-    run.supports = readout.support_forces(frame);
-    for (const NamedForce& support : run.supports) {
-      run.support_force = std::max(run.support_force, norm(support.force));
+    run.supports = readout.support_loads(frame);
+    for (const NamedLoad& support : run.supports) {
+      if (!support.force) continue;
+      run.support_force = std::max(run.support_force, norm(*support.force));
     }
   }
   if (run.lost > 0 && run.end != SceneRun::End::failed) {

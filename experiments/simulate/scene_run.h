@@ -83,8 +83,8 @@ struct SceneRun {
   std::string not_smooth = {};  // World::not_smooth(), first that was seen
   std::size_t lost = 0;         // strands that failed and stay
   std::optional<HeadOutcome> head = {};
-  std::vector<NamedForce> supports = {};  // their forces in the last frame
-  double support_force = 0;               // N, largest in a frame
+  std::vector<NamedLoad> supports = {};  // their loads in the last frame
+  double support_force = 0;              // N, largest in a frame
 };
 
 /// Runs a scene and writes series, pictures, and during the run the states from which a

@@ -37,6 +37,10 @@ class DerElasticity final : public Elasticity,
   double power(const Placement& p) noexcept override;
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
+  std::optional<EndTurn> end_turn(bool tip) const override {
+    const std::size_t edge = tip ? edge_data_.size() - 1 : 0;
+    return EndTurn{static_cast<int>(angles_ + edge), edge_data_[edge].reference};
+  }
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
   void carry(InOut z, InOut rate, InOut second) const override;
   void reset() override;

@@ -68,6 +68,14 @@ class StrainForm {
                       double* /*q*/) noexcept {}
 };
 
+/// Coordinates that turn the section at an end of a strand. The direction e from its
+/// first node to the second, or from the last but one to the last, turns it as well.
+struct EndTurn {
+  int angle = -1;       // index in z of an angle about e (rod_edge.h); -1: none
+  Frame reference{};    // of the angle, on this side of an accepted step
+  int quaternion = -1;  // index in z of four numbers that are the frame; -1: none
+};
+
 class StrandElimination;  // models/maximal/strand_elimination.h
 
 /// Internal forces of a strand: an elastic energy E(z, clamp) and friction. Groups are
@@ -94,6 +102,9 @@ class Elasticity {
   virtual double stretch(const Placement&) noexcept { return 0; }
   /// Frame of the last edge, or of the section at the tip. Empty: there is none.
   virtual std::optional<Frame> end_frame(const Placement&) noexcept { return {}; }
+  /// Returns the coordinates that turn the section at the tip, or at a free root. Empty:
+  /// not known.
+  virtual std::optional<EndTurn> end_turn(bool /*tip*/) const { return {}; }
   /// After an accepted step: may move reference frames, and with them z and its rate.
   /// True if the equations changed.
   virtual bool rebase(const RootPose& /*root*/, InOut /*z*/, InOut /*rate*/) {

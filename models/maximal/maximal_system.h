@@ -14,6 +14,7 @@
 #include "contract/forms/material_points.h"
 #include "contract/forms/moving_history.h"
 #include "contract/forms/point_accelerations.h"
+#include "contract/forms/sections.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/forms/stress_form.h"
 #include "contract/forms/transposed_form.h"
@@ -52,7 +53,9 @@ struct MaximalStrand {
   std::vector<double> edges;  // m, between nodes at rest; none: Elasticity::stretch
   RootMotion root;            // motion of the root
   std::unique_ptr<Elasticity> elasticity;  // internal forces
-  Frame to_tip;     // from Elasticity::end_frame to the section at the tip, at rest
+  // From the frame of the first edge to the section at the root, and from that of the
+  // last one (Elasticity::end_frame) to the section at the tip, at rest.
+  Frame to_root, to_tip;
   Effects effects;  // effects on the mass points
   /// Constraints on q: particles are the nodes that are not prescribed, parameters the
   /// other coordinates.
@@ -76,6 +79,7 @@ class MaximalSystem final : public System,
                             public NaturalStrains,
                             public TransposedForm,
                             public PointAccelerations,
+                            public Sections,
                             private SparseForm,
                             private ExplicitForm,
                             private ComplianceForm,
@@ -125,6 +129,12 @@ class MaximalSystem final : public System,
 
   void accelerations(double t, In q, In v, In a, Out x) override;
 
+  /// Returns the kind of the tip, and of a free root; others have no section.
+  Kind section_kind(int point) const override;
+  std::vector<int> section_coordinates(int point) const override;
+  SectionMotion section(double t, In q, In v, In a, int point) override;
+  void add_moment(double t, In q, int point, const Vec& moment, InOut b) override;
+
   void set_natural(In values) override {
     strand_.elasticity->natural_strains()->set_natural(values);
   }
@@ -164,6 +174,11 @@ class MaximalSystem final : public System,
   std::optional<std::array<double, 9>> end_frame(double t, In q) override;
 
   std::size_t held() const { return strand_.clamped ? 3 : 0; }
+  std::optional<EndTurn> end_turn(int point) const;
+  /// Index in z of the first of the two nodes at an end.
+  std::size_t first_of_end(int point) const {
+    return point == 0 ? 0 : 3 * (static_cast<std::size_t>(strand_.nodes) - 2);
+  }
   Mean mean_of(const NodeMean& at) const;  // over the coordinates in q
   void build_pattern();
   bool diagonal_mass() const;

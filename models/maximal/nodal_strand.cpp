@@ -70,6 +70,9 @@ NodalStrand::NodalStrand(const Strand& strand, const std::string& model,
   const Frame& last = natural.back();
   const Frame tip = joints(strand, ShapeOf::natural, root.place).back().frame;
   parts.to_tip = {last.back(tip.e0), last.back(tip.e1), last.back(tip.e2)};
+  const Frame& first = natural.front();
+  parts.to_root = {first.back(root.place.frame.e0), first.back(root.place.frame.e1),
+                   first.back(root.place.frame.e2)};
   parts.clamped = !strand.free_root.has_value();
   parts.root = strand.root;
   const std::size_t nodes = initial.size() + 1, coordinates = 3 * nodes;

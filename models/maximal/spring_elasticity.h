@@ -54,6 +54,7 @@ class SpringElasticity final : public Elasticity, private StrainForm {
                    GroupSum& s) noexcept override;
   double energy(const Placement& p) noexcept override;
   double power(const Placement& p) noexcept override;
+  std::optional<EndTurn> end_turn(bool) const override { return EndTurn{}; }
   /// Moves no frames, but compares angles with those of the last call. The force of a
   /// joint that is bent at rest has no limit where the joint is straight. That of a
   /// dihedral angle has none where the angle is half a turn from rest. Both jump there.

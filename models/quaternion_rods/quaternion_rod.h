@@ -32,6 +32,9 @@ class QuaternionRod final : public Elasticity,
   double power(const Placement& p) noexcept override;
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
+  std::optional<EndTurn> end_turn(bool tip) const override {
+    return EndTurn{.quaternion = static_cast<int>(at(tip ? edges_.size() - 1 : 0))};
+  }
   StrandElimination* elimination() override { return walled_ ? this : nullptr; }
   StrainForm* strain_form() override { return this; }
   bool takes_stresses() const override { return true; }

@@ -137,15 +137,33 @@ class TipForces {
 
   /// Adds b += J^T f of forces (3 numbers each, N) on ascending points of a chain.
   void pull_back(std::span<const int> points, In forces, std::span<Real> b) const {
+    sweep(
+        [&](int point, Vec& force, Vec&) {
+          if (points.empty() || points.back() != point) return;
+          points = points.first(points.size() - 1);
+          const Real* const f = &forces[3 * points.size()];
+          force = force +
+                  frames_[static_cast<std::size_t>(point)].back(Vec{f[0], f[1], f[2]});
+        },
+        b);
+  }
+  /// Adds b += J^T m of a moment (N m) on the section at a point of a chain, J = d
+  /// omega/dv.
+  void pull_back_moment(int at, const Vec& of, std::span<Real> b) const {
+    sweep(
+        [&](int point, Vec&, Vec& moment) {
+          if (point == at) moment = frames_[static_cast<std::size_t>(point)].back(of);
+        },
+        b);
+  }
+
+ private:
+  /// take(point, force, moment) adds what acts at a point, from the last one on.
+  template <class Take>
+  void sweep(Take take_at, std::span<Real> b) const {
     // In the components of the tip, or start, that the sweep is at.
     Vec force, moment;
-    const auto take = [&](int point) {
-      if (points.empty() || points.back() != point) return;
-      points = points.first(points.size() - 1);
-      const Real* const f = &forces[3 * points.size()];
-      force =
-          force + frames_[static_cast<std::size_t>(point)].back(Vec{f[0], f[1], f[2]});
-    };
+    const auto take = [&](int point) { take_at(point, force, moment); };
     for (int i = kinematics_.count() - 1; i >= 0; --i) {
       take(i + 1);
       const auto segment = static_cast<std::size_t>(i);
@@ -168,7 +186,6 @@ class TipForces {
     for (std::size_t k = 0; k < 6; ++k) b[b.size() - 6 + k] += at_root[k];
   }
 
- private:
   K& kinematics_;
   const std::vector<Frame>& frames_;
 };

@@ -289,6 +289,7 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
     reduced.segments.push_back(segment);
   }
   if (options.rotary_inertia) add_rotors(reduced, strand, unknown);
+  reduced.rigid_links = joints;
   if (joints) {  // beyond the last half of a link there is no joint
     const Segment& last = strand.segments.back();
     reduced.to_tip = helix_turn(times(free, last.natural), last.length / 2);

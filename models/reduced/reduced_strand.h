@@ -94,8 +94,9 @@ struct ReducedStrand {
   RootMotion root;                       // motion of the clamp
   std::optional<FreeRoot> free_root;     // none: the root is clamped
   double root_rotor = 0;                 // as ReducedSegment::rotor, of the root
-  Frame to_tip;     // from the frame of the last segment's tip to its section's, at rest
-  Effects effects;  // effects on the strand
+  Frame to_tip;  // from the frame of the last segment's tip to its section's, at rest
+  bool rigid_links = false;  // segments do not bend: joints lie between them
+  Effects effects;           // effects on the strand
   ReducedJacobian jacobian = ReducedJacobian::exact;  // terms of the Jacobian
   TreeMethod method = TreeMethod::recursive;          // solver of the linear equations
   double unknown_scale = 1;                           // reduced_scale()

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "contract/forms/contact_form.h"
@@ -12,6 +13,7 @@
 #include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
 #include "contract/forms/point_accelerations.h"
+#include "contract/forms/sections.h"
 #include "contract/forms/transposed_form.h"
 #include "linear/vector_ops.h"
 #include "models/held/held_contacts.h"
@@ -38,6 +40,7 @@ class ReducedSystem : public System,
                       public NaturalStrains,
                       public TransposedForm,
                       public PointAccelerations,
+                      public Sections,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
@@ -55,6 +58,7 @@ class ReducedSystem : public System,
         length_(strand.length),
         rate_(strand.rate),
         to_tip_(strand.to_tip),
+        rigid_links_(strand.rigid_links),
         kinematics_(strand.segments, std::move(strand.blocks), std::move(strand.root),
                     strand.free_root ? std::optional(FreeRootFrame(*strand.free_root))
                                      : std::nullopt,
@@ -312,6 +316,33 @@ class ReducedSystem : public System,
     }
     const In loads = of->dynamics_.find_loads(t_transposed_, dynamics_.points(wanted));
     return scalar_product(loads, u_world_);
+  }
+
+  /// Rigid links have one at the tip; others at all points, except a clamped root.
+  Kind section_kind(int point) const override {
+    const bool tip = point == kinematics_.count();
+    if (!chain_ || (rigid_links_ ? !tip : point == 0 && !kinematics_.free())) return {};
+    using enum Turning;
+    return {modes == 3 ? frame : modes == 2 ? tangent : in_plane, rigid_links_};
+  }
+  std::vector<int> section_coordinates(int) const override {
+    std::vector<int> all(zero_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  // Cold and out of line for the reason that is given at factor_transposed().
+  [[gnu::cold, gnu::noinline]] SectionMotion section(double t, In q, In v, In a,
+                                                     int point) override {
+    kinematics_.move(t, q, v, a);
+    const FrameMotion& m =
+        point == 0 ? kinematics_.root()
+                   : kinematics_.motion(static_cast<std::size_t>(point) - 1).tip;
+    return {point == kinematics_.count() ? m.frame * to_tip_ : m.frame, m.frame * m.omega,
+            m.frame * m.alpha};
+  }
+  [[gnu::cold, gnu::noinline]] void add_moment(double t, In q, int point,
+                                               const Vec& moment, InOut b) override {
+    TipForces<Kernel, modes>(kinematics_, t, q).pull_back_moment(point, moment, b);
   }
 
  protected:
@@ -635,6 +666,7 @@ class ReducedSystem : public System,
   bool exact_, regular_mass_;
   double unknown_scale_, length_, rate_;
   Frame to_tip_;
+  bool rigid_links_;
   K kinematics_;
   HeldContacts held_contacts_;
   InverseDynamics<Kernel, modes> dynamics_;

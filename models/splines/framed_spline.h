@@ -43,6 +43,11 @@ class FramedSpline final : public Elasticity, private NaturalStrains {
   double stretch(const Placement& p) noexcept override { return stretching_.stretch(p); }
   Vec spin(const Placement& p, In inertia) noexcept override;
   std::optional<Frame> end_frame(const Placement& p) noexcept override;
+  std::optional<EndTurn> end_turn(bool tip) const override {
+    const std::size_t knot = tip ? spans_.size() : 0;
+    if (held(knot)) return {};
+    return EndTurn{static_cast<int>(angle(knot)), references_[knot]};
+  }
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
   void carry(InOut z, InOut rate, InOut second) const override;
   void reset() override;

@@ -49,6 +49,7 @@ class SplineElasticity final : public Elasticity {
   double energy(const Placement& p) noexcept override;
   double power(const Placement&) noexcept override { return 0; }
   double stretch(const Placement& p) noexcept override;
+  std::optional<EndTurn> end_turn(bool) const override { return EndTurn{}; }
   bool takes_stresses() const override { return true; }
 
  private:

@@ -4,12 +4,19 @@
 
 namespace tress::models {
 
-DenseTangent::DenseTangent(System& system) : system_(system) {
+Pattern full_pattern(int n) {
+  Pattern full;
+  full.rows = full.cols = n;
+  full.start.clear();
+  for (int k = 0; k <= n; ++k) full.start.push_back(n * k);
+  for (int k = 0; k < n * n; ++k) full.row.push_back(k % n);
+  return full;
+}
+
+DenseTangent::DenseTangent(System& system)
+    : system_(system), full_(full_pattern(system.layout().coordinates)) {
   const int n = system.layout().coordinates;
   const auto count = static_cast<std::size_t>(n);
-  full_.rows = full_.cols = n;
-  for (int k = 0; k <= n; ++k) full_.start.push_back(n * k);
-  for (int k = 0; k < n * n; ++k) full_.row.push_back(k % n);
   for (auto* x : {&a_typ_, &zero_, &unit_, &ahead_}) x->assign(count, 0.0);
   typical_.resize(n);
   system.scale({typical_.data(), count}, a_typ_);

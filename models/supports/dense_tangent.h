@@ -8,6 +8,9 @@
 
 namespace tress::models {
 
+/// Returns the pattern of a full matrix (n x n).
+Pattern full_pattern(int n);
+
 /// S(w) as a full matrix, of systems that only solve with it. The mass matrix follows
 /// column by column from the residual, which is affine in the acceleration. Any other S
 /// is the inverse of the solutions for unit vectors. Cost: 2 n residuals, or n solves and

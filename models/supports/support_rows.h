@@ -1,31 +1,43 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "contract/forms/constraint_form.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/point_accelerations.h"
 #include "contract/system.h"
+#include "models/maximal/rod_joint.h"
 #include "models/motion/root_motion.h"
+#include "models/supports/held_section.h"
 
 namespace tress::models {
 
-/// A ball joint between a material point of a strand and a path in space.
+/// Part of a section's rotation that a support holds, if the model determines it.
+enum class HeldPart { nothing, tangent, frame };
+
+/// A support of a material point of a strand by a path in space.
 struct Support {
   int point = 0;    // of MaterialPoints
-  RootMotion path;  // place of the joint over time; its frame is not used
-  /// Directions in which the point is held, orthonormal.
+  RootMotion path;  // place of the support over time, and its frame
+  /// Directions in which the point is held, orthonormal; none: its place is free.
   std::vector<Vec> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  HeldPart section = HeldPart::nothing;  // held by the path's frame
+  RodJoint half_edge{};  // joint of half an edge to the path's frame (HalfJoint)
 };
 
 /// Constraints of supports, after those that the strand has of its own:
 ///
 ///     g = e . (x_i(t, q) - p(t)),   G^T = J_i^T e,
+///     g = c_k(t, q),                G^T = J_c^T e_k,
 ///
 /// a row for each support and each of its axes e, with x_i the material point and p the
-/// path. Points that are means of coordinates (MaterialPoints::mean) have a constant G.
-/// Other points take G from pull_back() and g'' - G a from PointAccelerations.
+/// path. Then follows a row for each held component of the rotation c of the section
+/// (SectionGap), unless a half edge lies before it (HalfJoint). Points that are means of
+/// coordinates (MaterialPoints::mean) have a constant G. Other points take G from
+/// pull_back() and g'' - G a from PointAccelerations. Rotations take both from Sections.
 ///
 /// Second derivatives d(G^T lambda)/dq are central differences of pull_back() (relative
 /// error 1e-10): no model has them in closed form at a point. They enter the matrix of
@@ -42,6 +54,13 @@ class SupportRows final : public ConstraintForm {
   int own() const { return own_rows_; }
   /// Returns the number of all constraints.
   int rows() const { return pattern_.cols; }
+  /// Returns the length of the strand, m.
+  double length() const { return length_; }
+  /// Returns true if a constraint is a rotation (rad), not a place (m).
+  bool turns(int row) const { return turns_[static_cast<std::size_t>(row)]; }
+  /// Returns the force (N) and the moment (N m) of support i on the strand, world
+  /// components, for all multipliers.
+  std::pair<Vec, Vec> reaction(double t, In q, In lambda, std::size_t i);
 
   const Pattern& pattern() const override { return pattern_; }
   void scale(Out g_typ) const override;
@@ -54,11 +73,24 @@ class SupportRows final : public ConstraintForm {
                        InOut s) noexcept override;
 
  private:
-  template <class Read>
-  void fill(const std::vector<double>& x, const Read& place, Out rows) const;
-  void pull(double t, In q, const Support& support, const Vec& axis, InOut column);
+  /// Row of a support among the constraints: held[i] owns rows from first[i] on.
+  struct Held {
+    std::size_t first = 0;                 // its first row
+    std::optional<HeldSection> section{};  // with rows
+  };
+
+  void add_row(const std::vector<int>& coordinates, bool turns);
+  void add_place(const Support& support, std::size_t i, In q, Out column);
+  template <class Read, class Turn>
+  void fill(const Read& place, const Turn& turn, Out rows);
+  void pull(double t, In q, const Support& support, const Vec& force, InOut sum) {
+    const double f[] = {force.x, force.y, force.z};
+    static_cast<void>(points_.pull_back(t, q, {&support.point, 1}, f, sum));
+  }
+  void add_gradient(double t, In q, double factor, InOut entries);
   void multiplied(double t, In q, In lambda, InOut sum);
-  double step(In v) const;
+  Vec stress(std::size_t i, In lambda) const;
+  double step(double t, In q, In v);
 
   System& strand_;
   MaterialPoints& points_;
@@ -67,11 +99,14 @@ class SupportRows final : public ConstraintForm {
   int own_rows_ = 0;
   std::size_t own_entries_ = 0;  // of G^T
   std::vector<Support> supports_;
-  bool linear_;  // points are means of coordinates
+  std::vector<Held> held_;  // of each support
+  bool linear_;             // points are means of coordinates
+  double length_ = 0;
   Pattern pattern_;
-  std::vector<double> constant_;  // G^T of the supports, if linear_
+  std::vector<bool> turns_;       // of each row
+  std::vector<double> constant_;  // entries of the places in G^T, 0 in other rows
   std::vector<double> q_typ_, v_typ_;
-  std::vector<double> x_, zero_, shifted_, ahead_, behind_;  // scratch
+  std::vector<double> x_, zero_, shifted_, ahead_, behind_, column_;  // scratch
 };
 
 }  // namespace tress::models

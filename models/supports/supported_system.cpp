@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "contract/input_error.h"
 #include "linear/vector_ops.h"
@@ -18,6 +19,18 @@ SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
             "forces leaves supports out",
             "support 0", "use law = \"regularised\" for bodies");
   if (strand_->sparse_form() == nullptr) dense_.emplace(*strand_);
+  of_strand_ = dense_ ? &*dense_ : strand_->sparse_form();
+  for (std::size_t i = 0; i < this->supports(); ++i) {
+    const Support& support = rows_.supports()[i];
+    if (support.section == HeldPart::nothing) continue;
+    HeldSection section(*strand_, support.point, support.path,
+                        support.section == HeldPart::frame, of_strand_->pattern(),
+                        "support " + std::to_string(i));
+    if (section.half_edge()) {
+      joints_.emplace_back(i, HalfJoint(std::move(section), support.half_edge));
+    }
+  }
+  if (!joints_.empty()) assembled_.emplace(static_cast<SparseForm&>(*this));
   const auto n = static_cast<std::size_t>(strand_->layout().coordinates);
   std::vector<double> q_typ(n);
   for (auto* x : {&acceleration_, &zero_, &v_typ_}) x->assign(n, 0.0);
@@ -55,31 +68,67 @@ double SupportedSystem::next_breakpoint(double t) const {
   return next;
 }
 
+void SupportedSystem::add_joint_forces(double t, In q, In v, InOut r) {
+  for (auto& [support, joint] : joints_) joint.add_force(t, q, v, r);
+}
+
+Status SupportedSystem::residual(double t, In q, In v, In a, Out r) noexcept {
+  const Status s = strand_->residual(t, q, v, a, r);
+  if (s == Status::ok) add_joint_forces(t, q, v, r);
+  return s;
+}
+
+Status SupportedSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
+  const Status status = of_strand_->values(t, q, v, a, w, s);
+  if (status != Status::ok) return status;
+  for (auto& [support, joint] : joints_) joint.add_tangent(t, q, v, w, s);
+  return Status::ok;
+}
+
+Energy SupportedSystem::energy(double t, In q, In v) {
+  Energy sum = strand_->energetics()->energy(t, q, v);
+  for (auto& [support, joint] : joints_) sum.potential += joint.energy(t, q);
+  return sum;
+}
+
+void SupportedSystem::joint_rotations(double t, In q, Out c) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    store3(joints_[j].second.rotation(t, q), &c[3 * j]);
+  }
+}
+
+void SupportedSystem::lead_joints(In by) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    joints_[j].second.lead(load3(&by[3 * j]));
+  }
+}
+
+/// Row k of G times x.
+double SupportedSystem::product(Eigen::Index row, const double* x) const {
+  const Pattern& pattern = rows_.pattern();
+  const auto k = static_cast<std::size_t>(row);
+  double sum = 0;
+  for (int p = pattern.start[k]; p < pattern.start[k + 1]; ++p) {
+    const auto entry = static_cast<std::size_t>(p);
+    sum += gradient_[entry] * x[pattern.row[entry]];
+  }
+  return sum;
+}
+
 /// Prepares multipliers() at a state. A singular mass matrix is replaced by that of a
 /// short step, as in Dynamics::accelerate.
 Status SupportedSystem::hold(double t, In q, In v) {
   const auto n = static_cast<Eigen::Index>(q.size());
   const Eigen::Index m = rows_.rows();
   const Weights w{1, short_time_, short_time_ * short_time_};
-  for (const Status s : {rows_.gradient(t, q, gradient_), rows_.bias(t, q, v, bias_),
-                         strand_->residual(t, q, v, zero_, acceleration_),
-                         strand_->linearize(t, q, v, zero_, w)}) {
+  for (const Status s :
+       {rows_.gradient(t, q, gradient_), rows_.bias(t, q, v, bias_),
+        residual(t, q, v, zero_, acceleration_), linearize(t, q, v, zero_, w)}) {
     if (s != Status::ok) return s;
   }
   for (double& entry : acceleration_) entry = -entry;
-  if (const Status s = strand_->solve(acceleration_, acceleration_); s != Status::ok) {
-    return s;
-  }
+  if (const Status s = solve(acceleration_, acceleration_); s != Status::ok) return s;
   const Pattern& pattern = rows_.pattern();
-  const auto product = [&](Eigen::Index row, const double* x) {
-    double sum = 0;
-    const auto k = static_cast<std::size_t>(row);
-    for (int p = pattern.start[k]; p < pattern.start[k + 1]; ++p) {
-      const auto entry = static_cast<std::size_t>(p);
-      sum += gradient_[entry] * x[pattern.row[entry]];
-    }
-    return sum;
-  };
   responses_.setZero(n, m);
   compliance_.resize(m, m);
   needed_.resize(m);
@@ -90,7 +139,7 @@ Status SupportedSystem::hold(double t, In q, In v) {
       responses_(pattern.row[entry], k) = gradient_[entry];
     }
     const Out column(responses_.col(k).data(), q.size());
-    if (const Status s = strand_->solve(column, column); s != Status::ok) return s;
+    if (const Status s = solve(column, column); s != Status::ok) return s;
     needed_[k] = -bias_[row] - product(k, acceleration_.data());
   }
   for (Eigen::Index k = 0; k < m; ++k) {
@@ -116,49 +165,57 @@ void SupportedSystem::multipliers(int rows, std::vector<double>& lambda) const {
   Eigen::Map<Eigen::VectorXd>(lambda.data(), rows) = found;
 }
 
-Status SupportedSystem::support_forces(double t, In q, In v, Out forces) {
+Status SupportedSystem::support_forces(double t, In q, In v, Out forces, Out moments) {
   if (const Status s = hold(t, q, v); s != Status::ok) return s;
   std::vector<double> lambda;
   multipliers(rows_.rows(), lambda);
-  auto row = static_cast<std::size_t>(rows_.own());
   for (std::size_t i = 0; i < supports(); ++i) {
-    Vec force;
-    for (const Vec& axis : rows_.supports()[i].axes) {
-      force = force + lambda[row++] * axis;
-    }
+    const auto [force, moment] = rows_.reaction(t, q, lambda, i);
     store3(force, &forces[3 * i]);
+    store3(moment, &moments[3 * i]);
+  }
+  for (auto& [support, joint] : joints_) {
+    store3(joint.moment(t, q, v), &moments[3 * support]);
   }
   return Status::ok;
 }
 
-void SupportedSystem::support_motion(double t, Out x, Out u) const {
+void SupportedSystem::support_motion(double t, Out x, Out u, Out omega) const {
   for (std::size_t i = 0; i < supports(); ++i) {
     const RootPose pose = rows_.supports()[i].path.at(t);
     store3(pose.x, &x[3 * i]);
     store3(pose.v, &u[3 * i]);
+    store3(pose.omega, &omega[3 * i]);
   }
 }
 
 double SupportedSystem::power(double t, In q, In v) {
-  const double alone = strand_->energetics()->power(t, q, v);
+  double alone = strand_->energetics()->power(t, q, v);
   if (hold(t, q, v) != Status::ok) return std::nan("");
-  std::vector<double> lambda, own;
+  std::vector<double> lambda, own, change(q.size());
   multipliers(rows_.rows(), lambda);
+  // What joints change of the accelerations, and of the strand's own constraints.
+  if (!joints_.empty()) {
+    add_joint_forces(t, q, v, change);
+    for (double& entry : change) entry = -entry;
+    if (solve(change, change) != Status::ok) return std::nan("");
+    for (Eigen::Index k = 0; k < rows_.own(); ++k)
+      needed_[k] += product(k, change.data());
+    for (auto& [support, joint] : joints_) alone += joint.energy_rate(t, q, v);
+  }
   multipliers(rows_.own(), own);
   for (std::size_t k = 0; k < own.size(); ++k) lambda[k] -= own[k];
-  const Eigen::VectorXd change =
+  Eigen::Map<Eigen::VectorXd>(change.data(), std::ssize(change)) +=
       responses_ * Eigen::Map<const Eigen::VectorXd>(lambda.data(), std::ssize(lambda));
   double size = 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    size = std::max(size, std::abs(change[static_cast<Eigen::Index>(i)]) / v_typ_[i]);
+    size = std::max(size, std::abs(change[i]) / v_typ_[i]);
   }
   if (size == 0) return alone;
   // Central differences of a quadratic function are exact; only rounding remains.
   std::vector<double> moved(v.begin(), v.end());
   const auto kinetic = [&](double time) {
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      moved[i] = v[i] + time * change[static_cast<Eigen::Index>(i)];
-    }
+    for (std::size_t i = 0; i < v.size(); ++i) moved[i] = v[i] + time * change[i];
     return strand_->energetics()->energy(t, q, moved).kinetic;
   };
   return alone + (kinetic(1 / size) - kinetic(-1 / size)) * size / 2;

@@ -2,28 +2,34 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "contract/forms/energetics.h"
 #include "contract/forms/moving_history.h"
 #include "contract/forms/support_forces.h"
+#include "models/supports/assembled_solver.h"
 #include "models/supports/dense_tangent.h"
+#include "models/supports/half_joint.h"
 #include "models/supports/support_rows.h"
 
 namespace tress::models {
 
-/// A strand whose points are held by supports: the strand's own equations with the
-/// constraints of SupportRows. Methods drive it in every formulation that they have for
-/// systems with constraints. S is the strand's own sparse form, or a DenseTangent.
+/// A strand whose points and sections are held by supports: the strand's own equations
+/// with the forces of HalfJoints and the constraints of SupportRows. Methods drive it in
+/// every formulation that they have for systems with constraints. S is the strand's own
+/// sparse form, or a DenseTangent, with the derivatives of the joints.
 ///
 /// The power of supports belongs to Energetics::power. At a state, let a and a' be the
-/// accelerations with and without supports. Kinetic energy is quadratic in v, so
+/// accelerations with and without supports, and U the energy of the joints. Kinetic
+/// energy is quadratic in v, so
 ///
-///     power = (power of the strand alone) + dT/dv . (a - a'),
+///     power = (power of the strand alone) + dT/dv . (a - a') + dU/dt,
 ///
 /// which has the work of the supports and the change of the work of a moving root.
 class SupportedSystem final : public System,
                               public SupportForces,
+                              private SparseForm,
                               private Energetics,
                               private MovingHistory {
  public:
@@ -42,20 +48,19 @@ class SupportedSystem final : public System,
   Traits traits() const override { return strand_->traits(); }
   void initial_state(Out q, Out v) const override;
   void scale(Out q_typ, Out v_typ) const override { strand_->scale(q_typ, v_typ); }
-  Status residual(double t, In q, In v, In a, Out r) noexcept override {
-    return strand_->residual(t, q, v, a, r);
-  }
+  Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
-    return strand_->linearize(t, q, v, a, w);
+    return assembled_ ? assembled_->linearize(t, q, v, a, w)
+                      : strand_->linearize(t, q, v, a, w);
   }
-  Status solve(In b, Out x) noexcept override { return strand_->solve(b, x); }
+  Status solve(In b, Out x) noexcept override {
+    return assembled_ ? assembled_->solve(b, x) : strand_->solve(b, x);
+  }
   double next_breakpoint(double t) const override;
   std::string not_finite(double t, In q, In v) override {
     return strand_->not_finite(t, q, v);
   }
-  SparseForm* sparse_form() override {
-    return dense_ ? &*dense_ : strand_->sparse_form();
-  }
+  SparseForm* sparse_form() override { return joints_.empty() ? of_strand_ : this; }
   ConstraintForm* constraint_form() override { return &rows_; }
   StressForm* stress_form() override { return strand_->stress_form(); }
   Energetics* energetics() override {
@@ -65,13 +70,21 @@ class SupportedSystem final : public System,
   History* history() override { return strand_->history() == nullptr ? nullptr : this; }
 
   std::size_t supports() const override { return rows_.supports().size(); }
-  Status support_forces(double t, In q, In v, Out forces) override;
-  void support_motion(double t, Out x, Out u) const override;
+  Status support_forces(double t, In q, In v, Out forces, Out moments) override;
+  void support_motion(double t, Out x, Out u, Out omega) const override;
+
+  // For searches that lead the strand onto its supports.
+  /// Writes the rotations (rad) of the half joints from their walls, (3 joints).
+  void joint_rotations(double t, In q, Out c);
+  /// Returns the number of half joints.
+  std::size_t joints() const { return joints_.size(); }
+  /// Moves the rest values of the half joints, (3 joints) rad; 0 at first.
+  void lead_joints(In by);
 
  private:
-  Energy energy(double t, In q, In v) override {
-    return strand_->energetics()->energy(t, q, v);
-  }
+  const Pattern& pattern() const override { return of_strand_->pattern(); }
+  Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
+  Energy energy(double t, In q, In v) override;
   std::optional<Momentum> momentum(double t, In q, In v) override {
     return strand_->energetics()->momentum(t, q, v);
   }
@@ -88,12 +101,17 @@ class SupportedSystem final : public System,
   }
   std::string not_smooth() const override { return tress::not_smooth(*strand_); }
 
+  void add_joint_forces(double t, In q, In v, InOut r);
+  double product(Eigen::Index row, const double* x) const;
   Status hold(double t, In q, In v);
   void multipliers(int rows, std::vector<double>& lambda) const;
 
   std::unique_ptr<System> strand_;
   SupportRows rows_;
   std::optional<DenseTangent> dense_;  // none: the strand has a sparse form
+  SparseForm* of_strand_;              // of both
+  std::vector<std::pair<std::size_t, HalfJoint>> joints_;  // with their supports
+  std::optional<AssembledSolver> assembled_;               // if there are joints
   std::vector<double> begin_q_, begin_v_, begin_memory_;
   // Of hold(), at its state.
   std::vector<double> gradient_, acceleration_, bias_, zero_, v_typ_;

@@ -258,6 +258,7 @@ std::optional<HeadMethod> head_method(const Scene& scene) {
 }
 
 std::optional<NoHead> no_lanes(const Scene& scene, models::HeadNumber number) {
+  if (SceneSupports(scene).any()) return NoHead{"[supports]", "leave out [supports]"};
   if (auto no = no_model(scene)) return no;
   if (auto no = no_method(scene)) return no;
   if (auto no = no_number(scene, number)) return no;
@@ -271,10 +272,6 @@ std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber nu
     return NoHead{fmt::format("{} brings its own geometry and is one system: there are "
                               "no strands to batch",
                               scene.model->id),
-                  "give --as strands"};
-  }
-  if (SceneSupports(scene).any()) {
-    return NoHead{"[supports], which need a matrix of all coordinates of a strand",
                   "give --as strands"};
   }
   if (auto no = no_strand_alone(scene)) return no;

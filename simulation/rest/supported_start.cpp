@@ -25,6 +25,7 @@ namespace {
 /// which a point counts as being on its support.
 constexpr double near_support = 1e-6, on_support = 64 * 2.2e-16;
 constexpr double most_lead = 0.05;      // of the length, by which supports lead in a step
+constexpr double first_share = 1e-5;    // of that lead, for strands that stretch
 constexpr double slight_bend = 0.3;     // of the typical sizes of the coordinates
 constexpr double longest_step = 1e4;    // of the typical time
 constexpr double first_tether = 100;    // of the loads of the bent strand
@@ -52,22 +53,42 @@ class Search {
         m_(static_cast<std::size_t>(dynamics_.m())) {
     for (auto* x : {&q, &v, &a_, &r_, &next_, &zero_, &kept_}) x->assign(n_, 0.0);
     for (auto* x : {&lambda_, &c_, &gap_, &lambda_kept_}) x->assign(m_, 0.0);
+    joint_gap_.assign(3 * system.joints(), 0.0);
+    joint_lead_ = joint_gap_;
     system.initial_state(q, v);
     double rate = 0;
     for (std::size_t i = 0; i < n_; ++i) {
       rate = std::max(rate, dynamics_.v_typ()[i] / dynamics_.q_typ()[i]);
     }
     time_ = 1 / rate;
-    length_ = dynamics_.g_typ().back();
+    length_ = system.rows().length();
   }
 
   double length() const { return length_; }
-  /// Largest gap of a support, m.
-  double gap() {
-    if (system_.rows().value(0, q, c_) != Status::ok) return std::nan("");
-    const In of_supports = In(c_).subspan(static_cast<std::size_t>(system_.rows().own()));
-    double most = 0;
-    for (const double g : of_supports) most = std::max(most, std::abs(g));
+  /// Largest distance (m) of a point, and largest rotation (rad) of a section, from their
+  /// supports.
+  struct Gap {
+    double distance = 0, rotation = 0;
+    /// Returns the larger one, over the length and over one radian.
+    double over(double length) const { return std::max(distance / length, rotation); }
+  };
+  /// Measures the gaps, and keeps them for the search.
+  Gap gap() {
+    Gap most;
+    if (m_ > 0 && system_.rows().value(0, q, gap_) != Status::ok) {
+      return {std::nan(""), std::nan("")};
+    }
+    for (auto k = static_cast<std::size_t>(system_.rows().own()); k < m_; ++k) {
+      double& of =
+          system_.rows().turns(static_cast<int>(k)) ? most.rotation : most.distance;
+      of = std::max(of, std::abs(gap_[k]));
+    }
+    system_.joint_rotations(0, q, joint_gap_);
+    // Slighter rotations only strain the joints.
+    for (const double c : joint_gap_) {
+      if (std::abs(c) > near_support)
+        most.rotation = std::max(most.rotation, std::abs(c));
+    }
     return most;
   }
 
@@ -76,6 +97,7 @@ class Search {
 
   /// Velocities alone.
   Status project_rates() {
+    if (m_ == 0) return Status::ok;
     if (system_.rows().rate(0, q, v, c_) != Status::ok) return Status::retry;
     if (std::ranges::all_of(c_, [](double rate) { return rate == 0; })) return Status::ok;
     const Status s = dynamics_.linearize(0, q, v, zero_, c_, {1, 0, 0});
@@ -87,11 +109,8 @@ class Search {
   int find() {
     std::ranges::fill(v, 0.0);
     bend();
-    static_cast<void>(gap());
-    gap_ = c_;
-    double most = 0;
-    for (const double g : gap_) most = std::max(most, std::abs(g));
-    const double lead = std::min(1.0, most_lead * length_ / std::max(most, 1e-300));
+    const double most = gap().over(length_);
+    const double lead = std::min(1.0, most_lead / std::max(most, 1e-300));
     // Springs as stiff as the loads of the bent strand are large.
     if (system_.residual(0, q, zero_, zero_, r_) != Status::ok) return 0;
     double stiffness = 0;
@@ -101,20 +120,20 @@ class Search {
     stiffness *= first_tether;
     const double least = least_tether * stiffness;
     bool at_rest = false;
-    double left = 1, share = lead, h = time_;
+    // Strands that stretch follow small steps at first: long ones compress them straight.
+    const bool places = system_.material_points()->mean(0).has_value();
+    double left = 1, share = places ? first_share * lead : lead, h = time_;
     for (int step = 1; step <= most_steps; ++step) {
       const double next = std::max(0.0, left - share);
       tethered_.stiffness = stiffness;
       tethered_.origin = q;
+      lead_joints(next);
       if (!solve(h, next)) {
         // At rest, but too limp or too taut for a matrix without springs.
-        if (at_rest) {
-          tethered_.stiffness = 0;
-          return step;
-        }
+        if (at_rest) return release(step);
         share /= 2;
         if (left == 0) stiffness *= 4;
-        if (share < least_share * lead) return 0;
+        if (share < least_share * lead) return release(0);
         continue;
       }
       left = next;
@@ -123,14 +142,12 @@ class Search {
       if (left > 0) continue;
       at_rest = way_ <= settled;
       if (h >= longest_step * time_ && stiffness == least && at_rest) {
-        tethered_.stiffness = 0;
-        return step;
+        return release(step);
       }
       h = std::min(longest_step * time_, 4 * h);
       stiffness = std::max(least, stiffness / 2);
     }
-    tethered_.stiffness = 0;
-    return 0;
+    return release(0);
   }
 
   /// Largest part of the residual that supports leave, over that without them.
@@ -150,6 +167,21 @@ class Search {
   std::vector<double> q, v;  // state of the search
 
  private:
+  /// Leaves neither springs nor leads; returns the number of steps.
+  int release(int steps) {
+    tethered_.stiffness = 0;
+    lead_joints(0);
+    return steps;
+  }
+
+  /// Moves the rest values of half joints by `left` of their first rotations.
+  void lead_joints(double left) {
+    for (std::size_t i = 0; i < joint_gap_.size(); ++i) {
+      joint_lead_[i] = left * joint_gap_[i];
+    }
+    system_.lead_joints(joint_lead_);
+  }
+
   /// A step of backward Euler of length h from rest, with `left` of the gaps.
   bool solve(double h, double left) {
     kept_ = q;
@@ -248,7 +280,8 @@ class Search {
   integrators::Dynamics dynamics_;
   std::size_t n_, m_;
   double time_ = 0, length_ = 0, way_ = 0;
-  std::vector<double> a_, r_, next_, zero_, kept_, lambda_, c_, gap_, lambda_kept_;
+  std::vector<double> a_, r_, next_, zero_, kept_, lambda_, c_, gap_, lambda_kept_,
+      joint_gap_, joint_lead_;
 };
 
 }  // namespace
@@ -257,22 +290,24 @@ SupportedStart begin_on_supports(System& of, const std::string& where) {
   auto& system = dynamic_cast<SupportedSystem&>(of);
   Search search(system);
   SupportedStart start{.held = true};
-  const double gap = search.gap();
+  const Search::Gap gap = search.gap();
   const std::vector<double> q = search.q, v = search.v;
-  const double rounding = on_support * search.length();
-  const bool near = gap > rounding && gap <= near_support * search.length() &&
-                    search.project() == Status::ok && search.gap() <= rounding;
-  if (gap > rounding && !near) {
+  const double length = search.length(), from = gap.over(length);
+  const bool near = from > on_support && from <= near_support &&
+                    search.project() == Status::ok &&
+                    search.gap().over(length) <= on_support;
+  if (from > on_support && !near) {
     search.q = q;
     search.v = v;
-    start.moved = gap;
+    start.moved = gap.distance;
+    start.turned = gap.rotation;
     start.steps = search.find();
-    refuse_if(
-        start.steps == 0,
-        fmt::format("no equilibrium of a strand whose points begin {:g} m off their "
-                    "supports",
-                    gap),
-        where, "give the strand a shape that begins nearer to its supports");
+    refuse_if(start.steps == 0,
+              fmt::format(
+                  "no equilibrium of a strand that begins {:g} m and {:.3g} rad off its "
+                  "supports",
+                  gap.distance, gap.rotation),
+              where, "give the strand a shape that begins nearer to its supports");
     start.unbalanced = search.unbalanced();
   }
   refuse_if(!near && search.project_rates() != Status::ok,

@@ -11,6 +11,7 @@ namespace tress::simulation {
 struct SupportedStart {
   bool held = false;  // whether it has supports
   double moved = 0;   // m, of the supported point farthest from its place before
+  double turned = 0;  // rad, of the held section farthest from its direction before
   int steps = 0;      // of the search; 0: the strand began on its supports
   double unbalanced =
       0;  // largest force of the start over the weight that supports carry

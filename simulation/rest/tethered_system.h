@@ -12,7 +12,7 @@ class TetheredSystem final : public System, private SparseForm {
  public:
   /// Adds springs without stiffness to `held`, which must outlive them.
   explicit TetheredSystem(models::SupportedSystem& held)
-      : held_(held), form_(*held.sparse_form()) {
+      : held_(held), form_(*held.sparse_form()), solver_(*this) {
     const auto n = static_cast<std::size_t>(held.layout().coordinates);
     origin.resize(n);
     typical.resize(n);
@@ -41,10 +41,10 @@ class TetheredSystem final : public System, private SparseForm {
     }
     return s;
   }
-  Status linearize(double, In, In, In, Weights) noexcept override {
-    return Status::fatal;
+  Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    return solver_.linearize(t, q, v, a, w);
   }
-  Status solve(In, Out) noexcept override { return Status::fatal; }
+  Status solve(In b, Out x) noexcept override { return solver_.solve(b, x); }
   SparseForm* sparse_form() override { return this; }
   ConstraintForm* constraint_form() override { return held_.constraint_form(); }
   const Pattern& pattern() const override { return form_.pattern(); }
@@ -60,6 +60,7 @@ class TetheredSystem final : public System, private SparseForm {
  private:
   models::SupportedSystem& held_;
   SparseForm& form_;
+  models::AssembledSolver solver_;
   std::vector<int> diagonal_;  // entries of the pattern
 };
 

@@ -122,17 +122,19 @@ EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double 
 /// Power of the supports in the clamp's frame, in which those at rest in space move.
 double Guard::power_of(SupportForces& supports, double t, In q, In v) {
   const std::size_t numbers = 3 * supports.supports();
-  std::vector<double> forces(numbers), x(numbers), u(numbers);
-  if (supports.support_forces(t, q, v, forces) != Status::ok) return 0;
-  supports.support_motion(t, x, u);
+  std::vector<double> forces(numbers), moments(numbers), x(numbers), u(numbers),
+      omega(numbers);
+  if (supports.support_forces(t, q, v, forces, moments) != Status::ok) return 0;
+  supports.support_motion(t, x, u, omega);
   double power = 0;
   for (std::size_t i = 0; i < numbers; i += 3) {
-    Vec velocity = load3(&u[i]);
+    Vec velocity = load3(&u[i]), turning = load3(&omega[i]);
     if (const auto& root = strands_.front().root) {
       const RootPose pose = root->at(t);
       velocity = velocity - pose.v - cross(pose.omega, load3(&x[i]) - pose.x);
+      turning = turning - pose.omega;
     }
-    power += dot(load3(&forces[i]), velocity);
+    power += dot(load3(&forces[i]), velocity) + dot(load3(&moments[i]), turning);
   }
   return power;
 }

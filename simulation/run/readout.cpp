@@ -32,7 +32,7 @@ void add_contact(const Vec& place, const Vec& force, Frame3d& frame) {
 Readout::Readout(const Scene& scene, const World& world)
     : scene_(scene),
       effects_(make_effects(scene)),
-      supports_(SceneSupports(scene).names()) {
+      supports_(SceneSupports(scene).named()) {
   find_lines(world);
   const std::vector<std::string> names = effect_names(scene);
   const auto add = [this](std::string name, std::string help) {
@@ -68,19 +68,24 @@ Readout::Readout(const Scene& scene, const World& world)
   if (scene.failed_strands == FailedStrands::stay) {
     add("failed_strands", "strands that have failed and stay where they are");
   }
-  first_force_ = series_.size();
-  for (const std::string& name : supports_) {
-    for (const char* axis : {"x", "y", "z"}) {
-      add(fmt::format("force_{}_{}_n", name, axis),
-          fmt::format("force of the support {} on the strand, along {}", name, axis));
-    }
+  first_load_ = series_.size();
+  for (const auto& [of, place, direction] : supports_) {
+    const auto add_axes = [&, name = of](bool held, const char* what, const char* unit) {
+      if (!held) return;
+      for (const char* axis : {"x", "y", "z"}) {
+        add(fmt::format("{}_{}_{}_{}", what, name, axis, unit),
+            fmt::format("{} of the support {} on the strand, along {}", what, name,
+                        axis));
+      }
+    };
+    add_axes(place, "force", "n");
+    add_axes(direction, "moment", "n_m");
   }
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");
   add("rejected_steps", "steps tried again with shorter ones since the last frame");
-  if (scene.friction() != nullptr) {
+  if (scene.friction() != nullptr)
     add("overlap_m", "deepest overlap of strands that rub, so far");
-  }
   channels_ = {{"curvature", "1/m"}, {"speed", "m/s"}};
   for (const std::string& name : names) channels_.push_back({"load " + name, "N/m"});
 
@@ -91,9 +96,7 @@ Readout::Readout(const Scene& scene, const World& world)
   // The last one.
   if (scene.friction() != nullptr) channels_.push_back({"friction used (1: slides)", ""});
 
-  for (const Strand& strand : scene.strands) {
-    lumps_.push_back(lumps(strand));
-  }
+  for (const Strand& strand : scene.strands) lumps_.push_back(lumps(strand));
 }
 
 Frame3d Readout::read(World& world) {
@@ -116,9 +119,8 @@ Frame3d Readout::read(World& world) {
   double touching = 0;
   if (interaction != nullptr)
     touching += static_cast<double>(interaction->touching_pairs());
-  if (world.friction() != nullptr) {
+  if (world.friction() != nullptr)
     touching += static_cast<double>(world.friction()->contacts());
-  }
   row.push_back(touching);
   row.push_back(interaction != nullptr ? interaction->mean_distance() : std::nan(""));
   if (const ControlMesh* mesh = world.mesh(); mesh != nullptr) {
@@ -129,8 +131,14 @@ Frame3d Readout::read(World& world) {
   if (scene_.failed_strands == FailedStrands::stay) {
     row.push_back(static_cast<double>(world.lost().size()));
   }
-  const std::vector<double> forces = world.support_forces();
-  row.insert(row.end(), forces.begin(), forces.end());
+  const World::SupportLoads loads = world.support_loads();
+  for (std::size_t i = 0; i < 3 * supports_.size(); i += 3) {
+    const auto append = [&](bool held, const std::vector<double>& of) {
+      if (held) row.insert(row.end(), &of[i], &of[i] + 3);
+    };
+    append(supports_[i / 3].place, loads.forces);
+    append(supports_[i / 3].direction, loads.moments);
+  }
   const Stats now = world.stats();
   const auto steps = static_cast<double>(now.steps - before_.steps);
   const auto iterations =
@@ -168,10 +176,15 @@ void Readout::read_steps(const World& world, double interval, Frame3d& frame) {
                         static_cast<std::ptrdiff_t>(*step_channel_ * drawn_.size()));
 }
 
-std::vector<NamedForce> Readout::support_forces(const Frame3d& frame) const {
-  std::vector<NamedForce> all;
-  for (std::size_t i = 0; i < supports_.size(); ++i) {
-    all.push_back({supports_[i], load3(&frame.series[first_force_ + 3 * i])});
+std::vector<NamedLoad> Readout::support_loads(const Frame3d& frame) const {
+  std::vector<NamedLoad> all;
+  std::size_t column = first_load_;
+  const auto next = [&](bool held) {
+    column += held ? 3 : 0;
+    return held ? std::optional(load3(&frame.series[column - 3])) : std::nullopt;
+  };
+  for (const NamedSupport& support : supports_) {
+    all.push_back({support.name, next(support.place), next(support.direction)});
   }
   return all;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulation/run/world.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 
@@ -22,10 +23,11 @@ struct Frame3d {
   std::vector<float> contacts;   // (6 contacts) place, m, and force on the strand, N
 };
 
-/// Force of a support on its strand.
-struct NamedForce {
-  std::string name;  // of the support
-  Vec force;         // N
+/// Force and moment of a support on its strand.
+struct NamedLoad {
+  std::string name;           // of the support
+  std::optional<Vec> force;   // N; none: it holds no place
+  std::optional<Vec> moment;  // N m; none: it holds no direction
 };
 
 /// Output of a scene: positions and energies of its strands, loads of its effects.
@@ -47,8 +49,8 @@ class Readout {
   const std::vector<Reading>& channels() const { return channels_; }
   /// Reads the present state of a world.
   Frame3d read(World& world);
-  /// Returns the forces of all supports in a frame.
-  std::vector<NamedForce> support_forces(const Frame3d& frame) const;
+  /// Returns the forces and moments of all supports in a frame.
+  std::vector<NamedLoad> support_loads(const Frame3d& frame) const;
   /// The next World counts its steps from 0.
   void restart() {
     before_ = {};
@@ -69,9 +71,9 @@ class Readout {
   std::vector<std::size_t> drawn_;  // material points, line after line
   std::vector<Reading> series_, channels_;
   Effects effects_;
-  std::vector<std::string> supports_;  // names
-  std::size_t first_force_ = 0;        // of a support, among the columns
-  std::vector<Lumps> lumps_;           // of each strand
+  std::vector<NamedSupport> supports_;
+  std::size_t first_load_ = 0;  // of a support, among the columns
+  std::vector<Lumps> lumps_;    // of each strand
   std::vector<double> tangent_;
   std::optional<std::size_t> step_channel_;
   // At the last frame.

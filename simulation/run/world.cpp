@@ -129,15 +129,20 @@ std::vector<ContactForce> World::contact_forces() {
   return all;
 }
 
-std::vector<double> World::support_forces() {
-  std::vector<double> all;
+World::SupportLoads World::support_loads() {
+  SupportLoads all;
   for (const Body& body : bodies_) {
     SupportForces* const supports = tress::support_forces(*body.system);
     if (supports == nullptr) continue;
-    std::vector<double> forces(3 * supports->supports());
-    const Status s = supports->support_forces(t_, body.seen_q(), body.seen_v(), forces);
-    if (s != Status::ok || body.stays()) std::ranges::fill(forces, std::nan(""));
-    all.insert(all.end(), forces.begin(), forces.end());
+    std::vector<double> forces(3 * supports->supports()), moments = forces;
+    const Status s =
+        supports->support_forces(t_, body.seen_q(), body.seen_v(), forces, moments);
+    const auto append = [&](std::vector<double>& more, std::vector<double>& to) {
+      if (s != Status::ok || body.stays()) std::ranges::fill(more, std::nan(""));
+      to.insert(to.end(), more.begin(), more.end());
+    };
+    append(forces, all.forces);
+    append(moments, all.moments);
   }
   return all;
 }
@@ -147,10 +152,13 @@ std::vector<std::string> World::supported_starts() const {
   for (const Body& body : bodies_) {
     if (body.supported.steps == 0) continue;
     all.push_back(fmt::format(
-        "{} begins at rest on its supports: its points were up to {:.3g} m away "
+        "{} begins at rest on its supports: its points were up to {:.3g} m{} away "
         "({} steps, forces in balance within {:.1g})",
-        name_of(body), body.supported.moved, body.supported.steps,
-        body.supported.unbalanced));
+        name_of(body), body.supported.moved,
+        body.supported.turned > 0
+            ? fmt::format(" and its ends {:.3g} rad", body.supported.turned)
+            : "",
+        body.supported.steps, body.supported.unbalanced));
   }
   return all;
 }

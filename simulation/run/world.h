@@ -112,9 +112,13 @@ class World {
   /// Returns the held shape of each strand; empty unless the scene's rest is inverse.
   const std::vector<HeldShape>& held() const { return held_; }
 
-  /// Returns the force of each support on its strand, (3 supports), N, strand after
-  /// strand. NaN of strands that have failed.
-  std::vector<double> support_forces();
+  /// Forces (N) of supports on strands, and moments (N m) about the held points, (3
+  /// supports) each, strand after strand. NaN of strands that have failed.
+  struct SupportLoads {
+    std::vector<double> forces, moments;
+  };
+  /// Returns the loads of all supports.
+  SupportLoads support_loads();
   /// Returns the strands that began away from their supports, in words.
   std::vector<std::string> supported_starts() const;
 

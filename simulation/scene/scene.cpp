@@ -228,9 +228,11 @@ class Reader {
         scene_.tables, scene_.head, scene_.seed, outlined ? made_singly : held_at_once);
     CutStrands cut = outlined ? series_->outline() : series_->all();
     scene_.strands = std::move(cut.strands);
+    SceneSupports(scene_).check_strands(series_->size());
     scene_.followers = std::move(cut.followers);
     scene_.fitted = std::move(cut.fitted);
     for (const std::size_t i : cut.source) {
+      places_.numbers.push_back(outlined ? series_->first()[i] : places_.numbers.size());
       places_.strands.push_back(scene_.tables->sources[i].table.place());
     }
   }

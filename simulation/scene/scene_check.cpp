@@ -189,7 +189,8 @@ void check(const Scene& scene, const ScenePlaces& places) {
   const std::string* before = nullptr;
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {
     const std::string& place = places.strands[i];
-    const bool held = supports.hold(i);
+    const std::size_t number = places.numbers[i];
+    const bool held = supports.hold(number);
     // Of the same groom.
     if (before != nullptr && *before == place && !held) continue;
     Effects effects = effects_of(scene, places);
@@ -197,7 +198,7 @@ void check(const Scene& scene, const ScenePlaces& places) {
       return scene.model->on_strand(scene.strands[i], scene.model_options,
                                     std::move(effects));
     };
-    const auto system = supports.on(at_place(place, make), scene.strands[i], i);
+    const auto system = supports.on(at_place(place, make), scene.strands[i], number);
     if (before == nullptr || held) check_integrator(scene, *system, places);
     if (scene.rest == RestStrains::inverse) {
       strains_to_hold(scene, scene.strands[i], *system, places.rest);

@@ -13,6 +13,7 @@ struct ScenePlaces {
   std::string model, integrator;     // file:line:column of the ids
   std::string tolerance;             // empty: the step is given
   std::vector<std::string> strands;  // of each strand's table
+  std::vector<std::size_t> numbers;  // of each strand among all of the scene
   std::vector<std::string> effects;  // of each effect's table
   std::string rest, failed_strands;  // of the keys in [simulation]
 };

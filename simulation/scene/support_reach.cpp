@@ -61,19 +61,26 @@ void stay_in_plane(const Parameters& options, double duration, const Strand& str
                    const Table& table, Support& support) {
   if (!options.knows("modes") || options.word("modes") != "bend_planar") return;
   const Frame& plane = strand.root.frame;
-  support.axes = {plane.e0, plane.e2};
+  if (!support.axes.empty()) support.axes = {plane.e0, plane.e2};
   for (int i = 0; i <= instants; ++i) {
     const double t = duration * i / instants;
     const auto root = strand.root.at(t);
-    const double off = dot(plane.e1, support.path.at(t).x - root.x);
-    if (std::abs(off) <= 1e-9 * strand.length() &&
-        norm(root.frame.e1 - plane.e1) <= 1e-9) {
+    const models::RootPose pose = support.path.at(t);
+    const double off = support.axes.empty() ? 0 : dot(plane.e1, pose.x - root.x);
+    if (std::abs(off) > 1e-9 * strand.length() || norm(root.frame.e1 - plane.e1) > 1e-9) {
+      throw InputError(
+          fmt::format("a support {:.3g} m outside the plane of the strand at t = {:g} s",
+                      std::abs(off), t),
+          place_of_path(table),
+          "keep it in the plane, or give [model] modes = \"bend_twist\"");
+    }
+    if (support.section == models::HeldPart::nothing ||
+        norm(pose.frame.e1 - plane.e1) <= 1e-9) {
       continue;
     }
     throw InputError(
-        fmt::format("a support {:.3g} m outside the plane of the strand at t = {:g} s",
-                    std::abs(off), t),
-        place_of_path(table),
+        fmt::format("a support turned out of the plane of the strand at t = {:g} s", t),
+        table.given("directions") ? table.place("directions") : table.place(),
         "keep it in the plane, or give [model] modes = \"bend_twist\"");
   }
 }

@@ -10,16 +10,18 @@
 #include "contract/decimal.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
-#include "models/motion/signals.h"
 #include "models/strand/arc_lengths.h"
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_path.h"
 #include "simulation/scene/support_reach.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
 
+using models::HeldPart;
+using models::StrandPlace;
 using models::Support;
 using models::SupportedSystem;
 
@@ -42,8 +44,8 @@ constexpr Parameter support_parameters[] = {
      .text = true,
      .fallback = "tip"},
     {.name = "kind",
-     .help = "kind of support: ball holds the position; clamp, position and frame; "
-             "direction, position and tangent. Only ball is available",
+     .help = "held part: ball, the position; clamp, position, direction and twist (if "
+             "the model has a frame there); direction, the direction alone",
      .choices = "ball|clamp|direction"},
     {.name = "keyframes",
      .help =
@@ -54,6 +56,29 @@ constexpr Parameter support_parameters[] = {
      .max = farthest_place,
      .components = 4,
      .rows = true},
+    {.name = "directions",
+     .help = "rows of t, x, y, z: directions of the strand at the support in the world, "
+             "of any length, t (s) ascending. It turns on the shortest way, quintic in "
+             "time, and rests at each. None: the direction at the start",
+     .min = -farthest_place,
+     .max = farthest_place,
+     .components = 4,
+     .rows = true},
+    {.name = "twist_rad",
+     .help = "rows of t, angle (s, rad): twist of a clamp about its direction, relative "
+             "to the section at the start, t ascending. Quintic in time, at rest at each",
+     .min = -farthest_place,
+     .max = farthest_place,
+     .components = 2,
+     .rows = true},
+    {.name = "slide",
+     .help =
+         "direction in which the point slides freely, in the world, of any length; 0, "
+         "0, 0: none",
+     .min = -farthest_place,
+     .max = farthest_place,
+     .components = 3,
+     .fallback = "0,0,0"},
 };
 
 /// Index of the material point that `at` names.
@@ -81,37 +106,22 @@ int point_of(const Table& table, const Strand& strand) {
           : "give \"tip\", \"root\" or a number of 0 to 1");
 }
 
-RootMotion path_of(const Table& table, const Vec& start) {
-  const auto [t, x, y, z] = columns<4>(table.values().numbers("keyframes"));
-  RootMotion path;
-  path.position = t.empty() ? start : Vec{x[0], y[0], z[0]};
-  for (std::size_t i = 1; i < t.size(); ++i) {
-    if (t[i] > t[i - 1]) continue;
-    throw InputError(fmt::format("keyframes not ascending in time: {:g} s after {:g} s",
-                                 t[i], t[i - 1]),
-                     table.place("keyframes"),
-                     "give each a later time than the one before");
-  }
-  const auto move = [&](const Vec& axis, const std::vector<double>& values) {
-    if (t.size() < 2) return;
-    std::vector<double> ways;
-    for (const double value : values) ways.push_back(value - values.front());
-    path.translations.push_back({axis, models::rests(t, ways)});
-  };
-  move({1, 0, 0}, x);
-  move({0, 1, 0}, y);
-  move({0, 0, 1}, z);
-  return path;
-}
-
-void refuse_kind(const Table& table) {
+/// Refuses keys that the kind of a support does not read.
+void check_keys(const Table& table) {
   const std::string_view kind = table.values().word("kind");
-  if (kind == "ball") return;
-  throw InputError(
-      fmt::format("kind = \"{}\": rows for frames are not available", kind),
-      table.place("kind"),
-      "use kind = \"ball\", with a second support of a neighbouring point to "
-      "hold a direction");
+  const auto refuse = [&](const char* key, const char* why, const char* remedy) {
+    if (!table.given(key)) return;
+    throw InputError(
+        fmt::format("{} of a support with kind = \"{}\", {}", key, kind, why),
+        table.place(key), remedy);
+  };
+  const char* const leave = "leave it out, or give kind = \"clamp\"";
+  if (kind == "ball") refuse("directions", "which holds no direction", leave);
+  if (kind != "clamp") refuse("twist_rad", "which holds no twist", leave);
+  if (kind == "direction") {
+    refuse("keyframes", "which holds no position", leave);
+    refuse("slide", "which holds no position", leave);
+  }
 }
 
 }  // namespace
@@ -129,7 +139,7 @@ Table read_support(const toml::table& table, const std::string& file) {
     }
     read.set("at", scalar_text(*at), place);
   }
-  refuse_kind(read);
+  check_keys(read);
   return read;
 }
 
@@ -151,17 +161,42 @@ std::vector<const Table*> SceneSupports::of(std::size_t strand) const {
   return own;
 }
 
-std::vector<std::string> SceneSupports::names() const {
-  std::vector<std::pair<int, std::string>> all;
+std::vector<NamedSupport> SceneSupports::named() const {
+  std::vector<std::pair<int, NamedSupport>> all;
   for (const Table& table : tables()) {
     const int strand = table.values().whole("strand");
-    all.emplace_back(strand,
-                     fmt::format("strand_{}_at_{}", strand, table.values().word("at")));
+    const std::string_view kind = table.values().word("kind");
+    all.emplace_back(strand, NamedSupport{fmt::format("strand_{}_at_{}", strand,
+                                                      table.values().word("at")),
+                                          kind != "direction", kind != "ball"});
   }
-  std::ranges::stable_sort(all, {}, &std::pair<int, std::string>::first);
-  std::vector<std::string> names;
-  for (auto& [strand, name] : all) names.push_back(std::move(name));
-  return names;
+  std::ranges::stable_sort(all, {}, &std::pair<int, NamedSupport>::first);
+  std::vector<NamedSupport> named;
+  for (auto& [strand, support] : all) named.push_back(std::move(support));
+  return named;
+}
+
+Support SceneSupports::support(System& system, const Strand& strand, const Table& table,
+                               const StrandPlace& start, int point) const {
+  Support support;
+  support.point = point;
+  support.path = support_path(table, start);
+  const std::string_view kind = table.values().word("kind");
+  if (kind == "direction") support.axes.clear();
+  if (kind != "ball") {
+    const auto held = models::section_to_hold(system, point, table.place("kind"));
+    support.section = kind == "clamp" ? HeldPart::frame : HeldPart::tangent;
+    refuse_if(table.given("twist_rad") && held.turning != Sections::Turning::frame,
+              "a twist of a model without frames of its sections",
+              table.place("twist_rad"),
+              "leave it out, or use a model with twist, such as \"super_helix\"");
+    const std::size_t last = strand.segments.size() - 1;
+    support.half_edge = models::rod_joint(strand.material, nullptr,
+                                          strand.segments[point == 0 ? 0 : last], {});
+  }
+  stay_in_plane(model_options_, duration_, strand, table, support);
+  let_slide(table, support);
+  return support;
 }
 
 std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
@@ -172,7 +207,7 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
   const std::string& place = tables.front()->place();
   models::check_unbranched(strand, place);
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
-  std::vector<double> q(n), v(n), x(3 * (strand.segments.size() + 1));
+  std::vector<double> q(n), v(n), zero(n), x(3 * (strand.segments.size() + 1));
   system->initial_state(q, v);
   MaterialPoints* const points = system->material_points();
   refuse_if(points == nullptr ||
@@ -188,18 +223,23 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
   supports.reserve(tables.size());
   if (!strand.free_root) ends.push_back({"root", 0, &strand.root});
   for (const Table* table : tables) {
-    Support support;
-    support.point = point_of(*table, strand);
-    const auto point = static_cast<std::size_t>(support.point);
+    const int at = point_of(*table, strand);
+    const auto point = static_cast<std::size_t>(at);
     refuse_if(point == 0 && !strand.free_root, "a support of the root, which is clamped",
               table->place("at"), "leave it out, or give [root] motion = \"free\"");
-    refuse_if(
-        std::ranges::any_of(
-            supports, [&](const Support& one) { return one.point == support.point; }),
-        "a second support of the same point", table->place(), "leave out one of them");
-    support.path = path_of(*table, load3(&x[3 * point]));
-    stay_in_plane(model_options_, duration_, strand, *table, support);
-    supports.push_back(std::move(support));
+    refuse_if(std::ranges::any_of(supports,
+                                  [&](const Support& one) { return one.point == at; }),
+              "a second support of the same point", table->place(),
+              "leave out one of them");
+    StrandPlace start{load3(&x[3 * point]), {}};
+    if (table->values().word("kind") != "ball") {
+      models::section_to_hold(*system, at, table->place("kind"));
+      start.frame = sections(*system)->section(0, q, v, zero, at).frame;
+    }
+    supports.push_back(support(*system, strand, *table, start, at));
+    if (supports.back().axes.empty() || norm(table->values().vec("slide")) > 0) {
+      continue;
+    }
     const SupportedEnd end{fmt::format("support at {}", table->values().word("at")),
                            s[point], &supports.back().path};
     for (const SupportedEnd& other : ends) {
@@ -234,16 +274,18 @@ Options options_beside_supports(const System& system, Options options) {
   return options;
 }
 
-void SceneSupports::check(const Scene& scene) const {
-  if (!any()) return;
+void SceneSupports::check_strands(std::size_t strands) const {
   for (const Table& table : tables()) {
     const int strand = table.values().whole("strand");
-    if (static_cast<std::size_t>(strand) < scene.strands.size()) continue;
-    throw InputError(
-        fmt::format("a support of strand {}", strand), table.place("strand"),
-        fmt::format("the scene has {} strand{}, the first is 0", scene.strands.size(),
-                    scene.strands.size() == 1 ? "" : "s"));
+    if (static_cast<std::size_t>(strand) < strands) continue;
+    throw InputError(fmt::format("a support of strand {}", strand), table.place("strand"),
+                     fmt::format("the scene has {} strand{}, the first is 0", strands,
+                                 strands == 1 ? "" : "s"));
   }
+}
+
+void SceneSupports::check(const Scene& scene) const {
+  if (!any()) return;
   const std::string& place = tables().front().place();
   refuse_if(scene.rest == RestStrains::inverse,
             "supports with rest = \"inverse\", which balances strands without their "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/system.h"
+#include "models/supports/support_rows.h"
 #include "simulation/files/toml_text.h"
 #include "simulation/scene/scene.h"
 #include "simulation/table/table.h"
@@ -18,6 +19,12 @@ std::span<const Parameter> support_table_parameters();
 /// file:line:column.
 Table read_support(const toml::table& table, const std::string& file);
 
+/// A support by its name: strand_0_at_tip.
+struct NamedSupport {
+  std::string name;       // names strand and point
+  bool place, direction;  // whether it holds them
+};
+
 /// The supports of a scene. Keeps no reference to it.
 class SceneSupports {
  public:
@@ -26,8 +33,8 @@ class SceneSupports {
 
   /// Returns true if the scene has supports.
   bool any() const { return !tables().empty(); }
-  /// Returns the names of all supports, strand after strand: strand_0_at_tip.
-  std::vector<std::string> names() const;
+  /// Returns the names of all supports, strand after strand.
+  std::vector<NamedSupport> named() const;
   /// Returns true if a strand has supports.
   bool hold(std::size_t strand) const { return !of(strand).empty(); }
   /// Returns the location of the first support of a strand, which must have one.
@@ -39,11 +46,16 @@ class SceneSupports {
   /// with the location of a support that the strand or its model does not admit.
   std::unique_ptr<System> on(std::unique_ptr<System> system, const Strand& strand,
                              std::size_t number) const;
-  /// Throws InputError with its location if a support refers to no strand, or the rest of
-  /// the scene does not admit supports.
+  /// Throws InputError with its location if a support refers to a strand beyond this
+  /// number of strands.
+  void check_strands(std::size_t strands) const;
+  /// Throws InputError with its location if the rest of the scene does not admit
+  /// supports.
   void check(const Scene& scene) const;
 
  private:
+  models::Support support(System& system, const Strand& strand, const Table& table,
+                          const models::StrandPlace& start, int point) const;
   const std::vector<Table>& tables() const;
   std::vector<const Table*> of(std::size_t strand) const;
 

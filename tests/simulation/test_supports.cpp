@@ -59,7 +59,7 @@ TEST(Supports, HoldALimpStrandAsACatenary) {
     text.supports = "[[supports]]\nat = \"root\"\n[[supports]]\nkeyframes = [[0, " +
                     std::to_string(distance) + ", 0, 0]]\n";
     World world(scene_of(text));
-    const std::vector<double> force = world.support_forces();
+    const std::vector<double> force = world.support_loads().forces;
     ASSERT_EQ(force.size(), 6U);
     const double expected = catenary(distance) * weight;
     std::printf("distance %g: horizontal force %.2e off, vertical %.1e\n", distance,
@@ -104,7 +104,7 @@ TEST(Supports, WriteTheirForcesAmongTheColumns) {
   EXPECT_NEAR(x[62], 0.05, 1e-12);
   const Frame3d frame = readout.read(world);
   ASSERT_EQ(frame.series.size(), readout.series().size());
-  const std::vector<double> force = world.support_forces();
+  const std::vector<double> force = world.support_loads().forces;
   const auto column =
       std::ranges::find(readout.series(), "force_strand_0_at_tip_x_n", &Reading::name);
   ASSERT_NE(column, readout.series().end());
@@ -128,7 +128,7 @@ TEST(Supports, HoldEveryModelOfAStrand) {
     EXPECT_EQ(status, Status::ok) << model.id << ": " << world.failure();
     const std::size_t points = world.positions().size();
     EXPECT_NEAR(world.positions()[points - 3], 0.6, 1e-9) << model.id;
-    const std::vector<double> force = world.support_forces();
+    const std::vector<double> force = world.support_loads().forces;
     EXPECT_GT(force[2], 0) << model.id;
   }
 }
@@ -137,7 +137,7 @@ TEST(Supports, AreWrittenBack) {
   const Scene scene = scene_of({});
   const Scene again = parse_scene(scene_text(scene), "again.toml");
   World first(scene), second(again);
-  EXPECT_EQ(first.support_forces(), second.support_forces());
+  EXPECT_EQ(first.support_loads().forces, second.support_loads().forces);
 }
 
 /// The line of a refusal, without the text of the scene.
@@ -164,7 +164,29 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
             "keyframes not ascending in time: 0 s after 0 s (held.toml:19:13): give each "
             "a later time than the one before");
   EXPECT_NE(refused(with("[[supports]]\nkeyframes = [[0, nan, 0, 0]]\n")), "");
-  EXPECT_NE(refused(with("[[supports]]\nkind = \"clamp\"\n")), "");
+  EXPECT_EQ(refused(with("[[supports]]\nkind = \"direction\"\nkeyframes = [[0, 1, 0, "
+                         "0]]\n")),
+            "keyframes of a support with kind = \"direction\", which holds no position "
+            "(held.toml:20:13): leave it out, or give kind = \"clamp\"");
+  EXPECT_EQ(refused(with("[[supports]]\ndirections = [[0, 1, 0, 0]]\n")),
+            "directions of a support with kind = \"ball\", which holds no direction "
+            "(held.toml:19:14): leave it out, or give kind = \"clamp\"");
+  EXPECT_EQ(
+      refused(with("[[supports]]\nkind = \"clamp\"\ndirections = [[0, 0, 0, 0]]\n")),
+      "a direction of length 0 (held.toml:20:14): give each direction at least one "
+      "component that is not 0");
+  EXPECT_EQ(refused(with("[[supports]]\nkind = \"clamp\"\ndirections = [[0, 1, 0, 0], "
+                         "[1, -2, 0, 0]]\n")),
+            "directions of rows 1 and 2 are opposite: the way is not unique "
+            "(held.toml:20:14): add a direction between them");
+  EXPECT_EQ(
+      refused(with("[[supports]]\nkind = \"clamp\"\ntwist_rad = [[1, 0], [0, 3]]\n")),
+      "twist_rad not ascending in time: 0 s after 1 s (held.toml:20:13): give each "
+      "a later time than the one before");
+  EXPECT_EQ(
+      refused(with("[[supports]]\nkind = \"clamp\"\ntwist_rad = [[0, 6]]\n")),
+      "a strand that begins with a twist of 6 rad (held.toml:20:13): begin with less "
+      "than 2.8 rad, and twist it during the run");
   Text far;
   far.root = "";
   far.supports = "[[supports]]\nkeyframes = [[0, 0.5, 0, 0], [0.1, 1.2, 0, 0]]\n";

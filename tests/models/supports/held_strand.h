@@ -34,6 +34,24 @@ inline std::vector<Vec> places_at_start(System& system) {
   return places;
 }
 
+/// A clamp, or another support of a section, of the last point of a model at its place
+/// and frame at the start. It moves by `way` in `time`.
+inline Support clamp_of_tip(System& system, const std::string& model,
+                            const ModelSettings& settings,
+                            HeldPart part = HeldPart::frame, Vec way = {},
+                            double time = 1) {
+  const std::vector<Vec> x = places_at_start(system);
+  const int tip = static_cast<int>(x.size()) - 1;
+  Support made = support(tip, x.back(), way, time);
+  made.section = part;
+  std::vector<double> q = zeros(system), v = q;
+  system.initial_state(q, v);
+  made.path.frame = sections(system)->section(0, q, v, v, tip).frame;
+  const Strand of = strand(parameters_of(model, settings));
+  made.half_edge = rod_joint(of.material, nullptr, of.segments.back(), {});
+  return made;
+}
+
 /// A model whose last point is held where it begins, and moves by `way` in `time`.
 inline std::unique_ptr<SupportedSystem> held_at_tip(const std::string& model,
                                                     const ModelSettings& settings,

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ using namespace testing_support;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Models of a strand, clamped to a shaken root or free, with a point in the middle and
-/// the last one on supports that move.
+/// Models of a strand, clamped to a shaken root or free, with a point in the middle on a
+/// support that moves, and a clamp of the last one that moves and turns if the model has
+/// a section there.
 struct Held {
   std::unique_ptr<SupportedSystem> system;
   ConstraintForm& form() const { return *system->constraint_form(); }
@@ -28,14 +30,21 @@ struct Held {
   std::size_t m() const { return static_cast<std::size_t>(system->layout().constraints); }
 };
 
-Held hold(const ModelEntry& model, const std::string& motion) {
-  auto strand = make_model(
-      std::string(model.id),
-      {{"elements", "6"}, {"motion", motion}, {"natural_curvature_per_m", "10"}});
+Held hold(const ModelEntry& model, const std::string& motion, double friction = 0) {
+  const ModelSettings settings{
+      {"elements", "6"}, {"motion", motion}, {"natural_curvature_per_m", "10"}};
+  auto strand = make_model(std::string(model.id), settings);
   const std::vector<Vec> x = places_at_start(*strand);
+  Support tip = support(6, x[6], {0, -0.02, 0.01}, 0.07);
+  if (sections(*strand)->section_kind(6).turning != Sections::Turning::nothing) {
+    tip = clamp_of_tip(*strand, std::string(model.id), settings, HeldPart::frame,
+                       {0, -0.02, 0.01}, 0.07);
+    tip.path.rotations.push_back({{0, 1, 0}, rests({0, 0.05}, {0.1, 0.4})});
+    tip.path.rotations.push_back({{1, 2, 0}, rests({0, 0.06}, {-0.1, 0.3})});
+    tip.half_edge.friction = friction * tip.half_edge.stiffness;
+  }
   return {std::make_unique<SupportedSystem>(
-      std::move(strand), std::vector{support(3, x[3], {0.01, 0, 0.02}, 0.05),
-                                     support(6, x[6], {0, -0.02, 0.01}, 0.07)})};
+      std::move(strand), std::vector{support(3, x[3], {0.01, 0, 0.02}, 0.05), tip})};
 }
 
 std::vector<std::pair<const ModelEntry*, std::string>> cases() {
@@ -180,6 +189,79 @@ TEST_P(SupportRowsOf, CurvatureIsTheDerivativeOfTheirForce) {
   };
   const double size = (typ.asDiagonal() * gradient(t, q) * force).norm();
   EXPECT_LE(in_sizes(found - expected), by_differences * (in_sizes(found) + size));
+}
+
+/// Half joints add the derivative of their energy to the residual, and that of their
+/// force to the matrix. Bars as for the constraints.
+TEST_P(SupportRowsOf, HalfJointsHaveTheDerivativesOfTheirEnergy) {
+  if (held_.system->joints() == 0) GTEST_SKIP() << "sections are constraints";
+  const Held rubbed = hold(*GetParam().first, GetParam().second, 1e-3);
+  System &held = *held_.system, &rubs = *rubbed.system, &alone = held_.system->strand();
+  const std::vector<double>&q = state_.q, &v = state_.v, &a = state_.a, still(q.size());
+  const double t = 0.013;
+  const auto force = [&](System& of, In at, In rate) {
+    const VectorXd with =
+        called(q.size(), [&](Out r) { return of.residual(t, at, rate, a, r); });
+    const VectorXd without =
+        called(q.size(), [&](Out r) { return alone.residual(t, at, rate, a, r); });
+    return (with - without).eval();
+  };
+  const auto energy = [&](In at) {
+    return held.energetics()->energy(t, at, still).potential -
+           alone.energetics()->energy(t, at, still).potential;
+  };
+  const auto matrix_of = [&](SparseForm& form, Weights w) {
+    const Pattern& pattern = form.pattern();
+    const VectorXd values = called(std::size_t(pattern.nonzeros()),
+                                   [&](Out s) { return form.values(t, q, v, a, w, s); });
+    MatrixXd full = MatrixXd::Zero(pattern.rows, pattern.cols);
+    for (int k = 0; k < pattern.cols; ++k) {
+      for (int p = pattern.start[std::size_t(k)]; p < pattern.start[std::size_t(k) + 1];
+           ++p) {
+        full(pattern.row[std::size_t(p)], k) = values[p];
+      }
+    }
+    return full;
+  };
+  const VectorXd typ =
+      Eigen::Map<const VectorXd>(state_.q_typ.data(), Eigen::Index(q.size()));
+  VectorXd expected(typ.size());
+  MatrixXd by_q = MatrixXd::Zero(typ.size(), typ.size()), by_v = by_q;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    std::vector<double> moved = q, faster = v;
+    const double e = share * state_.q_typ[i];
+    const auto at = [&](double s) -> const std::vector<double>& {
+      moved[i] = q[i] + s;
+      return moved;
+    };
+    expected[Eigen::Index(i)] = (8 * (energy(at(e)) - energy(at(-e))) -
+                                 (energy(at(2 * e)) - energy(at(-2 * e)))) /
+                                (12 * e);
+    by_q.col(Eigen::Index(i)) =
+        derivative(e, [&](double s) { return force(rubs, at(s), v); });
+    by_v.col(Eigen::Index(i)) = derivative(state_.v_typ[i], [&](double s) {
+      faster[i] = v[i] + s;
+      return force(rubs, q, faster);
+    });
+  }
+  const VectorXd found = force(held, q, still);
+  EXPECT_LE((typ.asDiagonal() * (found - expected)).norm(),
+            exact * (typ.asDiagonal() * found).norm() + exact * std::abs(energy(q)) +
+                eps / share * alone.energetics()->energy(t, q, still).potential);
+  EXPECT_GT(energy(q), 0);
+  SparseForm& with = *rubs.sparse_form();
+  std::optional<models::DenseTangent> dense;
+  if (alone.sparse_form() == nullptr) dense.emplace(alone);
+  SparseForm& without = dense ? *dense : *alone.sparse_form();
+  const auto in_sizes = [&](const MatrixXd& x) {
+    return (typ.asDiagonal() * x * typ.asDiagonal()).norm();
+  };
+  // A difference of matrices of inverses: their rounding, see below.
+  const double size = in_sizes(by_q);
+  EXPECT_LE(in_sizes(matrix_of(with, {1, 0, 1}) - matrix_of(without, {1, 0, 1}) - by_q),
+            1e-7 * (size + in_sizes(matrix_of(without, {1, 0, 1}))));
+  EXPECT_LE(in_sizes(matrix_of(with, {1, 1, 0}) - matrix_of(without, {1, 1, 0}) - by_v),
+            1e-7 * (in_sizes(by_v) + in_sizes(matrix_of(without, {1, 1, 0}))));
 }
 
 /// S(w) x for x from the model's own solve: the rounding of an inverse, eps times the

@@ -1,0 +1,67 @@
+#include "models/supports/half_joint.h"
+
+#include <algorithm>
+
+namespace tress::models {
+namespace {
+
+Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+}  // namespace
+
+/// Components that are held; others are 0.
+Vec HalfJoint::held(const Vec& c) const {
+  double all[3] = {};
+  const double from[3] = {c.x, c.y, c.z};
+  for (const int k : section_.components()) all[k] = from[k];
+  return load3(all);
+}
+
+Vec HalfJoint::stress(const SectionGap& gap) const {
+  return held(entrywise(joint_.stiffness, gap.value - lead_) +
+              entrywise(joint_.friction, gap.rate));
+}
+
+Vec HalfJoint::rotation(double t, In q) {
+  zero_.resize(q.size());
+  return held(section_.gap(t, q, zero_, zero_).value);
+}
+
+void HalfJoint::add_force(double t, In q, In v, InOut r) {
+  zero_.resize(q.size());
+  const SectionGap gap = section_.gap(t, q, v, zero_);
+  section_.pull(t, q, gap, stress(gap), r);
+}
+
+void HalfJoint::add_tangent(double t, In q, In v, Weights w, InOut s) {
+  if (w.pos != 0) {
+    section_.add_derivative(
+        t, q, true, w.pos, [&](In x, InOut b) { add_force(t, x, v, b); }, s);
+  }
+  if (w.vel != 0 && norm(joint_.friction) > 0) {
+    const auto friction = [&](In x, InOut b) {
+      const SectionGap gap = section_.gap(t, q, x, zero_);
+      section_.pull(t, q, gap, held(entrywise(joint_.friction, gap.rate)), b);
+    };
+    section_.add_derivative(t, v, false, w.vel, friction, s);
+  }
+}
+
+double HalfJoint::energy(double t, In q) {
+  const Vec c = rotation(t, q) - held(lead_);
+  return dot(joint_.stiffness, entrywise(c, c)) / 2;
+}
+
+double HalfJoint::energy_rate(double t, In q, In v) {
+  zero_.resize(q.size());
+  const SectionGap gap = section_.gap(t, q, v, zero_);
+  return dot(held(entrywise(joint_.stiffness, gap.value - lead_)), gap.rate);
+}
+
+Vec HalfJoint::moment(double t, In q, In v) {
+  zero_.resize(q.size());
+  const SectionGap gap = section_.gap(t, q, v, zero_);
+  return -1.0 * gap.moment(stress(gap));
+}
+
+}  // namespace tress::models

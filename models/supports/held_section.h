@@ -1,0 +1,87 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "contract/forms/sections.h"
+#include "contract/pattern.h"
+#include "models/motion/root_motion.h"
+#include "models/supports/section_gap.h"
+
+namespace tress::models {
+
+/// Step of central differences in units of typical sizes: the cube root of the roundoff.
+inline constexpr double difference_step = 6e-6;
+
+/// Returns the kind of the section at a point of a strand. Throws InputError naming
+/// `where` if the model has none there.
+Sections::Kind section_to_hold(System& strand, int point, const std::string& where);
+
+/// Section of a strand that a support turns, with its rotation from the path's frame
+/// (SectionGap). Components of the rotation that are not held are free.
+class HeldSection {
+ public:
+  /// Holds the section at a point: all of its rotation, or its tangent alone. Throws
+  /// InputError naming `where` if the model does not determine the rotation. `strand`
+  /// must outlive it; the entries of `matrix` are those of its S.
+  HeldSection(System& strand, int point, RootMotion path, bool whole_frame,
+              const Pattern& matrix, const std::string& where);
+
+  /// Returns the held components of the rotation: indices of its axes.
+  const std::vector<int>& components() const { return components_; }
+  /// Returns the coordinates that turn the section, ascending.
+  const std::vector<int>& coordinates() const { return coordinates_; }
+  /// Returns true if an elastic half edge lies between the model's frame and the section.
+  bool half_edge() const { return half_edge_; }
+  /// Returns the path whose frame holds the section.
+  const RootMotion& path() const { return path_; }
+
+  /// Returns the rotation and its derivatives at a state.
+  SectionGap gap(double t, In q, In v, In a) {
+    return {turning_, path_.at(t), sections_->section(t, q, v, a, point_)};
+  }
+  /// b += J^T moment of a stress on the rotation at a state.
+  void pull(double t, In q, const SectionGap& gap, const Vec& stress, InOut b) {
+    sections_->add_moment(t, q, point_, gap.moment(stress), b);
+  }
+
+  /// s += factor d force/dx by central differences, where `force`(x, b) adds to the
+  /// entries of b at the section's coordinates. x is q, in steps that turn the section by
+  /// difference_step, or any other vector, in steps of one. Relative error 1e-10.
+  template <class Force>
+  void add_derivative(double t, In x, bool of_places, double factor, Force force,
+                      InOut s) {
+    if (of_places) find_steps(t, x);
+    shifted_.assign(x.begin(), x.end());
+    const std::size_t count = coordinates_.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto column = static_cast<std::size_t>(coordinates_[k]);
+      const double step = of_places ? steps_[k] : 1;
+      for (const int i : coordinates_) change_[static_cast<std::size_t>(i)] = 0;
+      shifted_[column] = x[column] - step;
+      force(shifted_, change_);
+      for (const int i : coordinates_) change_[static_cast<std::size_t>(i)] *= -1;
+      shifted_[column] = x[column] + step;
+      force(shifted_, change_);
+      shifted_[column] = x[column];
+      for (std::size_t i = 0; i < count; ++i) {
+        s[entries_[k * count + i]] +=
+            factor / (2 * step) * change_[static_cast<std::size_t>(coordinates_[i])];
+      }
+    }
+  }
+
+ private:
+  void find_steps(double t, In q);
+
+  Sections* sections_;
+  int point_;
+  RootMotion path_;
+  Sections::Turning turning_;
+  bool half_edge_;
+  std::vector<int> components_, coordinates_;
+  std::vector<std::size_t> entries_;  // of the coordinates' block in S, by columns
+  std::vector<double> q_typ_, steps_, shifted_, change_;
+};
+
+}  // namespace tress::models
