@@ -1,6 +1,6 @@
 #pragma once
 
-#include "models/maximal/rod_joint.h"
+#include "models/strand/rod_joint.h"
 #include "models/supports/held_section.h"
 
 namespace tress::models {

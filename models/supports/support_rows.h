@@ -9,8 +9,8 @@
 #include "contract/forms/material_points.h"
 #include "contract/forms/point_accelerations.h"
 #include "contract/system.h"
-#include "models/maximal/rod_joint.h"
 #include "models/motion/root_motion.h"
+#include "models/strand/rod_joint.h"
 #include "models/supports/held_section.h"
 
 namespace tress::models {

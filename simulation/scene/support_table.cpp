@@ -191,8 +191,8 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
               table.place("twist_rad"),
               "leave it out, or use a model with twist, such as \"super_helix\"");
     const std::size_t last = strand.segments.size() - 1;
-    support.half_edge = models::rod_joint(strand.material, nullptr,
-                                          strand.segments[point == 0 ? 0 : last], {});
+    support.half_edge =
+        models::rod_joint(strand, nullptr, strand.segments[point == 0 ? 0 : last], {});
   }
   stay_in_plane(model_options_, duration_, strand, table, support);
   let_slide(table, support);

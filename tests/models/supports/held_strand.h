@@ -48,7 +48,7 @@ inline Support clamp_of_tip(System& system, const std::string& model,
   system.initial_state(q, v);
   made.path.frame = sections(system)->section(0, q, v, v, tip).frame;
   const Strand of = strand(parameters_of(model, settings));
-  made.half_edge = rod_joint(of.material, nullptr, of.segments.back(), {});
+  made.half_edge = rod_joint(of, nullptr, of.segments.back(), {});
   return made;
 }
 

@@ -168,10 +168,11 @@ struct RodOptions {
   LinearKind solver = LinearKind::automatic;
 };
 
-Element element(const Material& material, const Segment& segment, const Vec& rest,
+Element element(const Strand& strand, const Segment& segment, const Vec& rest,
                 const RodOptions& options) {
+  const Material material = strand.material_of(segment);
   const double l = segment.length, area = segment.section.area();
-  const RodJoint joint = rod_joint(material, &segment, segment, rest);
+  const RodJoint joint = rod_joint(strand, &segment, segment, rest);
   const double shear = l * options.shear_factor * material.shear_modulus * area;
   const double norm = options.norm / 2 * std::max(joint.stiffness.y, joint.stiffness.z);
   const Vec turn = joint.stiffness, slow = joint.friction;
@@ -207,9 +208,8 @@ std::unique_ptr<System> simo_reissner(const Strand& strand, const RodOptions& op
   for (std::size_t node = 0; node <= n; ++node) {
     if (node > 0) {  // no element is stretched or sheared at first
       const Segment& segment = strand.segments[node - 1];
-      elements.push_back(element(strand.material, segment,
-                                 turn_between(natural[node - 1], natural[node]),
-                                 options));
+      elements.push_back(element(
+          strand, segment, turn_between(natural[node - 1], natural[node]), options));
       Quaternion middle{initial[node - 1].w + initial[node].w,
                         initial[node - 1].v + initial[node].v};
       const Vec x = load3(&parts.z[3 * node - 3]) +
@@ -224,8 +224,8 @@ std::unique_ptr<System> simo_reissner(const Strand& strand, const RodOptions& op
       if (k == 0 || k > n) continue;
       const Segment& segment = strand.segments[k - 1];
       for (std::size_t l = 0; l < 4; ++l) {
-        parts.inertia[at - 3 * (n + 1) + l] +=
-            2 * strand.material.density * segment.section.polar() * segment.length;
+        parts.inertia[at - 3 * (n + 1) + l] += 2 * strand.material_of(segment).density *
+                                               segment.section.polar() * segment.length;
       }
     }
     at += 4;
