@@ -3,6 +3,7 @@
 #include "example.h"
 #include "models/maximal/maximal_system.h"
 #include "models/maximal/nodal_strand.h"
+#include "models/maximal/to_nodes.h"
 #include "simo_reissner_element.h"
 
 namespace example {
