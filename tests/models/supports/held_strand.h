@@ -47,7 +47,7 @@ inline Support clamp_of_tip(System& system, const std::string& model,
   std::vector<double> q = zeros(system), v = q;
   system.initial_state(q, v);
   made.path.frame = sections(system)->section(0, q, v, v, tip).frame;
-  const Strand of = strand(parameters_of(model, settings));
+  const Strand of = models::strand(parameters_of(model, settings));
   made.half_edge = rod_joint(of, nullptr, of.segments.back(), {});
   return made;
 }
