@@ -19,9 +19,13 @@ class Sections {
  public:
   virtual ~Sections() = default;
 
-  /// Part of a section's rotation that the coordinates determine: nothing, the rotation
-  /// in the plane of a planar model, the tangent, or the whole frame.
-  enum class Turning { nothing, in_plane, tangent, frame };
+  /// Part of a section's rotation that the coordinates determine.
+  enum class Turning {
+    nothing,   // no part
+    in_plane,  // rotation in the plane of a planar model
+    tangent,   // direction of the strand
+    frame      // whole frame
+  };
   /// Kind of a section.
   struct Kind {
     Turning turning = Turning::nothing;  // part that the coordinates determine

@@ -53,9 +53,8 @@ struct MaximalStrand {
   std::vector<double> edges;  // m, between nodes at rest; none: Elasticity::stretch
   RootMotion root;            // motion of the root
   std::unique_ptr<Elasticity> elasticity;  // internal forces
-  // From the frame of the first edge to the section at the root, and from that of the
-  // last one (Elasticity::end_frame) to the section at the tip, at rest.
-  Frame to_root, to_tip;
+  Frame to_root;    // from the first edge to the section at the root, at rest
+  Frame to_tip;     // from the last edge (Elasticity::end_frame) to the tip, at rest
   Effects effects;  // effects on the mass points
   /// Constraints on q: particles are the nodes that are not prescribed, parameters the
   /// other coordinates.

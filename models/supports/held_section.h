@@ -45,9 +45,10 @@ class HeldSection {
     sections_->add_moment(t, q, point_, gap.moment(stress), b);
   }
 
-  /// s += factor d force/dx by central differences, where `force`(x, b) adds to the
-  /// entries of b at the section's coordinates. x is q, in steps that turn the section by
-  /// difference_step, or any other vector, in steps of one. Relative error 1e-10.
+  /// Adds factor d force/dx to s, by central differences. `force`(x, b) adds to the
+  /// entries of b at the section's coordinates. With `of_places`, x is q, in steps that
+  /// turn the section by difference_step; else any vector, in steps of one. Relative
+  /// error 1e-10.
   template <class Force>
   void add_derivative(double t, In x, bool of_places, double factor, Force force,
                       InOut s) {

@@ -16,7 +16,11 @@
 namespace tress::models {
 
 /// Part of a section's rotation that a support holds, if the model determines it.
-enum class HeldPart { nothing, tangent, frame };
+enum class HeldPart {
+  nothing,  // no part
+  tangent,  // direction of the strand
+  frame     // direction and twist
+};
 
 /// A support of a material point of a strand by a path in space.
 struct Support {

@@ -112,10 +112,11 @@ class World {
   /// Returns the held shape of each strand; empty unless the scene's rest is inverse.
   const std::vector<HeldShape>& held() const { return held_; }
 
-  /// Forces (N) of supports on strands, and moments (N m) about the held points, (3
-  /// supports) each, strand after strand. NaN of strands that have failed.
+  /// Loads of supports on strands, (3 supports) each, strand after strand. NaN of strands
+  /// that have failed.
   struct SupportLoads {
-    std::vector<double> forces, moments;
+    std::vector<double> forces;   // N
+    std::vector<double> moments;  // N m, about the held points
   };
   /// Returns the loads of all supports.
   SupportLoads support_loads();
