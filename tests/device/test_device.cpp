@@ -248,10 +248,10 @@ TEST_F(Device, RefusesWhatItsCodeDoesNotKnow) {
   };
   EXPECT_THAT(refusal(testing_support::head(c, pack, 4)), HasSubstr("single strands"));
   for (const auto& make : {simulation::der_head, simulation::chain_head}) {
-    EXPECT_THAT(
-        refusal(make(testing_support::options({"Others"}), pack)),
-        HasSubstr("only for super_helix with linearly_implicit_euler and jacobian = "
-                  "\"elastic\""));
+    EXPECT_THAT(refusal(make(testing_support::options({"Others"}), pack)),
+                HasSubstr("only for uniform strands of super_helix with "
+                          "linearly_implicit_euler and jacobian = "
+                          "\"elastic\""));
   }
 }
 
