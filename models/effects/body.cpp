@@ -1,8 +1,7 @@
 #include "models/effects/body.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <string>
 
 #include "contract/input_error.h"
 #include "models/effects/exact_body.h"
@@ -150,10 +149,10 @@ std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion&
   const std::string_view moves = parameters.word("moves");
   for (const Parameter& rows : parameters_of_body) {
     if (!rows.rows || rows.name == moves) continue;
-    refuse_if(parameters.text(rows.name) != rows.default_text(),
-              fmt::format("{} of a body that does not follow them", rows.name),
-              "effect body",
-              fmt::format("set moves = \"{}\", or leave them out", rows.name));
+    const std::string name(rows.name);
+    refuse_if(parameters.text(name) != rows.default_text(),
+              name + " of a body that does not follow them", "effect body",
+              "set moves = \"" + name + "\", or leave them out");
   }
   const Vec axis = parameters.vec("axis"), centre = parameters.vec("centre_m");
   if (moves == "keyframes") {
