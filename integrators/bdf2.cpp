@@ -3,11 +3,11 @@
 
 #include "contract/forms/moving_history.h"
 #include "integrators/bdf2_formula.h"
-#include "integrators/control/controlled_stage.h"
 #include "integrators/control/step_sequence.h"
+#include "integrators/controlled_stage.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/one_step/one_step.h"
+#include "integrators/one_step.h"
 #include "integrators/stage/stage.h"
 #include "linear/vector_ops.h"
 

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "contract/constants.h"
-#include "integrators/control/controlled_stage.h"
 #include "integrators/control/error_controlled.h"
+#include "integrators/controlled_stage.h"
 #include "integrators/fixed_step.h"
 #include "linear/vector_ops.h"
 

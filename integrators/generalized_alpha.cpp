@@ -2,11 +2,11 @@
 #include <cmath>
 
 #include "contract/forms/moving_history.h"
-#include "integrators/control/controlled_stage.h"
 #include "integrators/control/step_sequence.h"
+#include "integrators/controlled_stage.h"
 #include "integrators/entry.h"
 #include "integrators/fixed_step.h"
-#include "integrators/one_step/one_step.h"
+#include "integrators/one_step.h"
 #include "integrators/stage/stage.h"
 
 namespace tress::integrators {

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <memory>
 
-#include "integrators/control/controlled_stage.h"
+#include "integrators/controlled_stage.h"
 #include "integrators/entry.h"
-#include "integrators/one_step/one_step.h"
+#include "integrators/one_step.h"
 #include "integrators/one_step/radau.h"
 
 namespace tress::integrators {

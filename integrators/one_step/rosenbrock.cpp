@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrators/one_step/one_step.h"
+#include "integrators/one_step.h"
 #include "linear/finite.h"
 #include "linear/vector_ops.h"
 

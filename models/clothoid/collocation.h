@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "math/lane_choice.h"
-#include "models/head/reduced_parts.h"
+#include "models/strand/element_points.h"
 #include "models/reduced/reduced_strand.h"
 
 namespace tress::models {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "models/head/reduced_parts.h"
+#include "models/strand/element_points.h"
 
 namespace tress::models {
 

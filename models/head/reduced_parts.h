@@ -2,6 +2,7 @@
 
 #include "math/matrix3.h"
 #include "math/wrench.h"
+#include "models/strand/element_points.h"
 
 /// Data that the sweeps of models/head/reduced_kernel.h pass from element to element.
 namespace tress::models {
@@ -118,9 +119,6 @@ struct PointPlace {
   int number;  // from 0
   T arc;       // from the element's start
 };
-
-/// Largest number of quadrature points of an element.
-inline constexpr int most_points_of_element = 16;
 
 /// Returns the moment I d/dt((omega . t) t) that turns the rotor of an element, t its
 /// tangent.

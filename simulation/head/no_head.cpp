@@ -6,9 +6,9 @@
 
 #include "models/head/head.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/along.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/table/along.h"
 
 namespace tress::simulation {
 namespace {

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "contract/input_error.h"
-#include "simulation/scene/along.h"
 #include "simulation/scene/groom.h"
+#include "simulation/table/along.h"
 
 namespace tress::simulation {
 namespace {

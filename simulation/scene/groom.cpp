@@ -10,9 +10,9 @@
 #include "simulation/groom/cap.h"
 #include "simulation/groom/frames.h"
 #include "simulation/groom/random.h"
-#include "simulation/scene/along.h"
 #include "simulation/scene/file_groom.h"
 #include "simulation/scene/shapes.h"
+#include "simulation/table/along.h"
 #include "simulation/table/directions.h"
 
 namespace tress::simulation {

@@ -6,7 +6,7 @@
 
 #include "contract/input_error.h"
 #include "simulation/groom/random.h"
-#include "simulation/scene/along.h"
+#include "simulation/table/along.h"
 
 namespace tress::simulation {
 namespace {

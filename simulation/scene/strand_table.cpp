@@ -10,9 +10,9 @@
 #include "models/cut/graded_cut.h"
 #include "models/strand/needed_elements.h"
 #include "simulation/groom/frames.h"
-#include "simulation/scene/along.h"
 #include "simulation/scene/shapes.h"
 #include "simulation/scene/shared_parameter.h"
+#include "simulation/table/along.h"
 #include "simulation/table/directions.h"
 
 namespace tress::simulation {

@@ -1,4 +1,4 @@
-#include "integrators/control/controlled_stage.h"
+#include "integrators/controlled_stage.h"
 
 #include <algorithm>
 

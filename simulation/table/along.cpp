@@ -1,4 +1,4 @@
-#include "simulation/scene/along.h"
+#include "simulation/table/along.h"
 
 #include <fmt/format.h>
 
