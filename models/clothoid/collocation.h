@@ -5,8 +5,8 @@
 #include <type_traits>
 
 #include "math/lane_choice.h"
-#include "models/strand/element_points.h"
 #include "models/reduced/reduced_strand.h"
+#include "models/strand/element_points.h"
 
 namespace tress::models {
 
