@@ -15,11 +15,9 @@ namespace tress::integrators {
 namespace {
 
 constexpr int order = 2;
-/// The estimate falls as h^3. With the power 3/2 of the tolerance, the error of a run is
-/// proportional to the tolerance (EsdirkTable::power). On strand_release of
-/// work_precision, this share leaves 0.05 to 0.44 of the tolerance (55 runs of 11
-/// models).
-constexpr double estimate_power = 3, share = 1.8;
+/// Of the tolerance, in the estimate of a step. On strand_release of work_precision, it
+/// leaves 0.05 to 0.44 of the tolerance (55 runs of 11 models).
+constexpr double share = 1.8;
 /// Impacts make velocities jump, and the formula would carry the jump on.
 constexpr Contact controlled_contact = Contact::regular;
 
@@ -80,10 +78,6 @@ class Bdf2 final : public FixedStep {
   std::vector<double> place_, place_previous_;  // along bodies
 };
 
-double threshold(const Options& options) {
-  return std::pow(share * options.tolerance, estimate_power / order);
-}
-
 /// Steps of any length, which remember the step before, or start by backward Euler.
 ///
 /// The errors of a step are K q''' + b h K v''' of q and K v''' of v, with K = h^3
@@ -92,8 +86,10 @@ double threshold(const Options& options) {
 class Bdf2Memory {
  public:
   Bdf2Memory(Dynamics& dynamics, const Options& options)
-      : stage_(dynamics, controlled_options(dynamics, options, threshold(options)),
-               controlled_ending(dynamics)),
+      : stage_(
+            dynamics,
+            controlled_options(dynamics, options, second_order_threshold(options, share)),
+            controlled_ending(dynamics)),
         start_(size(dynamics.n())),
         before_(start_),
         q_bar_(start_.q),
@@ -163,8 +159,9 @@ class Bdf2Memory {
 std::unique_ptr<Integrator> make_bdf2(System& system, const Options& options) {
   if (options.tolerance == 0) return std::make_unique<Bdf2>(system, options);
   check_controlled(system, options, controlled_contact);
-  return std::make_unique<ControlledOneStep<Bdf2Memory>>(system, options, estimate_power,
-                                                         threshold(options), options);
+  return std::make_unique<ControlledOneStep<Bdf2Memory>>(
+      system, options, second_order_power, second_order_threshold(options, share),
+      options);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "integrators/controlled_stage.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contract/input_error.h"
 
@@ -73,6 +74,10 @@ Stage::Ending controlled_ending(Dynamics& dynamics) {
   Stage::Ending ending{.remaining = 1, .learns = smooth(dynamics)};
   if (of_points(dynamics)) ending.turned = turned_edge;
   return ending;
+}
+
+double second_order_threshold(const Options& options, double share) {
+  return std::pow(share * options.tolerance, second_order_power / 2);
 }
 
 }  // namespace tress::integrators

@@ -18,6 +18,12 @@ void check_controlled(System& system, const Options& options,
 Options controlled_options(Dynamics& dynamics, Options options,
                            double threshold = std::numeric_limits<double>::infinity());
 
+/// Power of the step with which the estimate of a method of order 2 falls.
+inline constexpr double second_order_power = 3;
+/// Returns the estimate that a step of such a method may have, (share tolerance)^(3/2).
+/// The error of a run is then proportional to the tolerance (EsdirkTable::power).
+double second_order_threshold(const Options& options, double share);
+
 /// Returns the convergence criteria of such stages. Newton's tolerance has its margin
 /// already.
 Stage::Ending controlled_ending(Dynamics& dynamics);

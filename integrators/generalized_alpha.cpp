@@ -13,11 +13,9 @@ namespace tress::integrators {
 namespace {
 
 constexpr int order = 2;
-/// The estimate falls as h^3. With the power 3/2 of the tolerance, the error of a run is
-/// proportional to the tolerance (EsdirkTable::power). On strand_release of
-/// work_precision, this share leaves 0.04 to 0.63 of the tolerance (55 runs of 11
-/// models).
-constexpr double estimate_power = 3, share = 0.75;
+/// Of the tolerance, in the estimate of a step. On strand_release of work_precision, it
+/// leaves 0.04 to 0.63 of the tolerance (55 runs of 11 models).
+constexpr double share = 0.75;
 constexpr double velocity_part = 0.1;
 
 constexpr Parameter own_generalized_alpha[] = {
@@ -129,10 +127,6 @@ class FixedAlpha final : public FixedStep {
   std::vector<double> u_;
 };
 
-double threshold(const Options& options) {
-  return std::pow(share * options.tolerance, estimate_power / order);
-}
-
 /// Steps of any length, which remember the algorithmic acceleration. It is that of the
 /// time t_n + (alpha_m - alpha_f) h. After a step of another length it is moved there
 /// along a line, since v has an error of order h^2 otherwise.
@@ -146,8 +140,10 @@ class AlphaMemory {
  public:
   AlphaMemory(Dynamics& dynamics, const Options& options, Coefficients k)
       : error_(k.beta + (k.alpha_m - k.alpha_f) / 2 - 1. / 6),
-        step_(dynamics, controlled_options(dynamics, options, threshold(options)),
-              controlled_ending(dynamics), k),
+        step_(
+            dynamics,
+            controlled_options(dynamics, options, second_order_threshold(options, share)),
+            controlled_ending(dynamics), k),
         a_(size(dynamics.n())),
         a_end_(a_),
         v_(a_),
@@ -212,8 +208,9 @@ std::unique_ptr<Integrator> make_generalized_alpha(System& system,
   const Coefficients k = chung_hulbert(radius(options));
   if (options.tolerance == 0) return std::make_unique<FixedAlpha>(system, options, k);
   check_controlled(system, options);
-  return std::make_unique<ControlledOneStep<AlphaMemory>>(system, options, estimate_power,
-                                                          threshold(options), options, k);
+  return std::make_unique<ControlledOneStep<AlphaMemory>>(
+      system, options, second_order_power, second_order_threshold(options, share),
+      options, k);
 }
 
 std::unique_ptr<Integrator> make_newmark(System& system, const Options& options) {

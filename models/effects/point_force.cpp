@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "math/lagrange.h"
 #include "math/mat3.h"
+#include "math/piecewise_linear.h"
 #include "math/vec3.h"
 
 namespace tress::models {
@@ -78,19 +80,15 @@ PointForce::PointForce(Settings settings) : s_(std::move(settings)) {
 
 double PointForce::factor(double t) const noexcept {
   if (s_.rows.empty()) return 1;
-  const auto after = std::ranges::upper_bound(s_.rows, t, {}, &Row::time);
-  if (after == s_.rows.begin()) return s_.rows.front().factor;
-  if (after == s_.rows.end()) return s_.rows.back().factor;
-  const Row& from = *std::prev(after);
-  return std::lerp(from.factor, after->factor,
-                   (t - from.time) / (after->time - from.time));
+  const auto [before, after, part] = between_rows(s_.rows, t, &Row::time);
+  return std::lerp(before->factor, after->factor, part);
 }
 
 double PointForce::factor_rate(double t) const noexcept {
-  const auto after = std::ranges::upper_bound(s_.rows, t, {}, &Row::time);
-  if (after == s_.rows.begin() || after == s_.rows.end()) return 0;
-  const Row& from = *std::prev(after);
-  return (after->factor - from.factor) / (after->time - from.time);
+  if (s_.rows.empty()) return 0;
+  const auto [before, after, part] = between_rows(s_.rows, t, &Row::time);
+  if (before == after) return 0;
+  return (after->factor - before->factor) / (after->time - before->time);
 }
 
 double PointForce::next_breakpoint(double t) const noexcept {
@@ -124,12 +122,8 @@ PointForce::Shares PointForce::shares(const Points& p) const noexcept {
   }
   all.count = end - all.first;
   for (std::size_t k = 0; k < all.count; ++k) {
-    const double own = p.arc[all.first + k];
-    all.weight[k] = 1;
-    for (std::size_t j = 0; j < all.count; ++j) {
-      const double other = p.arc[all.first + j];
-      if (j != k && all.count > 1) all.weight[k] *= (s - other) / (own - other);
-    }
+    all.weight[k] =
+        lagrange(k, all.count, s, [&](std::size_t n) { return p.arc[all.first + n]; });
   }
   return all;
 }

@@ -140,8 +140,7 @@ std::optional<NoHead> no_strands(const Scene& scene) {
     if (p.number("grading") != 1) {
       return NoHead{"elements of different lengths", "leave out grading"};
     }
-    const bool widths = source.file && p.word("widths") == "file";
-    if (widths || !varied_key(source.table).empty()) {
+    if (!varied_key(source.table).empty()) {
       return NoHead{"a section or material that varies along the strand",
                     "leave out widths, and the keys that end with _along"};
     }

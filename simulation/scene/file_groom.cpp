@@ -114,12 +114,7 @@ void refuse_with_file(const Table& groom) {
                      fmt::format("give at most {}", most_fitted_elements));
   }
   const bool tolerance = detail_tolerance(groom) > 0 || p.number("fit_tolerance") > 0;
-  if (tolerance) {
-    refuse_varied(groom, "a tolerance");
-    refuse_if(p.word("widths") == "file",
-              "widths = \"file\" cannot be combined with a tolerance",
-              groom.place("widths"), "leave out one of them");
-  }
+  if (tolerance) refuse_varied(groom, "a tolerance");
   if (tolerance && p.whole("guides") > 0) {
     throw InputError("all guide strands must have the same number of elements",
                      groom.place("guides"), "leave out guides, or the tolerance");

@@ -10,6 +10,7 @@
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/shared_parameter.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/table/along.h"
 
 namespace tress::simulation {
 namespace {
@@ -142,17 +143,12 @@ class Finder {
   }
 
   const Strand& first() const { return scene_.strands.front(); }
-  static bool varies_radius(const StrandSource& source) {
-    const Parameters& p = source.table.values();
-    return !p.numbers("radius_along").empty() ||
-           (source.file && p.word("widths") == "file");
-  }
 
   bool of_strand(std::string_view name, std::vector<SceneParameter>& to) const {
     const auto found = std::ranges::find(of_strands, name, &OfStrand::name);
     if (found == std::end(of_strands)) return false;
     for (const StrandSource& source : scene_.tables->sources) {
-      if (name != "radius_m" || !varies_radius(source)) continue;
+      if (name != "radius_m" || !varies_radius(source.table)) continue;
       refuse(name, "radius_along or the widths of a file vary the radius",
              "leave out one of them");
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "math/piecewise_linear.h"
 
 namespace tress::simulation {
 namespace {
@@ -86,14 +87,10 @@ class Along {
 
   bool empty() const { return rows_.empty(); }
   Values at(double share) const {
-    const auto after = std::ranges::upper_bound(rows_, share, {}, &Row::first);
-    if (after == rows_.begin()) return rows_.front().second;
-    const Row& before = *std::prev(after);
-    if (after == rows_.end()) return before.second;
-    const double part = (share - before.first) / (after->first - before.first);
+    const auto [before, after, part] = between_rows(rows_, share, &Row::first);
     Values values;
     for (std::size_t k = 0; k < count; ++k) {
-      values[k] = std::lerp(before.second[k], after->second[k], part);
+      values[k] = std::lerp(before->second[k], after->second[k], part);
     }
     return values;
   }
@@ -102,6 +99,11 @@ class Along {
   using Row = std::pair<double, Values>;
   std::vector<Row> rows_;
 };
+
+/// Whether the radius is that of a groom's file.
+bool takes_widths(const Table& table) {
+  return table.values().knows("widths") && table.values().word("widths") == "file";
+}
 
 /// Changes section and moduli of a segment. Its internal friction changes as its mean
 /// bending stiffness.
@@ -121,9 +123,14 @@ void change(const Strand& strand, Segment& segment, Change apply) {
 std::span<const Parameter> along_parameters() { return keys; }
 
 std::string_view varied_key(const Table& table) {
+  if (takes_widths(table)) return "widths";
   const auto given = std::ranges::find_if(
       factors, [&](const char* key) { return !table.values().numbers(key).empty(); });
   return given == factors.end() ? std::string_view() : *given;
+}
+
+bool varies_radius(const Table& table) {
+  return takes_widths(table) || !table.values().numbers(factors.front()).empty();
 }
 
 void vary_along(const Table& table, Strand& strand) {

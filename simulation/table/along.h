@@ -13,9 +13,11 @@ namespace tress::simulation {
 /// linear between rows and constant beyond them.
 std::span<const Parameter> along_parameters();
 
-/// Returns the first key by which the table varies section or material along a strand;
-/// empty: there is none.
+/// Returns the first key by which the table varies section or material along a strand,
+/// the widths of a file among them; empty: there is none.
 std::string_view varied_key(const Table& table);
+/// Returns whether the table varies the radius along a strand.
+bool varies_radius(const Table& table);
 
 /// Sets section and material of all segments by the table, each to the values at its
 /// middle. Internal friction varies as the mean bending stiffness, so that the damping

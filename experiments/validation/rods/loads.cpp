@@ -1,6 +1,7 @@
 #include "experiments/validation/rods/loads.h"
 
 #include "math/gauss_legendre.h"
+#include "math/lagrange.h"
 
 namespace tress::experiments::validation {
 namespace {
@@ -9,12 +10,9 @@ namespace {
 std::vector<double> at_end(int points) {
   const std::vector<QuadraturePoint> rule = gauss_legendre(points, 1);
   std::vector<double> weights;
-  for (const QuadraturePoint& one : rule) {
-    double weight = 1;
-    for (const QuadraturePoint& other : rule) {
-      if (other.at != one.at) weight *= (1 - other.at) / (one.at - other.at);
-    }
-    weights.push_back(weight);
+  for (std::size_t k = 0; k < rule.size(); ++k) {
+    weights.push_back(
+        lagrange(k, rule.size(), 1, [&](std::size_t j) { return rule[j].at; }));
   }
   return weights;
 }
