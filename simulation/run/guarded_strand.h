@@ -52,6 +52,8 @@ struct GuardedStrand {
   /// J, that it may gain by hanging down. At least a share of EI/L: a strand at rest
   /// without load, solved to 1e-10 of the typical coordinates, has less energy.
   double slack() const { return weight_work + 1e-9 * bending_energy; }
+  /// Returns the number of points.
+  int points() const { return static_cast<int>(rest.size()); }
   /// Returns true if the effect's load is the same for all states.
   bool uniform(const Effect& effect) const {
     return !effect.needs().position && !effect.needs().velocity;
