@@ -24,6 +24,7 @@
 #include "experiments/simulate/scene_run.h"
 #include "experiments/simulate/warnings.h"
 #include "integrators/error_indicator.h"
+#include "models/effects/body.h"
 #include "simulation/errors/error_bars.h"
 #include "simulation/files/files.h"
 #include "simulation/gradient/scene_gradient.h"
@@ -194,6 +195,18 @@ void tell_fits(const Scene& scene, const std::string& stem) {
   replace_file(stem + ".fit.csv", fit_csv(scene.fitted));
 }
 
+/// Prints how far the grids of meshes are true to them.
+void tell_surfaces(const Scene& scene) {
+  const std::vector<std::string> names = effect_names(scene);
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const Parameters& given = scene.effects[i].parameters;
+    if (!given.knows("mesh_file")) continue;
+    const std::string words = models::surface_in_words(given);
+    if (words.empty()) continue;
+    tell("simulate: {}: {}: {}\n", scene.name, names[i], words);
+  }
+}
+
 /// False: the scene did not run to its end.
 bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks& ranks,
              Interruption& interruption, Heartbeat& heartbeat) {
@@ -238,6 +251,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));
   if (job.head) check_room(job.outline, options);
   if (ranks.first()) tell_fits(scene, options.stem);
+  if (ranks.first()) tell_surfaces(scene);
   Manifest manifest(experiment, line);
   manifest.add_input(file, read_file(file));
   const SceneRun run = job.head ? run_head(outline, key, options, interruption)

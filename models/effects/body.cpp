@@ -1,10 +1,12 @@
 #include "models/effects/body.h"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "contract/input_error.h"
 #include "models/effects/exact_body.h"
+#include "models/mesh/mesh_grid.h"
 #include "models/motion/signals.h"
 
 namespace tress::models {
@@ -12,9 +14,11 @@ namespace {
 
 constexpr Parameter parameters_of_body[] = {
     {.name = "shape",
-     .help = "plane: z < 0 of its frame is inside; sphere; capsule along z of its frame; "
-             "ellipsoid; sdf: a signed distance grid",
-     .choices = "plane|sphere|capsule|ellipsoid|sdf"},
+     .help =
+         "plane: z < 0 of its frame is inside; sphere; capsule along z of its frame; "
+         "ellipsoid; sdf: a signed distance grid; mesh: a closed surface of triangles, "
+         "turned into such a grid",
+     .choices = "plane|sphere|capsule|ellipsoid|sdf|mesh"},
     {.name = "centre_m",
      .help = "origin x, y, z of the frame of the body; for a plane any of "
              "its points (m)",
@@ -48,6 +52,20 @@ constexpr Parameter parameters_of_body[] = {
      .help = "shape = sdf: text file with nx ny nz, origin, spacing and the distances, x "
              "fastest, < 0 inside (m)",
      .text = true},
+    {.name = "mesh_file",
+     .help = "shape = mesh: OBJ, PLY or STL file of a closed surface",
+     .text = true},
+    {.name = "mesh_scale",
+     .help = "shape = mesh: metres per unit of the file",
+     .number = 1,
+     .min = 1e-9,
+     .max = 1e9},
+    {.name = "mesh_spacing_m",
+     .help = "shape = mesh: distance between points of the grid (m); 0: a 64th of the "
+             "largest extent. Edges and details are true to about this distance, and "
+             "the program prints the error",
+     .min = 0,
+     .max = 1e6},
     {.name = "moves",
      .help = "motion of the body: none, that of the head, or that of its own rows",
      .choices = "fixed|head|keyframes|poses"},
@@ -122,6 +140,15 @@ constexpr Parameter parameters_of_body[] = {
      .min = 0,
      .max = 1e3}};
 
+MeshGrid mesh_of(const Parameters& parameters) {
+  const std::string file(parameters.word("mesh_file"));
+  refuse_if(file.empty(), "no mesh_file", "effect body, shape = mesh",
+            "name an OBJ, PLY or STL file");
+  return read_mesh_grid(file, {.scale = parameters.number("mesh_scale"),
+                               .spacing = parameters.number("mesh_spacing_m"),
+                               .offset = parameters.number("strand_radius_m")});
+}
+
 BodyShape make_shape(const Parameters& parameters) {
   const std::string_view word = parameters.word("shape");
   if (word == "sphere") return Sphere{parameters.number("radius_m")};
@@ -136,6 +163,7 @@ BodyShape make_shape(const Parameters& parameters) {
     }
     return read_distance_grid(std::string(parameters.word("sdf_file")));
   }
+  if (word == "mesh") return mesh_of(parameters).grid;
   return Plane{};
 }
 
@@ -168,6 +196,18 @@ std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion&
 }  // namespace
 
 std::span<const Parameter> body_parameters() { return parameters_of_body; }
+
+std::string surface_in_words(const Parameters& parameters) {
+  if (parameters.word("shape") != "mesh") return {};
+  const MeshGrid mesh = mesh_of(parameters);
+  const DistanceGrid::Samples& s = mesh.grid.samples();
+  std::ostringstream words;
+  words.precision(3);
+  words << mesh.triangles << " triangles as a grid of " << s.nx << " x " << s.ny << " x "
+        << s.nz << " distances, " << s.spacing << " m apart; its surface is within "
+        << mesh.error << " m of the mesh";
+  return words.str();
+}
 
 std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                                         const RootMotion& head) {

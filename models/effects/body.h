@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "contract/parameters.h"
@@ -12,6 +13,9 @@ namespace tress::models {
 
 /// Returns the parameters of the effect.
 std::span<const Parameter> body_parameters();
+/// Returns the size of the grid of a body with shape = mesh and how far it is true to the
+/// mesh, in words; nothing for other shapes. Throws InputError as make_body() does.
+std::string surface_in_words(const Parameters& parameters);
 
 /// Result of Effect::rigid_contact(): per length of strand, `law`.
 struct RigidContact {

@@ -4,6 +4,7 @@
 
 #include "contract/input_error.h"
 #include "simulation/groom/guide_choice.h"
+#include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
 namespace {
@@ -56,6 +57,9 @@ FullHair::FullHair(const Scene& scene, std::span<const int> guides, std::size_t 
     throw InputError("--hairs cannot be combined with a groom whose hairs follow guides",
                      "--hairs", "leave it out, or the groom's guides");
   }
+  refuse_if(scene.tables != nullptr && scene.tables->skin != nullptr,
+            "hairs between strands follow one rigid motion, and a skin deforms",
+            follows ? "guides" : "--hairs", "leave it out: every strand is simulated");
   const bool alike = std::ranges::all_of(guides, [&](int n) { return n == guides[0]; });
   const auto as_guides = [&](const Strand& strand) {
     return static_cast<int>(strand.segments.size()) + 1 == guides[0];

@@ -145,6 +145,10 @@ std::optional<NoHead> no_strands(const Scene& scene) {
                     "leave out widths, and the keys that end with _along"};
     }
   }
+  if (scene.tables != nullptr && scene.tables->skin != nullptr) {
+    return NoHead{"roots that move with a skin, each in its own way",
+                  "use another [root] motion"};
+  }
   if (scene.strands.front().free_root) {
     return NoHead{"free roots", "use another [root] motion"};
   }

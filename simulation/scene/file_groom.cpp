@@ -217,7 +217,7 @@ Strand file_strand(const Table& groom, const Table* own_material, const Common& 
     strand.segments.push_back(segment);
   }
   vary_along(groom, strand);
-  set_root(strand, common.head, common.free_root, chain.place, chain.root);
+  set_root(strand, common.roots, chain.place, chain.root);
   models::check(strand);
   return strand;
 }

@@ -212,6 +212,9 @@ class Finder {
     if (!k) {
       refuse(name, "it has three components", fmt::format("give {}.x, .y or .z", name));
     }
+    if (scene_.tables->skin != nullptr) {
+      refuse(name, "a skin places and turns the root", "leave it out");
+    }
     const bool turns = base == of_roots[0];
     const double measure = turns ? 1 : first().length();
     to.push_back({std::string(name), turns ? "rad" : "m",
@@ -253,8 +256,8 @@ class Finder {
                     scene.head = head_motion(table);
                     const auto free_root = free_motion(table);
                     for (Strand& strand : scene.strands) {
-                      set_root(strand, scene.head, free_root, strand.root.position,
-                               strand.root.frame);
+                      set_root(strand, {scene.head, free_root, tables->skin.get()},
+                               strand.root.position, strand.root.frame);
                     }
                     scene.tables = std::move(tables);
                   },
@@ -309,16 +312,6 @@ class Finder {
 }  // namespace
 
 std::span<const Parameter> gradient_table_parameters() { return gradient_keys; }
-
-std::vector<std::string> names_of(std::string_view list) {
-  std::vector<std::string> all;
-  while (!list.empty()) {
-    const std::size_t comma = list.find(',');
-    all.emplace_back(list.substr(0, comma));
-    list = comma == list.npos ? "" : list.substr(comma + 1);
-  }
-  return all;
-}
 
 std::vector<SceneParameter> gradient_parameters(const Scene& scene,
                                                 std::span<const std::string> names,

@@ -75,7 +75,4 @@ std::vector<SceneParameter> gradient_parameters(const Scene& scene,
                                                 std::span<const std::string> names,
                                                 const std::string& place);
 
-/// The words of a list as text: "a,b".
-std::vector<std::string> names_of(std::string_view list);
-
 }  // namespace tress::simulation

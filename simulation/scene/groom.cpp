@@ -240,7 +240,7 @@ Strand Groom::strand(std::size_t i, std::uint64_t stream) const {
   Strand strand =
       cut_strand(table_, material_, length, natural, {}, elements(length, natural, root));
   vary_along(table_, strand);
-  set_root(strand, common_.head, common_.free_root, place.x, root);
+  set_root(strand, common_.roots, place.x, root);
   return strand;
 }
 

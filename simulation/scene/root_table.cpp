@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/mesh/read_mesh.h"
 #include "models/motion/signals.h"
 #include "simulation/table/directions.h"
 
@@ -15,7 +16,7 @@ constexpr Parameter parameters[] = {
     {.name = "motion",
      .help = "motion of all roots",
      .choices = "fixed|shake|rotate|shake_rotate|swing|stop|drop_pull|translate|"
-                "keyframes|poses|head|free"},
+                "keyframes|poses|head|free|skin"},
     {.name = "direction",
      .help = "direction of shake, swing, stop, drop_pull and translate; any length",
      .min = -largest_number,
@@ -87,6 +88,23 @@ constexpr Parameter parameters[] = {
      .components = 7,
      .rows = true,
      .fallback = "0,0,0,0,0,0,0;1,0,0,0.1,0,0,0"},
+    {.name = "skin_files",
+     .help = "skin: OBJ, PLY or STL files of one deforming surface, with the same faces. "
+             "Each root keeps its place and direction relative to the triangle of the "
+             "first file that is nearest to it",
+     .rows = true,
+     .text = true},
+    {.name = "skin_times_s",
+     .help = "skin: time of each file, ascending (s). Places and angles follow cubic "
+             "splines through them, at rest before the first and after the last",
+     .min = -largest_number,
+     .max = largest_number,
+     .rows = true},
+    {.name = "skin_scale",
+     .help = "skin: metres per unit of the files",
+     .number = 1,
+     .min = 1e-9,
+     .max = 1e9},
     {.name = "torque_n_m",
      .help = "head: amplitude of the torque about the axis (N m)",
      .number = 0.5,
@@ -141,6 +159,7 @@ constexpr Use uses[] = {
      "axis|centre_m|torque_n_m|frequency_hz|periods|inertia_kg_m2|"
      "damping_n_m_s|stiffness_n_m"},
     {"free", "velocity_m_s|spin_rad_s"},
+    {"skin", "skin_files|skin_times_s|skin_scale"},
 };
 
 Oscillator oscillator(const Parameters& p) {
@@ -209,6 +228,21 @@ RootMotion head_motion(const Table& root) {
   return motion;
 }
 
+std::shared_ptr<const Skin> skin_of(const Table& root) {
+  const Parameters& p = root.values();
+  if (p.word("motion") != "skin") return {};
+  const std::string place = root.place("skin_files");
+  refuse_if(p.text("skin_files").empty(), "no skin_files", place,
+            "name one mesh file for each time of skin_times_s");
+  std::vector<models::TriangleMesh> frames;
+  for (const std::string& file : names_of(p.text("skin_files"))) {
+    frames.push_back(models::read_mesh(file, p.number("skin_scale")));
+  }
+  const std::span<const double> times = p.numbers("skin_times_s");
+  return std::make_shared<const Skin>(
+      std::move(frames), std::vector<double>(times.begin(), times.end()), place);
+}
+
 std::optional<FreeRoot> free_motion(const Table& root) {
   if (root.values().word("motion") != "free") return std::nullopt;
   FreeRoot free_root;
@@ -217,13 +251,13 @@ std::optional<FreeRoot> free_motion(const Table& root) {
   return free_root;
 }
 
-void set_root(Strand& strand, const RootMotion& head,
-              const std::optional<FreeRoot>& free_root, Vec position,
+void set_root(Strand& strand, const RootMotions& motions, Vec position,
               const Frame& frame) {
-  strand.root = head;
+  strand.root =
+      motions.skin != nullptr ? motions.skin->motion(position, frame) : motions.head;
   strand.root.position = position;
   strand.root.frame = frame;
-  strand.free_root = free_root;
+  strand.free_root = motions.free_root;
   if (strand.free_root) {
     strand.free_root->position = position;
     strand.free_root->frame = frame;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
+#include "models/motion/skin.h"
 #include "models/strand/strand.h"
 #include "simulation/table/table.h"
 
@@ -20,8 +22,19 @@ RootMotion head_motion(const Table& root);
 /// Returns the velocity and spin for motion = "free", without a position.
 std::optional<FreeRoot> free_motion(const Table& root);
 
-/// Puts the root of a strand at this position, moving with `head`, or free.
-void set_root(Strand& strand, const RootMotion& head,
-              const std::optional<FreeRoot>& free_root, Vec position, const Frame& frame);
+/// Returns the surface that roots sit on with motion = "skin", null otherwise. Throws
+/// InputError with the file of an invalid mesh, and as Skin does.
+std::shared_ptr<const Skin> skin_of(const Table& root);
+
+/// Motions of the roots of a scene.
+struct RootMotions {
+  const RootMotion& head;                    // rigid motion of all roots
+  const std::optional<FreeRoot>& free_root;  // root that moves freely, if it does
+  const Skin* skin = nullptr;                // surface that carries roots; null: the head
+};
+
+/// Puts the root of a strand at this position, moving with the head or the skin, or free.
+void set_root(Strand& strand, const RootMotions& motions, Vec position,
+              const Frame& frame);
 
 }  // namespace tress::simulation

@@ -204,6 +204,7 @@ class Reader {
                         read_or_default("root", root_table_parameters()),
                         {}};
     scene_.head = head_motion(tables.root);
+    tables.skin = skin_of(tables.root);
     read_each("strand", strand_table_parameters(), tables);
     read_each("groom", groom_table_parameters(), tables);
     if (tables.sources.empty()) {

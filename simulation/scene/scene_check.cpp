@@ -8,6 +8,7 @@
 #include "integrators/catalogue.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
+#include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
@@ -29,6 +30,12 @@ Effects effects_of(const Scene& scene, const ScenePlaces& places) {
   Effects all;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const EffectChoice& choice = scene.effects[i];
+    refuse_if(scene.tables != nullptr && scene.tables->skin != nullptr &&
+                  choice.parameters.knows("moves") &&
+                  choice.parameters.word("moves") == "head",
+              "a body that moves with the head, and roots that move with a skin",
+              places.effects[i],
+              "give the body poses of its own (moves = \"poses\"), or leave it fixed");
     at_place(places.effects[i], [&] {
       if (&choice.parameters == scene.interaction()) {
         StrandInteraction(choice.parameters, {});

@@ -215,7 +215,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
         cut_strand(table, material, curve.length, tied ? uniform_shape({}) : curve.shape,
                    tied ? curve.shape : Shape{});
     vary_along(table, strand);
-    set_root(strand, common.head, common.free_root, curve.position, curve.frame);
+    set_root(strand, common.roots, curve.position, curve.frame);
     return strand;
   }
   if (p.word("natural") == "straight") {
@@ -227,9 +227,9 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
   Strand strand =
       cut_shape(table, material,
                 natural_shape(table, material, p.number("length_m"), common.seed, stream),
-                frame, !common.free_root);
+                frame, !common.roots.free_root);
   vary_along(table, strand);
-  set_root(strand, common.head, common.free_root, p.vec("position_m"), frame);
+  set_root(strand, common.roots, p.vec("position_m"), frame);
   return strand;
 }
 

@@ -14,10 +14,9 @@ namespace tress::simulation {
 
 /// Data common to all strands of a scene.
 struct Common {
-  const Table& material;                     // the scene's [material]
-  const RootMotion& head;                    // motion of all roots
-  const std::optional<FreeRoot>& free_root;  // root that moves freely, if it does
-  std::uint64_t seed;                        // seed of all random numbers
+  const Table& material;  // the scene's [material]
+  RootMotions roots;      // motions of the roots
+  std::uint64_t seed;     // seed of all random numbers
 };
 
 /// The keys for discretisation, shape and initial state that [strand] and [groom] share.

@@ -69,7 +69,7 @@ StrandSeries::StrandSeries(std::shared_ptr<const StrandTables> tables,
     : tables_(std::move(tables)),
       head_(head),
       free_root_(free_motion(tables_->root)),
-      common_{tables_->material, head_, free_root_, seed},
+      common_{tables_->material, {head_, free_root_, tables_->skin.get()}, seed},
       fits_(fits) {
   fits_.resize(tables_->sources.size());
   for (std::size_t i = 0; i < tables_->sources.size(); ++i) {

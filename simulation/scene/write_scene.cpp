@@ -52,10 +52,19 @@ void add_header(std::string& text, std::string_view name) {
   fmt::format_to(std::back_inserter(text), "\n{}\n", name);
 }
 
+std::string absolute(std::string_view file) {
+  return std::filesystem::absolute(file).lexically_normal().string();
+}
+
 void add_key(std::string& text, const Parameter& p, std::string_view value) {
   std::string full;
   if (p.text && p.name.ends_with("file") && !value.empty()) {
-    value = full = std::filesystem::absolute(value).lexically_normal().string();
+    value = full = absolute(value);
+  } else if (p.text && p.name.ends_with("files")) {
+    for (const std::string& one : names_of(value)) {
+      full += (full.empty() ? "" : ",") + absolute(one);
+    }
+    value = full;
   }
   fmt::format_to(std::back_inserter(text), "{} = {}\n", p.name, toml_value(p, value));
 }

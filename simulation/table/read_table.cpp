@@ -71,7 +71,12 @@ std::string rows_text(const Parameter& p, const toml::node& node,
   return text;
 }
 
-/// Strings of a list, joined by commas.
+/// A path relative to the scene's folder.
+std::string beside_scene(const std::string& path, const std::string& scene) {
+  return (std::filesystem::path(scene).parent_path() / path).string();
+}
+
+/// Strings of a list, joined by commas; those of a key of files are paths.
 std::string texts(const Parameter& p, const toml::node& node, const std::string& file) {
   const toml::array* list = node.as_array();
   if (list == nullptr) wrong_type(p, node, file);
@@ -79,14 +84,13 @@ std::string texts(const Parameter& p, const toml::node& node, const std::string&
   for (const toml::node& one : *list) {
     if (!one.is_string()) wrong_type(p, one, file);
     if (!text.empty()) text += ',';
-    text += printable(scalar_text(one));
+    const std::string name = printable(scalar_text(one));
+    refuse_if(name.find(',') != std::string::npos,
+              fmt::format("{}: a comma in '{}'", p.name, name),
+              place_of(one.source(), file), "give a name without commas");
+    text += p.name.ends_with("files") ? beside_scene(name, file) : name;
   }
   return text;
-}
-
-/// A path relative to the scene's folder.
-std::string beside_scene(const std::string& path, const std::string& scene) {
-  return (std::filesystem::path(scene).parent_path() / path).string();
 }
 
 std::string value_text(const Parameter& p, const toml::node& node,

@@ -60,4 +60,14 @@ void Table::refuse_unused(std::string_view choice, std::span<const Use> uses) co
   }
 }
 
+std::vector<std::string> names_of(std::string_view list) {
+  std::vector<std::string> all;
+  while (!list.empty()) {
+    const std::size_t comma = list.find(',');
+    all.emplace_back(list.substr(0, comma));
+    list = comma == list.npos ? "" : list.substr(comma + 1);
+  }
+  return all;
+}
+
 }  // namespace tress::simulation

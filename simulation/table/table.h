@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "contract/layers.h"
 #include "contract/parameters.h"
@@ -56,5 +57,8 @@ class Table {
 
 /// Whether `key` applies to `word`: `uses` names it for `word`, or nowhere.
 bool used(std::span<const Use> uses, std::string_view word, std::string_view key);
+
+/// Returns the words of a list as text: "a,b".
+std::vector<std::string> names_of(std::string_view list);
 
 }  // namespace tress::simulation

@@ -133,6 +133,7 @@ TEST(SceneTables, RefuseAnOptionOfAnotherIntegratorAndNameItsOwner) {
 TEST(SceneTables, TakeEveryWordWithItsKeys) {
   for (const TableEntry& entry : table_entries()) {
     for (const Use& use : entry.uses) {
+      if (use.word == "skin") continue;  // has files, which test_mesh_body gives it
       std::string text = "title = \"t\"\n[" + entry.name + "]\n" +
                          std::string(entry.choice) + " = \"" + std::string(use.word) +
                          "\"\n";
