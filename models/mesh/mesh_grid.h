@@ -16,7 +16,7 @@ struct MeshGrid {
                      // middles of edges and centres of triangles
 };
 
-/// What turns a mesh file into a grid.
+/// Settings of the grid of a mesh file.
 struct MeshGridOptions {
   double scale = 1;    // metres per unit of the file
   double spacing = 0;  // m, between grid points; 0: a 64th of the largest extent
