@@ -43,6 +43,7 @@
   METHOD(cvode_bdf)                  \
   METHOD(arkode_erk)                 \
   METHOD(arkode_dirk)                \
+  METHOD(arkode_ark)                 \
   METHOD(ida)
 
 namespace tress::integrators {

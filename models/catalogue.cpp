@@ -24,6 +24,8 @@ ModelEntry andrews_squeezer_entry();
 ModelEntry slider_crank_entry();
 ModelEntry car_axis_entry();
 ModelEntry beam_entry();
+ModelEntry wheelset_entry();
+ModelEntry filament_entry();
 ModelEntry der_entry();
 ModelEntry corde_entry();
 ModelEntry xpbd_cosserat_entry();
@@ -55,6 +57,8 @@ std::vector<ModelEntry> built_in_models() {
       slider_crank_entry(),
       car_axis_entry(),
       beam_entry(),
+      wheelset_entry(),
+      filament_entry(),
       ModelEntry{"super_helix", "inextensible rod of n helices; 3n, 2n or n curvatures and twists", "Bertails 2006, 2009", super_helix_parameters(), on_described_strand<make_super_helix>, make_super_helix, together<Unknown::curvature>},
       ModelEntry{"super_helix_tree", "super_helix with branches: palm tree, algae, complex tree, man, willow", "Bertails 2009", super_helix_tree_parameters(), make_super_helix_tree},
       ModelEntry{"super_clothoid", "inextensible rod of n clothoids; 6n, 4n or 2n curvatures and twists", "Casati 2013", super_clothoid_parameters(), on_described_strand<make_super_clothoid>, make_super_clothoid, nullptr, Roots::clamped_or_free, 4},

@@ -6,6 +6,10 @@
 namespace tress::experiments::block_descent {
 namespace {
 
+bool without(const Row& row, std::string_view acceleration) {
+  return !row.has(acceleration) || row.text(acceleration) == "0";
+}
+
 /// The row of the swinging springs by this method at 20 sweeps with default penalties, a
 /// node or all at a time.
 const Row* usual(const std::vector<Row>& rows, std::string_view integrator,
@@ -14,7 +18,7 @@ const Row* usual(const std::vector<Row>& rows, std::string_view integrator,
     return row.ok() && row.text("part") == "sweeps" &&
            row.text("model") == "mass_spring" && row.text("integrator") == integrator &&
            row.text("block") == block && row.text("sweeps") == sweeps &&
-           (!row.has("chebyshev") || row.text("chebyshev") == "0");
+           without(row, "chebyshev") && without(row, "anderson");
   });
   return found == rows.end() ? nullptr : &*found;
 }

@@ -18,6 +18,7 @@ constexpr Column columns[] = {
     {"sweeps", "sweeps per step"},
     {"block", "nodes solved together, 0: all"},
     {"chebyshev", "rate for which sweeps are accelerated"},
+    {"anderson", "number of earlier sweeps that Anderson acceleration combines"},
     {"penalty_per_s2", "largest stiffness of a row, times its G W G^T"},
     {"primal_sweeps", "sweeps before multipliers are improved"},
     {"direct_distance_rel",

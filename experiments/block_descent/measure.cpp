@@ -203,8 +203,8 @@ Row identity(const Work& work) {
   row.set("dt_s", trial.dt)
       .set("stretch_over_bending", stretch_over_bending(work.parameters));
   for (const Parameter& option : find_integrator(trial.integrator).parameters) {
-    for (const char* column :
-         {"sweeps", "block", "chebyshev", "penalty_per_s2", "primal_sweeps"}) {
+    for (const char* column : {"sweeps", "block", "chebyshev", "anderson",
+                               "penalty_per_s2", "primal_sweeps"}) {
       if (option.name != column) continue;
       row.set(column, integrators::text_of(work.options, column));
     }

@@ -24,8 +24,10 @@ struct Way {
 };
 
 const Way of_springs[] = {{"xpbd", {}, true},
+                          {"xpbd", {{"anderson", "5"}}, true},
                           {"vbd", {}, true},
                           {"vbd", {{"chebyshev", "0.8"}}, true},
+                          {"vbd", {{"anderson", "5"}}, true},
                           {"vbd", {{"block", "2"}}, false},
                           {"vbd", {{"block", "4"}}, true},
                           {"vbd", {{"block", "8"}}, false},

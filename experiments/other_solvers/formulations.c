@@ -7,6 +7,8 @@
  * 1985) index3   y = (q, v, lambda)        q' = v, M v' = f + G^T lambda, g = 0 mass y =
  * (q, v, w, lambda)     q' = v, v' = w, 0 = M w - f - G^T lambda, 0 = g; index 3 with a
  * constant mass matrix
+ *
+ * A problem of first order is y = q, y' = f in every formulation.
  */
 #include <math.h>
 #include <string.h>
@@ -27,7 +29,8 @@ void no_rate(double t, const double* q, double* rate) {
 
 /* Selects problem and formulation and sets the counters to zero. */
 void choose(const int* problem, const int* formulation) {
-  const Problem* const all[] = {&andrews_squeezer, &slider_crank, &car_axis, &beam};
+  const Problem* const all[] = {&andrews_squeezer, &slider_crank, &car_axis, &beam,
+                                &filament};
   p = all[*problem];
   form = *formulation;
   evaluations = jacobians = 0;
@@ -42,7 +45,7 @@ void sizes(int* n_m_y, double* t_end) {
   const int tails[] = {0, p->m, 2 * p->m, p->m, p->n + p->m};
   n_m_y[0] = p->n;
   n_m_y[1] = p->m;
-  n_m_y[2] = 2 * p->n + tails[form];
+  n_m_y[2] = p->first_order ? p->n : 2 * p->n + tails[form];
   *t_end = p->t_end;
 }
 
@@ -108,6 +111,12 @@ static void accelerate(double t, const double* q, const double* v, double* a,
 void start(double* y, double* yp, double* size) {
   const int n = p->n, m = p->m;
   double a[max_coordinates], lambda[max_constraints];
+  if (p->first_order) {
+    p->start(y, 0);
+    p->force(0, y, 0, yp);
+    memcpy(size, p->q_size, sizeof(double) * (size_t)n);
+    return;
+  }
   p->start(y, y + n);
   accelerate(0, y, y + n, a, lambda);
   double *const tail = y + 2 * n, *const tail_size = size + 2 * n;
@@ -139,6 +148,10 @@ void right_side(double t, const double* y, double* dy) {
   const int n = p->n, m = p->m;
   double lambda[max_constraints];
   ++evaluations;
+  if (p->first_order) {
+    p->force(t, y, 0, dy);
+    return;
+  }
   memcpy(dy, y + n, sizeof(double) * (size_t)n);
   if (form != mass_form) {
     accelerate(t, y, y + n, dy + n, lambda);
@@ -165,7 +178,7 @@ void residual(double t, const double* y, const double* yp, double* r) {
   double mass[max_coordinates * max_coordinates], g[max_coordinates * max_constraints];
   if (form == ode || m == 0) {
     right_side(t, y, r);
-    for (int i = 0; i < 2 * n; ++i) r[i] = yp[i] - r[i];
+    for (int i = 0; i < (p->first_order ? n : 2 * n); ++i) r[i] = yp[i] - r[i];
     return;
   }
   ++evaluations;

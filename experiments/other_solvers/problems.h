@@ -1,12 +1,13 @@
-/* The four published problems as plain functions, for every solver package.
+/* The five published problems as plain functions, for every solver package.
  *
  *     M(q) a = f(t, q, v) + G(t, q)^T lambda,   g(t, q) = 0
  *
- * Data and signs are those of models/published. Matrices are row-major. */
+ * Data and signs are those of models/published. Matrices are row-major. A problem of
+ * first order is q' = f(t, q), without v. */
 #ifndef TRESS_OTHER_SOLVERS_PROBLEMS_H
 #define TRESS_OTHER_SOLVERS_PROBLEMS_H
 
-enum { max_coordinates = 40, max_constraints = 6 };
+enum { max_coordinates = 42, max_constraints = 6 };
 
 typedef struct {
   const char* name;
@@ -24,9 +25,10 @@ typedef struct {
   /* d g/dt = G v + rate, d^2 g/dt^2 = G a + bias */
   void (*constraint_rate)(double t, const double* q, double* rate);
   void (*bias)(double t, const double* q, const double* v, double* bias);
+  int first_order;
 } Problem;
 
-extern const Problem andrews_squeezer, slider_crank, car_axis, beam;
+extern const Problem andrews_squeezer, slider_crank, car_axis, beam, filament;
 
 void no_rate(double t, const double* q, double* rate);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Solves the four published problems with other solver packages and with tress, and prints one line per run.
+"""Solves the five published problems with other solver packages and with tress, and prints one line per run.
 
 Without arguments, all runs also become results/other_solvers.csv. With --update, the runs replace those of this table."""
 import argparse
@@ -14,7 +14,7 @@ import tempfile
 from datetime import datetime, timezone
 from pathlib import Path
 
-from definitions import PROBLEMS, REPOSITORY, InputError, Problem, compiled, reference
+from definitions import PROBLEMS, REPOSITORY, SCALES, UNCONSTRAINED, InputError, Problem, compiled, reference
 from solvers import INSTALL, NAMES, PACKAGES, SOLVERS, TOLERANCES, TRESS, commands, run, tress_rows
 
 COLUMNS = {
@@ -28,7 +28,7 @@ COLUMNS = {
     "rtol": "relative tolerance; absolute tolerance over the size of each entry",
     "position_tol_rel": "error of a point over the length for which tress controls the step",
     "dt_s": "fixed step",
-    "digits": "correct digits of the positions at the end, the worst entry; at most those of the reference",
+    "digits": "correct digits of the positions at the end, the worst entry, of the Filament over its length; at most those of the reference",
     "reference_digits": "correct digits of the reference",
     "drift": "largest constraint at the end",
     "steps": "number of accepted steps",
@@ -40,9 +40,9 @@ COLUMNS = {
 }
 
 
-def correct_digits(end, wanted, limit):
-    """Returns the digits of the worst entry, at most `limit`."""
-    worst = max(abs(x / y - 1) for x, y in zip(end, wanted))
+def correct_digits(end, wanted, limit, scale=None):
+    """Returns the digits of the worst entry, at most `limit`: relative to the entry, or to the scale of all entries."""
+    worst = max(abs(x - y) / scale if scale else abs(x / y - 1) for x, y in zip(end, wanted))
     return limit if worst == 0 else min(limit, -math.log10(worst)) if math.isfinite(worst) else -math.inf
 
 
@@ -53,7 +53,7 @@ def identity(problem, package, solver, formulation, jacobian):
 
 def ended(row, end, problem, drift):
     """Fills in the error of a run that reached the end."""
-    digits = correct_digits(end, *reference(problem))
+    digits = correct_digits(end, *reference(problem), SCALES.get(problem))
     if digits < 0:
         return {**row, "status": "diverged", "reason": "no correct digit at the end"}
     return {**row, "digits": f"{digits:.3g}", "drift": f"{drift:.2e}" if drift is not None else "", "status": "ok"}
@@ -106,7 +106,7 @@ def rows_of(options):
                 for tolerance in (one for one in tolerances if solver.runs(problem, one)):
                     yield foreign_row(solver, start[solver.package], library, problem, tolerance)
             # Rosenbrock methods of tress have no constraints; cvode_bdf shows the orders on the Beam.
-            usable = [one for one in own if problem == "beam" or one not in ("rodas5p", "cvode_bdf")]
+            usable = [one for one in own if problem in UNCONSTRAINED or one not in ("rodas5p", "cvode_bdf")]
             for found in tress_rows(options.programs / "work_precision", problem, usable, folder) if usable else []:
                 yield tress_row(found, version.split()[-1])
 

@@ -7,7 +7,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from definitions import FORMULATIONS, HERE, PROBLEMS, REPOSITORY, InputError
+from definitions import FORMULATIONS, HERE, PROBLEMS, REPOSITORY, UNCONSTRAINED, InputError
 
 TOLERANCES = ["1e-4", "1e-6", "1e-8"]
 LIMIT_S = 30
@@ -34,14 +34,16 @@ class Solver:
         return f"{self.package}.{self.method}"
 
     def formulation_of(self, problem):
-        """The Beam has no constraints: every formulation is the ODE."""
-        return "ode" if problem == "beam" else self.formulation
+        """The Beam and the Filament have no constraints: every formulation is the ODE."""
+        return "ode" if problem in UNCONSTRAINED else self.formulation
 
     def runs(self, problem, tolerance):
         """Higher indices than the package supports run at the middle tolerance only."""
         if self.formulation in ("index2", "index3") and tolerance in TOLERANCES and tolerance != TOLERANCES[1]:
             return False
-        return not (self.only_beam and problem != "beam") and not (self.only_constrained and problem == "beam")
+        if problem == "filament" and self.method == "alpha2":  # for equations of second order
+            return False
+        return not (self.only_beam and problem != "beam") and not (self.only_constrained and problem in UNCONSTRAINED)
 
 
 SOLVERS = [
@@ -159,7 +161,7 @@ def _kept(row):
     return _level(row) in (3, 6)
 
 
-COARSE_STEP_S = {"andrews_squeezer": 2e-4, "slider_crank": 1e-3, "car_axis": 1e-2, "beam": 1e-2}
+COARSE_STEP_S = {"andrews_squeezer": 2e-4, "slider_crank": 1e-3, "car_axis": 1e-2, "beam": 1e-2, "filament": 5e-4}
 
 
 def _level(row):

@@ -17,7 +17,7 @@ started <- proc.time()[["elapsed"]]
 caught <- ""
 text <- capture.output(out <- withCallingHandlers(tryCatch(
   if (method == "radau") {
-    plain <- count == 2 * n  # an ODE
+    plain <- count <= 2 * n  # an ODE
     radau(begin$y, times, "derivs", parms = NULL, dllname = model, initfunc = NULL,
           rtol = tolerance, atol = tolerance * begin$size, maxsteps = 1e7, hini = 1e-6 * size$t_end,
           nind = if (plain) c(count, 0, 0) else c(n, n, count - 2 * n),

@@ -12,15 +12,17 @@ namespace tress::experiments {
 
 struct ProblemError {
   double relative;  // largest error over the scale of its entry
-  double scd;       // -log10 of the largest entry-wise relative error
+  double scd;       // -log10 of the largest entry-wise relative error; of velocities,
+                    // of `relative`
   /// Largest distance of a material point over the length of the body, as error control
   /// measures it, but for velocities; coordinates over System::scale where there is no
   /// length.
   double of_body;
 };
 
-/// Compared quantities: material points are independent of the formulation.
-enum class Compared { coordinates, points };
+/// Compared quantities: material points are independent of the formulation; velocities
+/// are the state of an equation of first order. Of coordinates, those of the reference.
+enum class Compared { coordinates, velocities, points };
 
 /// The state at one time of a run.
 struct Checkpoint {

@@ -7,7 +7,8 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "scene",
      .help = "rows of one problem or strand",
      .choices = "all|pendulum|pendulum_constrained|double_pendulum|chain_10|"
-                "andrews_squeezer|slider_crank|car_axis|beam|swing|strand_release"},
+                "andrews_squeezer|slider_crank|car_axis|beam|wheelset|filament|swing|"
+                "strand_release"},
     {.name = "error", .help = "rows of one kind of error", .choices = "all|time|total"},
     {.name = "modes",
      .help = "rows of strands with these modes",

@@ -39,12 +39,17 @@ BlockDescent::BlockDescent(System& system, const DescentChoice& choice)
       before_last_(w_.size()),
       force_(w_.size()),
       move_(w_.size()),
-      bound_(w_.size()) {
+      bound_(w_.size()),
+      from_(w_.size()) {
   form_.inverse_mass(w_);
+  std::vector<double> masses = w_;
+  for (double& entry : masses) entry = 1 / entry;
+  mixing_ = AndersonMixing(choice.anderson, w_.size(), std::move(masses));
   const std::size_t size =
       choice.block == 0 ? nodes_.size() : static_cast<std::size_t>(choice.block);
   const std::size_t half =
       std::max<std::size_t>(1, size < nodes_.size() ? size / 2 : size);
+  map_ = half == size ? 1 : 2;
   for (std::size_t k = 0; k < 2; ++k) {
     windows_[k] = windows_of(form_, system.layout().coordinates, nodes_,
                              k == 0 ? size : half, size);
@@ -130,9 +135,13 @@ void BlockDescent::run(double t, double h, In origin, In target, InOut x, Stats&
   }
   const int period = choice_.augmentation ? choice_.augmentation->sweeps : choice_.sweeps;
   for (int done = 0; done < choice_.sweeps; ++done) {
-    if (done % period == 0) std::ranges::copy(x, last_.begin());
+    const int number = done % period;
+    if (number == 0) std::ranges::copy(x, last_.begin());
+    if (number == 0) mixing_.restart();
+    if (number % map_ == 0) std::ranges::copy(x, from_.begin());
     sweep(step, done, x);
-    if (choice_.chebyshev > 0) accelerate(done % period, x);
+    if (choice_.chebyshev > 0) accelerate(number, x);
+    if ((number + 1) % map_ == 0) mixing_.mix(from_, x);
     if (choice_.augmentation && (done + 1) % period == 0) improve(step, x);
     ++stats.sweeps;
   }

@@ -8,6 +8,7 @@
 
 #include "contract/forms/compliance_form.h"
 #include "integrators/entry.h"
+#include "integrators/position_based/anderson.h"
 #include "integrators/position_based/windows.h"
 
 namespace tress::integrators {
@@ -33,7 +34,8 @@ struct DescentChoice {
   int block = 1;            // nodes solved together, 0: all
   Curvature curvature = Curvature::exact;  // treatment of second derivatives
   double chebyshev =
-      0;  // spectral radius for which sweeps are accelerated, 0: not at all
+      0;             // spectral radius for which sweeps are accelerated, 0: not at all
+  int anderson = 0;  // earlier sweeps that Anderson acceleration combines, 0: none
   std::optional<Augmentation> augmentation = {};  // multipliers; none: pure descent
   bool oriented = false;  // orientations by ComplianceForm::orient
 };
@@ -67,7 +69,9 @@ struct DescentChoice {
 /// k/(1 - k alpha) [Rockafellar 1976].
 ///
 /// chebyshev: x <- omega (x - x_2) + x_2, x_2 of two sweeps ago, omega <- 4/(4 - rho^2
-/// omega) [Wang 2015]. Nothing allocates in run().
+/// omega) [Wang 2015]. anderson: AndersonMixing of x, in the norm of the masses, after
+/// every sweep, or after every second one where odd sweeps have other windows. Nothing
+/// allocates in run().
 class BlockDescent {
  public:
   /// Works on the compliance form of a system, which must outlive it.
@@ -122,8 +126,11 @@ class BlockDescent {
   std::vector<double> w_;
   std::vector<Rows> stiffness_, lambda_;  // k and lambda of the blocks
   double omega_ = 1;
+  int map_ = 1;  // sweeps after which windows are the same again
+  AndersonMixing mixing_;
   std::vector<double> last_, before_last_;    // x after sweeps
   std::vector<double> force_, move_, bound_;  // of one window
+  std::vector<double> from_;                  // x before the sweeps of mixing_
   double at_[columns] = {};                   // of one block: its coordinates
   ComplianceForm::Value value_{};
 };

@@ -31,8 +31,9 @@ std::vector<std::size_t> sweep_indices(std::string_view sweep_order, std::size_t
   return all;
 }
 
-PositionSweeps::PositionSweeps(System& system, const Options& options)
-    : PositionSweeps(system, own_options(options, own)) {}
+PositionSweeps::PositionSweeps(System& system, const Options& options,
+                               std::span<const Parameter> parameters)
+    : PositionSweeps(system, own_options(options, parameters)) {}
 
 PositionSweeps::PositionSweeps(System& system, const Parameters& chosen)
     : sweeps_(chosen.whole("sweeps")),
@@ -41,24 +42,53 @@ PositionSweeps::PositionSweeps(System& system, const Parameters& chosen)
       order_(sweep_indices(chosen.word("sweep_order"), blocks_.size())),
       lambda_of_(blocks_.size()),
       w_(static_cast<std::size_t>(system.layout().coordinates)),
-      last_(w_.size()) {
+      last_(w_.size()),
+      from_(w_.size() + blocks_.size() * ComplianceForm::most_rows),
+      to_(from_.size()) {
   form_.inverse_mass(w_);
+  std::vector<double> masses = w_;
+  for (double& entry : masses) entry = 1 / entry;
+  const int depth = chosen.knows("anderson") ? chosen.whole("anderson") : 0;
+  mixing_ = AndersonMixing(depth, from_.size(), std::move(masses));
 }
 
 void PositionSweeps::run(double t, double h, In origin, InOut x, Stats& stats) {
   for (Rows& lambda : lambda_of_) lambda.fill(0);
+  mixing_.restart();
   double move = 0, before = 0;  // of the last two sweeps
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
     const bool late = sweep + 2 >= sweeps_;
     if (late) std::ranges::copy(x, last_.begin());
+    if (mixing_.active()) gather(x, from_);
     for (const std::size_t k : order_) correct(t, h, k, origin, x);
     ++stats.sweeps;
     if (late) before = std::exchange(move, weighed(last_, x));
+    if (mixing_.active()) mix(x);
   }
   const double rate =
       sweeps_ == 1 ? unknown : (move < slowest * before ? move / before : slowest);
   const double moved = weighed(origin, x);
   unsettled_ = moved > 0 ? rate / (1 - rate) * move / moved : 0;
+}
+
+/// z <- x and the multipliers.
+void PositionSweeps::gather(In x, Out z) const {
+  auto at = std::ranges::copy(x, z.begin()).out;
+  for (const Rows& lambda : lambda_of_) at = std::ranges::copy(lambda, at).out;
+}
+
+/// After a sweep that started from from_.
+void PositionSweeps::mix(InOut x) {
+  gather(x, to_);
+  mixing_.mix(from_, to_);
+  auto at = to_.begin();
+  const auto take = [&at](auto& values) {
+    const auto end = at + static_cast<std::ptrdiff_t>(values.size());
+    std::copy(at, end, values.begin());
+    at = end;
+  };
+  take(x);
+  for (Rows& lambda : lambda_of_) take(lambda);
 }
 
 double PositionSweeps::weighed(In from, In to) const {

@@ -8,6 +8,7 @@
 
 #include "contract/forms/compliance_form.h"
 #include "integrators/entry.h"
+#include "integrators/position_based/anderson.h"
 
 namespace tress::integrators {
 
@@ -39,12 +40,15 @@ std::vector<std::size_t> sweep_indices(std::string_view sweep_order, std::size_t
 ///
 /// so that converged sweeps solve x = guess + h^2 W G^T s, except for the change of G.
 /// The stress s is that of the energy and of its friction at the rates (x - origin)/h.
-/// [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
+/// [Macklin, Mueller & Chentanez 2016, eqs. 18, 26] anderson: AndersonMixing of x and
+/// lambda together, which keeps x - guess = W G^T lambda for linear C; the norm is that
+/// of x by the masses. unsettled() does not allow for it.
 class PositionSweeps {
  public:
-  /// Constructs the sweeps from sweep_options(). Throws InputError if an option is out of
-  /// range.
-  PositionSweeps(System& system, const Options& options);
+  /// Constructs the sweeps from sweep_options(), or from another list that contains them
+  /// and may contain anderson_option. Throws InputError if an option is out of range.
+  PositionSweeps(System& system, const Options& options,
+                 std::span<const Parameter> parameters = sweep_options());
 
   /// Solves the equations of time t; x is the guess, then the solution. Adds to `stats`.
   void run(double t, double h, In origin, InOut x, Stats& stats);
@@ -65,6 +69,8 @@ class PositionSweeps {
   void correct(double t, double h, std::size_t k, In origin, InOut x);
   static void solve(Square& a, Rows& b, std::size_t rows);
   double weighed(In from, In to) const;
+  void gather(In x, Out z) const;
+  void mix(InOut x);
 
   static constexpr double slowest = 0.999, unknown = 0.9;
 
@@ -74,6 +80,8 @@ class PositionSweeps {
   std::vector<std::size_t> order_;
   std::vector<Rows> lambda_of_;  // of the blocks, in this step
   std::vector<double> w_, last_;
+  AndersonMixing mixing_;
+  std::vector<double> from_, to_;  // x and lambda before a sweep and after
   double unsettled_ = 0;
   ComplianceForm::Value value_{};
 };

@@ -6,9 +6,11 @@ namespace tress::integrators {
 namespace {
 
 /// Vertex block descent: DescentMethod on the energy as it is. With `block` 0 a sweep is
-/// a Newton iteration of the whole step. [Chen et al. 2024; Wang 2015]
+/// a Newton iteration of the whole step. [Chen et al. 2024; Wang 2015;
+/// Anderson 1965]
 constexpr Parameter vbd_own[] = {sweeps_option,    sweep_order_option, block_option,
-                                 curvature_option, start_option,       chebyshev_option};
+                                 curvature_option, start_option,       chebyshev_option,
+                                 anderson_option};
 
 std::unique_ptr<Integrator> vbd_of(System& system, const Options& options) {
   const Parameters chosen = own_options(options, vbd_own);

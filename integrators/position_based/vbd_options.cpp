@@ -2,17 +2,25 @@
 
 #include <algorithm>
 
+#include "contract/input_error.h"
+
 namespace tress::integrators {
 
 DescentChoice descent_choice(const Parameters& chosen) {
   const std::string_view second = chosen.word("second_derivatives");
+  const int anderson = chosen.knows("anderson") ? chosen.whole("anderson") : 0;
+  if (chosen.number("chebyshev") > 0 && anderson > 0) {
+    throw InputError("both accelerations of the sweeps are chosen",
+                     "options chebyshev and anderson", "set one of them to 0");
+  }
   return {.sweeps = chosen.whole("sweeps"),
           .sweep_order = std::string(chosen.word("sweep_order")),
           .block = chosen.whole("block"),
           .curvature = second == "exact"       ? Curvature::exact
                        : second == "majorised" ? Curvature::majorised
                                                : Curvature::none,
-          .chebyshev = chosen.number("chebyshev")};
+          .chebyshev = chosen.number("chebyshev"),
+          .anderson = anderson};
 }
 
 Start start_choice(const Parameters& chosen) {

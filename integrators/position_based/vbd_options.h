@@ -32,7 +32,9 @@ inline constexpr Parameter chebyshev_option{
     .min = 0,
     .max = 1};
 
-/// Returns the choice given by sweeps_option, sweep_order_option and the options above.
+/// Returns the choice given by sweeps_option, sweep_order_option, the options above, and
+/// anderson_option where it is among them. Throws InputError if both accelerations are
+/// chosen.
 DescentChoice descent_choice(const Parameters& chosen);
 /// Returns the choice given by start_option.
 Start start_choice(const Parameters& chosen);

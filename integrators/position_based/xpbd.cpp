@@ -7,18 +7,20 @@
 namespace tress::integrators {
 namespace {
 
+constexpr Parameter xpbd_own[] = {sweeps_option, sweep_order_option, anderson_option};
+
 /// Position-based dynamics with compliance: backward Euler on the energy, explicit on all
 /// other forces. A fixed number of sweeps (PositionSweeps) starts from x = q + h v + h^2
 /// rest(q, v); then v = (x - q)/h. Order 1. With few sweeps it is softer than the model,
 /// increasingly so for longer steps and finer strands. Converged sweeps give backward
 /// Euler's step except for the change of G during the step. That change is O(h^2) of the
 /// force: none for linear C, large if light coordinates turn far. [Macklin, Mueller &
-/// Chentanez 2016]
+/// Chentanez 2016; Anderson 1965]
 class Xpbd final : public FixedStep {
  public:
   Xpbd(System& system, const Options& options)
       : FixedStep(system, options),
-        sweeps_(system, options),
+        sweeps_(system, options, xpbd_own),
         form_(*system.compliance_form()),
         x_(vector_n()) {}
 
@@ -46,7 +48,7 @@ IntegratorEntry xpbd_entry() {
           .source = "Macklin-Mueller-Chentanez 2016",
           .formulations = {{Formulation::parametric, 1}},
           .gaps = gaps_of_sweeps(),
-          .parameters = sweep_options(),
+          .parameters = xpbd_own,
           .objection = compliances,
           .make = make_method<Xpbd>};
 }

@@ -78,7 +78,16 @@ constexpr std::array<double, 40> beam_v = {
     0.1185543909805575e1,  0.1186297084203716e1, 0.1186637618908127e1,
     0.1186724615113034e1};
 
-constexpr std::array<PublishedEnd, 4> ends = {{
+// The Test Set prints lambda over 1e4 N, and the right contact first.
+constexpr std::array<double, 5> wheelset_q = {.86355386965811e-2, .13038281022727e-4,
+                                              -.93635784016818e-4, -.13642299804033e-1,
+                                              .15292895005422e-2};
+constexpr std::array<double, 12> wheelset_v = {
+    -.76985374142666e-1, -.25151106429207e-3, .20541188079539e-2, -.23904837703692,
+    -.13633468454173e-1, -.24421377661131,    .37839614386969e-3, .14173214964613,
+    -.33666751972196e-3, -.15949425684022,    -.10124044903201e3, -.56285630573753e2};
+
+constexpr std::array<PublishedEnd, 5> ends = {{
     {"andrews_squeezer", .03, squeezer_q, squeezer_v, squeezer_a, squeezer_lambda, 9, 7,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem andrews: "
      "PSIDE, "
@@ -105,6 +114,16 @@ constexpr std::array<PublishedEnd, 4> ends = {{
      9,
      "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem beam: RADAU, "
      "rtol = atol = 1.1e-18"},
+    {"wheelset",
+     10,
+     wheelset_q,
+     wheelset_v,
+     {},
+     {},
+     6,
+     5,
+     "Test Set for IVP Solvers (Mazzia & Magherini, release 2.4), problem wheel: DASSL, "
+     "rtol = atol = 1e-9"},
 }};
 
 }  // namespace

@@ -191,7 +191,7 @@ TEST(ProblemRuns, ByToleranceMeasureTheBodyOverItsLength) {
   line.quick = true;
   line.repeat = 1;
   line.integrators = {"esdirk43"};
-  for (const char* const scene : {"beam", "chain_10", "andrews_squeezer"}) {
+  for (const char* const scene : {"beam", "chain_10", "andrews_squeezer", "filament"}) {
     line.set = {{"scene", scene}, {"position_tol_rel", "0.5"}};
     int controlled = 0;
     for (const Case& work : problem_runs(line, Settings(line, row_settings()))) {

@@ -26,10 +26,13 @@ export const descent_rows = (tables, part) =>
 
 // "vbd, blocks of 4"
 export function way_of(row) {
-  if (row.integrator === 'xpbd' || row.integrator === 'stable_cosserat_rods') return row.integrator;
+  const acceleration =
+    row.chebyshev > 0 ? ', Chebyshev' : row.anderson > 0 ? ', Anderson' : '';
+  if (row.integrator === 'xpbd' || row.integrator === 'stable_cosserat_rods')
+    return row.integrator + acceleration;
   const block =
     row.block === 0 ? ', whole' : row.block === 1 ? '' : `, blocks of ${row.block}`;
-  return row.integrator + block + (row.chebyshev > 0 ? ', Chebyshev' : '');
+  return row.integrator + block + acceleration;
 }
 
 const drawn = (rows) =>
@@ -100,7 +103,10 @@ export const distances_at = (tables, sweeps) =>
 // A node at a time and the whole, each by the time of a sweep.
 function cost_finding(rows) {
   const of = (block) =>
-    rows.find((row) => row.integrator === 'vbd' && row.block === block && !(row.chebyshev > 0));
+    rows.find(
+      (row) =>
+        row.integrator === 'vbd' && row.block === block && !(row.chebyshev > 0 || row.anderson > 0),
+    );
   const [nodes, whole] = [of(1), of(0)];
   if (!is_positive(nodes?.wall_s_per_sim_s) || !is_positive(whole?.wall_s_per_sim_s)) return [];
   const time = (row) => format_time((row.wall_s_per_sim_s * row.dt_s) / row.sweeps);

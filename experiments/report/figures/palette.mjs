@@ -119,7 +119,7 @@ export const families = [
   {
     name: 'implicit, adaptive',
     colour: gold,
-    members: ['cvode_bdf', 'arkode_dirk', 'ida', 'gsl_bsimp'],
+    members: ['cvode_bdf', 'arkode_dirk', 'arkode_ark', 'ida', 'gsl_bsimp'],
   },
   { name: 'structure preserving', colour: brown, members: ['rattle'] },
   {

@@ -65,7 +65,10 @@ def _springs(tables, integrator, block, sweeps):
     number of sweeps."""
     rows = tables.rows("block_descent", {"part": "sweeps", "model": "mass_spring", "integrator": integrator,
                                          "block": block, "sweeps": sweeps})
-    return rows[~(rows["chebyshev"] > 0)].iloc[0]["direct_distance_rel"]
+    plain = ~(rows["chebyshev"] > 0)
+    if "anderson" in rows:  # tables of earlier versions do not have it
+        plain &= ~(rows["anderson"] > 0)
+    return rows[plain].iloc[0]["direct_distance_rel"]
 
 
 def descent_locks(tables):

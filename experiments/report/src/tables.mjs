@@ -332,6 +332,7 @@ export const known_tables = {
       'sweeps',
       'block',
       'chebyshev',
+      'anderson',
       'penalty_per_s2',
       'primal_sweeps',
       'direct_distance_rel',

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <random>
@@ -111,6 +112,39 @@ inline Matrix tangent_of(System& system, const DenseState& s, Weights w) {
     inverse.col(j) = x;
   }
   return solution(inverse, Matrix::Identity(n, n));
+}
+
+/// Correct digits of the worst entry: error over its size, or over `typical` if that is
+/// larger.
+inline double digits(const Vector& actual, In published, const Vector& typical) {
+  const Vector expected = vector_of(published);
+  const Vector size = expected.cwiseAbs().cwiseMax(typical);
+  return -std::log10((actual - expected).cwiseQuotient(size).lpNorm<Eigen::Infinity>());
+}
+
+/// |S x - b| / (|S| |x|) with x = solve(b) and S x the derivative of the residual along
+/// (w.acc x, w.vel x, w.pos x), by differences. The step moves no argument by more than a
+/// thousandth of its typical size: truncation 1e-12, rounding 1e-16 / 1e-3.
+inline double tangent_error(System& system, const DenseState& s, Weights w,
+                            unsigned seed) {
+  const int n = system.layout().coordinates;
+  Vector q_typ(n), v_typ(n), x(n);
+  system.scale(out(q_typ), out(v_typ));
+  const Matrix matrix = tangent_of(system, s, w);
+  const Vector b = matrix * random_vector(n, seed).cwiseProduct(q_typ);
+  EXPECT_EQ(system.linearize(s.t, in(s.q), in(s.v), in(s.a), w), Status::ok);
+  EXPECT_EQ(system.solve(in(b), out(x)), Status::ok);
+  double reach = (w.pos * x).cwiseQuotient(q_typ).lpNorm<Eigen::Infinity>();
+  reach = std::max(reach, (w.vel * x).cwiseQuotient(v_typ).lpNorm<Eigen::Infinity>());
+  const Vector a_typ = s.a.cwiseAbs() + v_typ.cwiseAbs2();
+  reach = std::max(reach, (w.acc * x).cwiseQuotient(a_typ).lpNorm<Eigen::Infinity>());
+  const Vector difference = derivative(
+      [&](double h) {
+        return residual_of(
+            system, {s.t, s.q + h * w.pos * x, s.v + h * w.vel * x, s.a + h * w.acc * x});
+      },
+      1e-3 / reach);
+  return (difference - b).norm() / (matrix.norm() * x.norm());
 }
 
 }  // namespace tress

@@ -98,14 +98,6 @@ Vector integrate(System& system, FirstOrder& problem, double t_end) {
   return y;
 }
 
-// Correct digits of the worst entry: error over its size, or over `typical` if that is
-// larger.
-double digits(const Vector& actual, In published, const Vector& typical) {
-  const Vector expected = vector_of(published);
-  const Vector size = expected.cwiseAbs().cwiseMax(typical);
-  return -std::log10((actual - expected).cwiseQuotient(size).lpNorm<Eigen::Infinity>());
-}
-
 Vector end_state(System& system, const PublishedEnd& end) {
   FirstOrder problem(system);
   return integrate(system, problem, end.t);
