@@ -22,7 +22,12 @@ install(DIRECTORY ${tress_rooms} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress
 
 set(tress_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tress)
 # A package has its copy of SUNDIALS in Release, for Debian's is compiled at -O0.
-option(TRESS_INSTALL_SUNDIALS "Install the static libraries of TRESS_SUNDIALS_ROOT as well" OFF)
+set(own_sundials OFF)
+if(TRESS_SUNDIALS_SOURCE)
+  set(own_sundials ON)
+endif()
+option(TRESS_INSTALL_SUNDIALS "Install the static libraries of TRESS_SUNDIALS_ROOT as well"
+       ${own_sundials})
 if(TRESS_INSTALL_SUNDIALS AND TRESS_SUNDIALS_ROOT)
   set(tress_sundials_dir ${CMAKE_INSTALL_LIBDIR}/tress/sundials)
   install(DIRECTORY ${TRESS_SUNDIALS_ROOT}/ DESTINATION ${tress_sundials_dir}
