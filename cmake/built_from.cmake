@@ -19,7 +19,8 @@ function(git variable)
   set(${variable} "${printed}" PARENT_SCOPE)
 endfunction()
 
-if(GIT)
+# Not of a repository around the tree.
+if(GIT AND EXISTS ${ROOT}/.git)
   git(found rev-parse HEAD)
   if(NOT found STREQUAL "failed")
     set(commit ${found})

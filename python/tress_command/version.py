@@ -10,7 +10,7 @@ from .processes import read
 def _commit(root):
     """Returns the commit of a clone, or of the archive that the sources came from."""
     done = read("git", "-C", root, "rev-parse", "HEAD")
-    if done.code == 0:
+    if done.code == 0 and (Path(root) / ".git").exists():
         changed = read("git", "-C", root, "status", "--porcelain", "-uno").stdout
         return done.stdout.strip() + (" with changes" if changed else "")
     archived = Path(root) / "cmake/commit.txt"
