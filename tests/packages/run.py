@@ -1,6 +1,8 @@
-"""run.py PACKAGE.deb...: installs the packages in a new Debian system, which mmdebstrap makes
-from the package sources of this machine, and runs debian/tests there, without the clone. Needs root, for mounts."""
+"""run.py [--system FOLDER] PACKAGE.deb...: installs the packages in a new Debian system, which mmdebstrap makes
+from the package sources of this machine, and runs debian/tests there, without the clone. Needs
+root, for mounts. --system keeps the system in a folder, and uses one that is there."""
 
+import argparse
 import re
 import shutil
 import subprocess
@@ -51,24 +53,41 @@ def run_tests(system, packages):
     return failed
 
 
-def main():
-    packages = sys.argv[1:] or sys.exit(__doc__)
+def make_system(system):
+    """Makes a new Debian system, which reaches the package sources as this machine does."""
     if not shutil.which("mmdebstrap"):
         sys.exit("packages: mmdebstrap is missing; install cmake/package_packages.txt")
+    subprocess.run(["mmdebstrap", "--variant=apt", "--mode=root", "bookworm", system, *sources()],
+                   check=True)  # fmt: skip
+
+
+def fill(system, packages):
+    """Copies packages, tests and the settings of apt into a system, and updates its lists."""
+    for name in ("etc/resolv.conf", "etc/hosts"):
+        shutil.copy(f"/{name}", system / name)
+    for name in ("etc/apt/apt.conf.d", "etc/apt/auth.conf.d"):
+        if Path(f"/{name}").is_dir():
+            shutil.copytree(f"/{name}", system / name, dirs_exist_ok=True)
+    for name, files in (("packages", packages), ("tests", TESTS.iterdir())):
+        shutil.rmtree(system / name, ignore_errors=True)
+        (system / name).mkdir()
+        for file in files:
+            shutil.copy(file, system / name)
+    if in_system(system, "apt-get", "update", "-q") != 0:
+        sys.exit("packages: the package sources cannot be reached from the new system")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--system", type=Path)
+    parser.add_argument("packages", nargs="+", metavar="PACKAGE.deb")
+    options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="tress-system-") as folder:
-        system = f"{folder}/root"
-        subprocess.run(["mmdebstrap", "--variant=apt", "--mode=root", "bookworm", system, *sources()],
-                       check=True)  # fmt: skip
-        # How this machine reaches the sources.
-        for name in ("etc/resolv.conf", "etc/hosts"):
-            shutil.copy(f"/{name}", f"{system}/{name}")
-        for name in ("etc/apt/apt.conf.d", "etc/apt/auth.conf.d"):
-            shutil.copytree(f"/{name}", f"{system}/{name}", dirs_exist_ok=True)
-        for name, files in (("packages", packages), ("tests", TESTS.iterdir())):
-            (Path(system) / name).mkdir()
-            for file in files:
-                shutil.copy(file, Path(system) / name)
-        failed = run_tests(system, packages)
+        system = options.system or Path(folder) / "root"
+        if not system.exists():
+            make_system(system)
+        fill(system, options.packages)
+        failed = run_tests(system, options.packages)
     print(f"packages: {len(stanzas()) - len(failed)} of {len(stanzas())} tests passed"
           + (f"; failed: {', '.join(failed)}" if failed else ""))  # fmt: skip
     return 3 if failed else 0
