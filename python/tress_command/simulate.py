@@ -45,6 +45,8 @@ def _run(words, machine):
     if any(word.partition("=")[0] == "--out" for word in options):
         refuse(f"simulate: --out is {folder} here; {PROGRAM} takes another")
     program = first_program(machine, "simulate")
+    if "--check" in options:  # writes nothing
+        return run(program, scene, *options)
     watch = Stopwatch()
     with contextlib.nullcontext() if "--resume" in options else _in_place_of(folder):
         code = run(program, scene, "--out", f"{folder}/scenes", *options)
