@@ -1,6 +1,8 @@
 # Every library, found once. SUNDIALS: `./tress setup` builds a Release copy and names it in
 # TRESS_SUNDIALS_ROOT, because Debian's package is compiled at -O0 (3 to 7 times slower).
 set(TRESS_SUNDIALS_ROOT "$ENV{TRESS_SUNDIALS_ROOT}" CACHE PATH "Release build of SUNDIALS")
+find_package(KLU REQUIRED)
+include(TressSundials)
 set(TRESS_SUNDIALS_COMPONENTS ida cvode arkode nvecserial)
 if(TRESS_SUNDIALS_ROOT AND NOT "${SUNDIALS_DIR}" MATCHES "^${TRESS_SUNDIALS_ROOT}/")
   unset(SUNDIALS_DIR CACHE)  # an earlier answer to another question
@@ -13,11 +15,12 @@ if(NOT TRESS_SUNDIALS_ROOT)
 endif()
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(GSL 2.7 REQUIRED)
-find_package(KLU REQUIRED)
 
 if(TRESS_EXPERIMENTS OR TRESS_TESTS)
-  find_package(fmt REQUIRED)
   find_package(CLI11 REQUIRED)
+endif()
+if(TRESS_EXPERIMENTS OR TRESS_TESTS OR TRESS_PYTHON)
+  find_package(fmt REQUIRED)
   find_package(tomlplusplus REQUIRED)
   find_package(nlohmann_json REQUIRED)
   find_package(Threads REQUIRED)

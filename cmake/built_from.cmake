@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.25)
 set(commit unknown)
 set(changes "")
 # What is compiled, or says how.
-set(compiled CMakeLists.txt CMakePresets.json cmake math contract linear models integrators
+set(compiled VERSION CMakeLists.txt CMakePresets.json cmake math contract linear models integrators
     simulation experiments python ":(exclude)experiments/report" ":(exclude)*.md"
     ":(exclude)*.mjs" ":(exclude)*.py")
 
@@ -19,7 +19,8 @@ function(git variable)
   set(${variable} "${printed}" PARENT_SCOPE)
 endfunction()
 
-if(GIT)
+# Not of a repository around the tree.
+if(GIT AND EXISTS ${ROOT}/.git)
   git(found rev-parse HEAD)
   if(NOT found STREQUAL "failed")
     set(commit ${found})
@@ -29,6 +30,14 @@ if(GIT)
       string(SHA256 changes "${differences}\n${further}")
       string(SUBSTRING ${changes} 0 16 changes)
     endif()
+  endif()
+endif()
+
+# A source archive has no .git: `git archive` and the sdist of Python write the commit here.
+if(commit STREQUAL "unknown" AND EXISTS ${ROOT}/cmake/commit.txt)
+  file(STRINGS ${ROOT}/cmake/commit.txt archived LIMIT_COUNT 1)
+  if(archived MATCHES "^[0-9a-f]+$")
+    set(commit ${archived})
   endif()
 endif()
 

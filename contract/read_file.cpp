@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "contract/input_error.h"
+#include "contract/shipped_file.h"
 
 namespace tress {
 namespace {
@@ -43,7 +44,7 @@ void refuse_special(int descriptor, const std::string& file) {
 }  // namespace
 
 std::string read_file(const std::string& file, std::size_t most_bytes) {
-  const Descriptor input(file);
+  const Descriptor input(shipped_file(file));
   refuse_special(input.number(), file);
   std::string text;
   char buffer[65536];

@@ -8,7 +8,7 @@ from docutils import nodes
 root = Path(__file__).resolve().parents[2]
 project = "tress"
 author = copyright = "The tress authors"
-version = release = re.search(r"project\(tress VERSION (\S+)", (root / "CMakeLists.txt").read_text()).group(1)
+version = release = (root / "VERSION").read_text().strip()
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton", "breathe"]
 root_doc = "index"

@@ -100,7 +100,7 @@ def rows_of(options):
         if "Octave" in start:
             compiled(folder, ["octave_gateway.c"], "gateway.mex")
         own = [name.split(".")[1] for name in names if name.startswith("tress.")]
-        version = _output(str(options.programs / "work_precision"), "--version") if own else ""
+        version = _output(str(options.programs / "work_precision"), "--version").partition("\n")[0] if own else ""
         for problem in options.problem or PROBLEMS:
             for solver in foreign:
                 for tolerance in (one for one in tolerances if solver.runs(problem, one)):

@@ -284,8 +284,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   CommandLine line;
   Raw raw;
   CLI::App app{fmt::format("{}: {}", name, question), std::string(name)};
-  app.set_version_flag("--version", fmt::format("{} {} ({})", name, build_facts().version,
-                                                build_facts().commit));
+  app.set_version_flag("--version", build_facts().described(name));
   declare(app, line, raw, own);
   hide(app, unused);
   try {
@@ -293,7 +292,7 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
   } catch (const CLI::CallForHelp&) {
     throw Answer(help_text(app, name, example, keys));
   } catch (const CLI::CallForVersion& version) {
-    throw Answer(std::string(version.what()) + "\n");
+    throw Answer(version.what());
   } catch (const CLI::ParseError& error) {
     refuse_arguments(app, name, argc, argv, error);
   }

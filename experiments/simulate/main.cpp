@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "contract/input_error.h"
+#include "contract/shipped_file.h"
 #include "experiments/run/command_line.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/manifest.h"
@@ -26,6 +27,7 @@
 #include "integrators/error_indicator.h"
 #include "models/effects/body.h"
 #include "simulation/errors/error_bars.h"
+#include "simulation/files/build_facts.h"
 #include "simulation/files/files.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/groom/fitted_groom.h"
@@ -42,7 +44,8 @@ namespace {
 std::vector<std::string> all_scenes() {
   std::vector<std::string> files;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("scenes", error)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(shipped_file("scenes"), error)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   }
   std::ranges::sort(files);
@@ -336,10 +339,13 @@ int answer(int argc, char** argv) {
   CLI::App app{"simulate: what does a scene do?", "simulate"};
   Arguments a;
   declare(app, a);
+  app.set_version_flag("--version", build_facts().described("simulate"));
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     throw Answer(help_text(app));
+  } catch (const CLI::CallForVersion& version) {
+    throw Answer(version.what());
   } catch (const CLI::ParseError& error) {
     refuse_arguments(app, "simulate", argc, argv, error);
   }

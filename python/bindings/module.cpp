@@ -40,4 +40,5 @@ PYBIND11_MODULE(_core, m) {
   add_integrators(m);
   add_scenes(m);
   add_gradients(m);
+  add_errors(m);
 }

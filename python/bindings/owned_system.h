@@ -49,6 +49,7 @@ void raise_pending(System& system);
 std::unique_ptr<System> user_system(py::object model);
 
 void add_systems(py::module_& m);
+void add_errors(py::module_& m);
 void add_gradients(py::module_& m);
 void add_integrators(py::module_& m);
 void add_scenes(py::module_& m);

@@ -1,6 +1,10 @@
 """The exceptions of tress. Their texts are those that the programs print."""
 
 import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .runs import Frames
 
 # "what is wrong (where): what to do"; a place has no brackets of its own.
 _PARTS = re.compile(r"(.*?) \(([^()]*)\): (.*)", re.DOTALL)
@@ -13,7 +17,7 @@ class InputError(ValueError):
     ``remedy``. Place and remedy are empty if the text has no such parts.
     """
 
-    def __init__(self, text):
+    def __init__(self, text: str) -> None:
         super().__init__(text)
         parts = _PARTS.fullmatch(text)
         self.problem, self.place, self.remedy = parts.groups() if parts else (text, "", "")
@@ -25,7 +29,7 @@ class SolveError(RuntimeError):
     ``frames``: frames of the run of a scene before the failure (tress.Frames), else None.
     """
 
-    frames = None
+    frames: "Frames | None" = None
 
 
 class ProgramError(RuntimeError):

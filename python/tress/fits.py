@@ -2,8 +2,10 @@
 
 import csv
 import io
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,8 +19,8 @@ from .tables import Table
 class Fit:
     """K fitted parameters of scenes, and the limits of their accuracy."""
 
-    names: list  # (K)
-    units: list  # (K)
+    names: list[str]  # (K)
+    units: list[str]  # (K)
     values: np.ndarray  # (K)
     low: np.ndarray  # (K) lower ends of the intervals; nan: not determined
     high: np.ndarray  # (K)
@@ -29,8 +31,8 @@ class Fit:
     # where they were not asked for
     step_shift: np.ndarray
     elements_shift: np.ndarray
-    statuses: list  # (K) of each parameter: ok, at_bound, not_identified, time_error, ...
-    reasons: list  # (K) in words
+    statuses: list[str]  # (K) of each parameter: ok, at_bound, not_identified, time_error, ...
+    reasons: list[str]  # (K) in words
     status: str  # the first of these that is not ok
     reason: str
     undetermined: str  # combinations that the records do not determine, in words
@@ -40,10 +42,10 @@ class Fit:
     autocorrelation: float  # of successive residuals of a coordinate
     degrees: int  # of freedom
     evaluations: int  # runs of all records with their derivatives
-    measured: list  # of each record: its coordinates, m, row after row
-    fitted: list  # of each record: the same of the fitted scene, m
+    measured: list[np.ndarray]  # of each record: its coordinates, m, row after row
+    fitted: list[np.ndarray]  # of each record: the same of the fitted scene, m
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> tuple[float, float, float]:
         """Returns (value, low, high) of one parameter."""
         if name not in self.names:
             raise InputError(f"no parameter '{name}' (fit): one of {', '.join(self.names)}")
@@ -51,7 +53,7 @@ class Fit:
         return self.values[k], self.low[k], self.high[k]
 
 
-def _text(record, number):
+def _text(record: Any, number: int) -> tuple[str, str]:
     """(text, file) of a record: the name of a CSV, a Table, or a dict of columns."""
     if isinstance(record, (str, Path)):
         try:
@@ -72,17 +74,26 @@ def _text(record, number):
     return text.getvalue(), f"record {number}"
 
 
-def _cell(x):
+def _cell(x: Any) -> str:
     """nan: not measured."""
     return "" if isinstance(x, (float, np.floating)) and np.isnan(x) else str(x)
 
 
-def _list(one_or_more, single):
+def _list(one_or_more: Any, single: Any) -> list:
     return [one_or_more] if isinstance(one_or_more, single) else list(one_or_more)
 
 
-def fit(scene, record, by=None, bounds=None, priors=None, confidence=0.95, shifts=True,
-        profile=False, progress=None):
+def fit(
+    scene: Scene | Sequence[Scene],
+    record: Any,
+    by: str | Sequence[str] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, tuple[float, float]] | None = None,
+    confidence: float = 0.95,
+    shifts: bool = True,
+    profile: bool = False,
+    progress: Callable[[int, float], Any] | None = None,
+) -> Fit:
     """Fits parameters of a scene to points of its strands: Fit.
 
     scene: a Scene, whose values the fit starts from; a list with one for each record.

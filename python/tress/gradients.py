@@ -1,11 +1,16 @@
 """Derivatives of runs by numbers of a scene."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _core
 from .errors import InputError
+
+if TYPE_CHECKING:
+    from .scenes import Scene
 
 
 @dataclass
@@ -16,8 +21,8 @@ class Gradient:
     times: np.ndarray  # (F) s
     value: np.ndarray  # (F, P, 3) m
     jacobian: np.ndarray  # (F, P, 3, K) m per unit of each parameter
-    names: list  # (K) parameters
-    units: list  # (K) units of the parameters
+    names: list[str]  # (K) parameters
+    units: list[str]  # (K) units of the parameters
     parameters: np.ndarray  # (K) values of the parameters
     strand: np.ndarray  # (P) the strand of each point
     damped: bool  # the run began with two short steps of backward Euler
@@ -26,21 +31,21 @@ class Gradient:
     status: str = "ok"
     # (F) whether an exact contact opens, closes, comes to rest or begins to slide within a
     # step of the frame
-    contact_changes: np.ndarray = None
+    contact_changes: np.ndarray | None = None
     # Largest distance, over the length of the strand, of the points of a run with a
     # tolerance from those of the run with its accepted steps frozen.
     moved: float = 0.0
     # (F, P, 3, K) estimated error of jacobian in time; None: not asked for
-    time_error: np.ndarray = None
+    time_error: np.ndarray | None = None
 
-    def by(self, name):
+    def by(self, name: str) -> np.ndarray:
         """Returns the derivatives by one parameter, (F, P, 3). Raises InputError if the
         parameter is unknown."""
         if name not in self.names:
             raise InputError(f"no parameter '{name}' (by): one of {', '.join(self.names)}")
         return self.jacobian[..., self.names.index(name)]
 
-    def relative(self):
+    def relative(self) -> np.ndarray:
         """Returns the derivatives times the parameters, (F, P, 3, K) m. A hundredth of a value
         is the change of the coordinate for a change of the parameter by 1 %."""
         return self.jacobian * self.parameters
@@ -55,8 +60,8 @@ class LinearizedStep:
 
     A: np.ndarray  # (2n, 2n)
     B: np.ndarray  # (2n, K) per unit of each parameter
-    names: list  # (K) parameters
-    units: list  # (K) units of the parameters
+    names: list[str]  # (K) parameters
+    units: list[str]  # (K) units of the parameters
     t: float  # s
     t_next: float  # s
     q: np.ndarray  # (n) coordinates at t
@@ -64,20 +69,26 @@ class LinearizedStep:
     q_next: np.ndarray  # (n) coordinates at t_next
     v_next: np.ndarray  # (n) rates at t_next
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[np.ndarray]:
         return iter((self.A, self.B))
 
 
-def _one_of(name, value, words):
+def _one_of(name: str, value: str, words: Sequence[str]) -> None:
     if value not in words:
         raise InputError(f"unknown {name} '{value}' ({name}): one of {', '.join(words)}")
 
 
-def _names(by):
+def _names(by: str | Sequence[str]) -> list[str]:
     return [by] if isinstance(by, str) else list(by)
 
 
-def gradient(scene, of, by, start, time_errors):
+def gradient(
+    scene: "Scene",
+    of: str,
+    by: str | Sequence[str] | None,
+    start: str | None,
+    time_errors: bool,
+) -> Gradient:
     """``Scene.gradient``."""
     _one_of("of", of, ("tip", "points"))
     if start is not None:
@@ -102,6 +113,8 @@ def gradient(scene, of, by, start, time_errors):
     return result
 
 
-def linearized_step(scene, t, dt, by, strand):
+def linearized_step(
+    scene: "Scene", t: float, dt: float | None, by: str | Sequence[str], strand: int
+) -> LinearizedStep:
     """``Scene.linearized_step``."""
     return LinearizedStep(**_core.linearized_step(scene._core, strand, t, dt, _names(by)))

@@ -1,12 +1,16 @@
 """Scenes: read, change, run."""
 
-import sys
+import html
 import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from . import _core, gradients
+import numpy as np
+
+from . import _core, display, gradients
 from .errors import InputError, SolveError
-from .runs import BatchRun, StrandsRun
+from .runs import BatchRun, Frames, StrandsRun
 from .systems import System
 from .toml import text_of
 
@@ -23,15 +27,15 @@ class Scene:
     there is a mistake.
     """
 
-    def __init__(self, tables, file="scene.toml"):
+    def __init__(self, tables: Mapping[str, Any], file: str | Path = "scene.toml") -> None:
         self._set(text_of(tables), file)
 
-    def _set(self, text, file):
+    def _set(self, text: str, file: str | Path) -> None:
         self._core = _core.Scene(text, str(file))  # says what is wrong, and where
         self._text, self.file = text, str(file)
 
     @classmethod
-    def parse(cls, text, file="scene.toml"):
+    def parse(cls, text: str, file: str | Path = "scene.toml") -> "Scene":
         """Makes a scene from TOML text. Files that it names are relative to the folder of
         ``file``."""
         scene = cls.__new__(cls)
@@ -39,7 +43,7 @@ class Scene:
         return scene
 
     @classmethod
-    def read(cls, file):
+    def read(cls, file: str | Path) -> "Scene":
         """Reads a scene file."""
         path = Path(file)
         try:
@@ -48,12 +52,29 @@ class Scene:
             raise InputError(f"cannot be read ({file}): {error}") from error
         return cls.parse(text, path)
 
+    def __reduce__(self) -> tuple:
+        """Scenes are pickled as text: for processes that share work."""
+        return Scene.parse, (self._text, self.file)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: title, model and method, and the strands at t = 0."""
+        text = (f"{self.title}: {self.model}, {self.integrator}, {self.strands} strands, "
+                f"{self.duration:g} s")  # fmt: skip
+        run = StrandsRun(self) if self.strands < _MANY else None
+        drawn = run.gather([run.frame()])._repr_svg_() if run else ""
+        return f"<p>{html.escape(text)}</p>{drawn}"
+
     @property
-    def tables(self):
+    def source_text(self) -> str:
+        """Text from which the scene was made."""
+        return self._text
+
+    @property
+    def tables(self) -> dict[str, Any]:
         """Tables of the scene as nested dicts: a copy, without defaults."""
         return tomllib.loads(self._text)
 
-    def changed(self, changes):
+    def changed(self, changes: Mapping[str, Any]) -> "Scene":
         """Returns the scene with other values: {"strand.elements": 40, "effects.wind": {...}}.
 
         Keys are paths. None removes a key or a table. A number in a path is the index of one of
@@ -81,66 +102,72 @@ class Scene:
         return Scene(tables, name)
 
     @staticmethod
-    def _item(tables, word, path):
+    def _item(tables: list, word: str, path: str) -> Any:
         if word.isdigit() and int(word) < len(tables):
             return tables[int(word)]
         raise InputError(f"there is no table '{word}' ({path}): count from 0 to {len(tables) - 1}")
 
-    def text(self):
+    def text(self) -> str:
         """Returns the scene as the text of a file, without defaults. Reading it gives the same
         scene."""
         return self._core.text()
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Name of the scene: that of its file without the ending."""
         return self._core.name
 
     @property
-    def title(self):
+    def title(self) -> str:
         """Title of the scene."""
         return self._core.title
 
     @property
-    def model(self):
+    def model(self) -> str:
         """Id of the model."""
         return self._core.model
 
     @property
-    def integrator(self):
+    def integrator(self) -> str:
         """Id of the integrator."""
         return self._core.integrator
 
     @property
-    def step(self):
+    def step(self) -> float:
         """Key dt_s of the scene, s."""
         return self._core.step
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """Simulated time, s."""
         return self._core.duration
 
     @property
-    def strands(self):
+    def strands(self) -> int:
         """Number of strands; 0 for a mechanism."""
         return self._core.strands
 
     @property
-    def effects(self):
+    def effects(self) -> list[str]:
         """Ids of the effects."""
         return self._core.effects
 
-    def times(self):
+    def times(self) -> np.ndarray:
         """Returns the times of the frames, s."""
         return self._core.times()
 
-    def system(self, strand=0):
+    def system(self, strand: int = 0) -> System:
         """Returns one strand, with the effects that act on it alone, or the mechanism, as a
         System."""
         return System(self._core.system(strand))
 
-    def gradient(self, of="tip", by=None, start=None, time_errors=False):
+    def gradient(
+        self,
+        of: str = "tip",
+        by: str | Sequence[str] | None = None,
+        start: str | None = None,
+        time_errors: bool = False,
+    ) -> gradients.Gradient:
         """Computes exact derivatives of the run by numbers of the scene: Gradient.
 
         of: "tip" or "points".
@@ -155,7 +182,13 @@ class Scene:
         """
         return gradients.gradient(self, of, by, start, time_errors)
 
-    def linearized_step(self, t=0.0, dt=None, by=(), strand=0):
+    def linearized_step(
+        self,
+        t: float = 0.0,
+        dt: float | None = None,
+        by: str | Sequence[str] = (),
+        strand: int = 0,
+    ) -> gradients.LinearizedStep:
         """Computes the matrices of one step: LinearizedStep, or A, B = linearized_step(...).
 
         A has the derivatives of the state after the step by the state before it, B those by
@@ -171,7 +204,7 @@ class Scene:
         """
         return gradients.linearized_step(self, t, dt, by, strand)
 
-    def start(self, threads=1, kind="strands"):
+    def start(self, threads: int = 1, kind: str = "strands") -> StrandsRun | BatchRun:
         """Returns the run at t = 0, for loops of your own: StrandsRun, or BatchRun of a batch.
 
         kind: "strands" or "batch".
@@ -179,12 +212,19 @@ class Scene:
         _check_kind(kind, ("strands", "batch"))
         return (BatchRun if kind == "batch" else StrandsRun)(self, threads)
 
-    def run(self, threads=1, kind="auto", progress=None, every=1):
+    def run(
+        self,
+        threads: int = 1,
+        kind: str = "auto",
+        progress: bool | Callable[[float, float], None] | None = None,
+        every: int = 1,
+    ) -> Frames:
         """Runs the scene to its end: Frames.
 
         kind: "strands" runs the strands one by one, "batch" all together, up to a million.
             "auto" takes a batch if the scene has at least 1000 strands and can run as one.
-        progress: True for a line on standard error, or a function of (time, duration), s.
+        progress: True for a bar in a notebook, elsewhere a line on standard error; or a
+            function of (time, duration), s.
         every: n keeps every n-th frame, and the last one.
 
         A step without a solution or an impossible state raises SolveError, whose ``frames``
@@ -220,21 +260,19 @@ class Scene:
         return all_frames
 
 
-def _check_kind(kind, known):
+def _check_kind(kind: str, known: Sequence[str]) -> None:
     """Raises InputError if a kind of run is not known; of a former one with the present one."""
     if kind not in known:
         remedy = _core.suggestion(kind, known, f"use one of: {', '.join(known)}")
         raise InputError(f"unknown kind '{kind}' (kind): {remedy}")
 
 
-def _progress(progress):
+def _progress(
+    progress: bool | Callable[[float, float], None] | None,
+) -> Callable[[float, float], None]:
     if progress is None or progress is False:
         return lambda t, duration: None
     if callable(progress):
         return progress
 
-    def line(t, duration):
-        end = "\n" if t >= duration else ""
-        print(f"\r{t:.3f} of {duration:g} s", end=end, file=sys.stderr, flush=True)
-
-    return line
+    return display.progress_line()

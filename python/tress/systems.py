@@ -10,13 +10,17 @@ Units are SI. Arrays are numpy's, of float64; others are converted. An array of 
 size raises InputError, an evaluation without a finite result SolveError.
 """
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 import numpy as np
 import scipy.sparse
+from numpy.typing import ArrayLike as Array
 
 from . import _core
 
 
-def _text(value):
+def _text(value: Any) -> str:
     """A value as options take it."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
@@ -29,39 +33,40 @@ def _text(value):
     return separator.join(rows)
 
 
-def _texts(options):
+def option_texts(options: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Returns options as pairs of texts, as the compiled part takes them."""
     return [(key, _text(value)) for key, value in options.items()]
 
 
-def models():
+def models() -> dict[str, tuple[str, str]]:
     """Returns {id: (summary, source)} of all models."""
     return {id: (summary, source) for id, summary, source in _core.models()}
 
 
-def model_options(id):
+def model_options(id: str) -> dict[str, list]:
     """Returns {name: (default, choices, help with unit)} of the options of ``model(id, ...)``."""
     return {name: rest for name, *rest in _core.model_options(id)}
 
 
-def integrators():
+def integrators() -> dict[str, tuple]:
     """Returns {id: (order, summary, source)} of all integrators."""
     return {id: (order, summary, source) for id, order, summary, source in _core.integrators()}
 
 
-def integrator_options():
+def integrator_options() -> dict[str, list]:
     """Returns {name: (default, choices, help with unit, method)} of the options of all
     integrators. The method is empty for options of several methods."""
     return {name: rest for name, *rest in _core.integrator_options()}
 
 
-def model(id, **options):
+def model(id: str, **options: Any) -> "System":
     """Makes a system of a model of the catalogue: System.
 
     Options are those of the model. A model of a strand also takes geometry, material, root
     and loads: ``model_options(id)``. Raises InputError if an option is unknown or out of
     range.
     """
-    return System(_core.model(id, _texts(options)))
+    return System(_core.model(id, option_texts(options)))
 
 
 class System:
@@ -83,47 +88,56 @@ class System:
     and is raised again.
     """
 
-    def __init__(self, system):
+    def __init__(self, system: Any) -> None:
         self._core = system if isinstance(system, _core.System) else _core.System(system)
         self._n = self._core.coordinates
 
     @property
-    def n(self):
+    def n(self) -> int:
         """Number of coordinates."""
         return self._n
 
     @property
-    def m(self):
+    def m(self) -> int:
         """Number of constraints."""
         return self._core.constraints
 
     @property
-    def traits(self):
+    def traits(self) -> dict[str, bool]:
         """Properties of the mass matrix: {"constant_mass": bool, "regular_mass": bool}."""
         return self._core.traits
 
-    def has(self, form):
+    def has(self, form: str) -> bool:
         """Whether the model has a form: "sparse", "explicit", "constraints", "energy",
         "points", "history" or "contact"."""
         return form in self._core.forms()
 
-    def initial_state(self):
+    def initial_state(self) -> tuple[np.ndarray, np.ndarray]:
         """Returns (q, v), which satisfy the constraints."""
         return self._core.initial_state()
 
-    def scale(self):
+    def scale(self) -> tuple[np.ndarray, np.ndarray]:
         """Returns typical sizes of q and v."""
         return self._core.scale()
 
-    def residual(self, t, q, v, a):
+    def residual(self, t: float, q: Array, v: Array, a: Array) -> np.ndarray:
         """Returns the residual r (n)."""
         return self._core.residual(t, q, v, a)
 
-    def _rest(self, v, a):
+    def _rest(self, v: Array | None, a: Array | None) -> tuple[Array, Array]:
         zero = np.zeros(self._n)
         return zero if v is None else v, zero if a is None else a
 
-    def tangent(self, t, q, v=None, a=None, acc=0.0, vel=0.0, pos=0.0):
+    def tangent(
+        self,
+        t: float,
+        q: Array,
+        v: Array | None = None,
+        a: Array | None = None,
+        acc: float = 0.0,
+        vel: float = 0.0,
+        pos: float = 0.0,
+    ) -> scipy.sparse.csc_matrix:
         """Returns S = acc dr/da + vel dr/dv + pos dr/dq as scipy.sparse.csc_matrix (n, n).
 
         By default v and a are 0. For a model without a sparse form, S is computed by central
@@ -135,27 +149,35 @@ class System:
             return scipy.sparse.csc_matrix((values, rows, starts), shape=shape)
         return scipy.sparse.csc_matrix(made)
 
-    def mass(self, t, q, v=None, a=None):
+    def mass(
+        self, t: float, q: Array, v: Array | None = None, a: Array | None = None
+    ) -> scipy.sparse.csc_matrix:
         """Returns the mass matrix M = dr/da (n, n)."""
         return self.tangent(t, q, v, a, acc=1.0)
 
-    def damping(self, t, q, v=None, a=None):
+    def damping(
+        self, t: float, q: Array, v: Array | None = None, a: Array | None = None
+    ) -> scipy.sparse.csc_matrix:
         """Returns the damping matrix D = dr/dv (n, n)."""
         return self.tangent(t, q, v, a, vel=1.0)
 
-    def stiffness(self, t, q, v=None, a=None):
+    def stiffness(
+        self, t: float, q: Array, v: Array | None = None, a: Array | None = None
+    ) -> scipy.sparse.csc_matrix:
         """Returns the stiffness matrix K = dr/dq (n, n)."""
         return self.tangent(t, q, v, a, pos=1.0)
 
-    def linearize(self, t, q, v, a, acc, vel, pos):
+    def linearize(
+        self, t: float, q: Array, v: Array, a: Array, acc: float, vel: float, pos: float
+    ) -> None:
         """Prepares ``solve`` for this S, in the form that the model uses."""
         self._core.linearize(t, q, v, a, acc, vel, pos)
 
-    def solve(self, b):
+    def solve(self, b: Array) -> np.ndarray:
         """Returns x (n) with S x = b, for the S of the last linearize()."""
         return self._core.solve(b)
 
-    def acceleration(self, t, q, v):
+    def acceleration(self, t: float, q: Array, v: Array) -> np.ndarray:
         """Returns a (n) with M a = f, for a model without constraints.
 
         Uses the explicit form of the model if there is one, else a solve with M."""
@@ -165,28 +187,28 @@ class System:
         self._core.linearize(t, q, v, zero, 1.0, 0.0, 0.0)
         return self._core.solve(-self._core.residual(t, q, v, zero))
 
-    def energy(self, t, q, v):
+    def energy(self, t: float, q: Array, v: Array) -> tuple[float, float]:
         """Returns (kinetic, potential), J. Raises InputError if the model has no energies."""
         return self._core.energy(t, q, v)
 
-    def power(self, t, q, v):
+    def power(self, t: float, q: Array, v: Array) -> float:
         """Returns the power of all forces without a potential, W: negative for drag."""
         return self._core.power(t, q, v)
 
-    def momentum(self, t, q, v):
+    def momentum(self, t: float, q: Array, v: Array) -> tuple[np.ndarray, np.ndarray] | None:
         """Returns (linear, angular about the origin), kg m/s and kg m^2/s, or None if the
         model has no momentum."""
         return self._core.momentum(t, q, v)
 
-    def constraints(self, t, q):
+    def constraints(self, t: float, q: Array) -> np.ndarray:
         """Returns the constraints g (m), in the units of the model."""
         return self._core.g(t, q) if self.m else np.zeros(0)
 
-    def constraint_rate(self, t, q, v):
+    def constraint_rate(self, t: float, q: Array, v: Array) -> np.ndarray:
         """Returns their rates G v + dg/dt (m)."""
         return self._core.g_rate(t, q, v) if self.m else np.zeros(0)
 
-    def jacobian(self, t, q):
+    def jacobian(self, t: float, q: Array) -> scipy.sparse.csr_matrix:
         """Returns the Jacobian of the constraints, G = dg/dq, as scipy.sparse.csr_matrix
         (m, n)."""
         if not self.m:
@@ -194,100 +216,42 @@ class System:
         values, rows, starts, (n, m) = self._core.jacobian_transposed(t, q)
         return scipy.sparse.csr_matrix((values, rows, starts), shape=(m, n))
 
-    def points(self, t, q):
+    def points(self, t: float, q: Array) -> np.ndarray:
         """Returns the positions of the material points, (points, 3) m. The last one is the
         tip."""
         return self._core.points(t, q)
 
-    def point_velocities(self, t, q, v):
+    def point_velocities(self, t: float, q: Array, v: Array) -> np.ndarray:
         """Returns the velocities of the material points, (points, 3) m/s."""
         return self._core.point_velocities(t, q, v)
 
-    def before(self):
+    def before(self) -> np.ndarray:
         """Returns for each point the point that it is attached to; -1: none."""
         return self._core.before()
 
-    def accept(self, t, q, v):
+    def accept(self, t: float, q: Array, v: Array) -> tuple[bool, np.ndarray, np.ndarray]:
         """Ends a step of your own: moves frames and contact sets. Returns (changed, q, v), with
         changed = True if the equations have changed."""
         return self._core.accept(t, q, v)
 
-    def reset(self):
+    def reset(self) -> None:
         """Forgets all accepted steps."""
         self._core.reset()
 
-    def memory(self):
+    def memory(self) -> Any:
         """Returns the state that accept() has changed, for ``recall`` of an equal system."""
         return self._core.memory()
 
-    def recall(self, memory):
+    def recall(self, memory: Any) -> None:
         """Restores the state that ``memory`` returned."""
         self._core.recall(memory)
 
-    def next_breakpoint(self, t):
+    def next_breakpoint(self, t: float) -> float:
         """Returns the first time after t at which the equations are not smooth; inf: none."""
         return self._core.next_breakpoint(t)
 
 
-class Integrator:
-    """One method on one system: ``Integrator("generalized_alpha", system, step=1e-3)``.
-
-    Options are those of ``--set``: ``integrator_options()``. Raises InputError with the
-    reason if the method cannot drive the system, and for an option of another method. Two
-    threads that step one system at once raise SolveError.
-    """
-
-    def __init__(self, id, system, **options):
-        self.system = system if isinstance(system, System) else System(system)
-        self._core = _core.Integrator(id, self.system._core, _texts(options))
-
-    def start(self, t=0.0, q=None, v=None):
-        """Sets the state, by default the system's initial one. Returns self."""
-        if q is None or v is None:
-            q0, v0 = self.system.initial_state()
-            q, v = (q0 if q is None else q), (v0 if v is None else v)
-        self._core.start(t, q, v)
-        return self
-
-    def advance(self, t_end, observer=None):
-        """Steps to t_end exactly, without the interpreter's lock.
-
-        ``observer(t, q, v)`` is called after every step with copies. If it returns False,
-        the run ends there and advance returns False. A step without a solution raises
-        SolveError with the time and the reason. Ctrl-C raises KeyboardInterrupt within a
-        step and 50 ms.
-        """
-        return self._core.advance(t_end, observer)
-
-    @property
-    def time(self):
-        """Present time, s."""
-        return self._core.time
-
-    @property
-    def q(self):
-        """Coordinates: a view of the memory of the method, valid until the next advance().
-        Copy what you keep."""
-        return self._core.q
-
-    @property
-    def v(self):
-        """Rates of the coordinates, a view as q."""
-        return self._core.v
-
-    @property
-    def stats(self):
-        """Work since start(): {"steps", "residuals", "newton_iterations", "solver", ...}."""
-        return self._core.stats
-
-
-def refusal(id, system, formulation="parametric"):
-    """Returns the reason why an integrator cannot drive a system; empty if it can."""
-    system = system if isinstance(system, System) else System(system)
-    return _core.refusal(id, system._core, formulation)
-
-
-def first_order(system):
+def first_order(system: System) -> tuple[Callable, Callable, np.ndarray]:
     """Returns (fun, jac, y0) of a system without constraints for scipy.integrate.solve_ivp.
 
     y = (q, v), y' = (v, a), and the Jacobian is [[0, 1], [-M^-1 K, -M^-1 D]] (2n, 2n). K is
@@ -295,11 +259,11 @@ def first_order(system):
     """
     n = system.n
 
-    def fun(t, y):
+    def fun(t: float, y: np.ndarray) -> np.ndarray:
         q, v = y[:n], y[n:]
         return np.concatenate([v, system.acceleration(t, q, v)])
 
-    def jac(t, y):
+    def jac(t: float, y: np.ndarray) -> np.ndarray:
         q, v = y[:n], y[n:]
         a = system.acceleration(t, q, v)
         below = np.hstack(

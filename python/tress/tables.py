@@ -7,12 +7,13 @@ import re
 import signal
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from . import _core
+from . import _core, display
 from .errors import InputError, ProgramError
 
 # Ends of column names that are units (results/README.md); docs/tables.md is made from the
@@ -20,7 +21,7 @@ from .errors import InputError, ProgramError
 _UNITS = json.loads((Path(__file__).parent / "units.json").read_text())
 
 
-def unit_of(column):
+def unit_of(column: str) -> str:
     """The unit at the end of a column's name ("dt_s": "s"); "": it has none."""
     words = column.split("_")
     for k in range(1, len(words)):
@@ -29,7 +30,7 @@ def unit_of(column):
     return ""
 
 
-class Table(Mapping):
+class Table(Mapping[str, np.ndarray]):
     """A table by columns: ``table["dt_s"]`` is an array.
 
     Its type is float64 with nan for empty cells, bool if all cells are true or false, else
@@ -41,40 +42,46 @@ class Table(Mapping):
     ``complete``  False if rows failed or a check did not hold
     """
 
-    def __init__(self, columns, manifest=None, file="", complete=True):
+    def __init__(
+        self,
+        columns: dict[str, np.ndarray],
+        manifest: dict[str, Any] | None = None,
+        file: str | Path = "",
+        complete: bool = True,
+    ) -> None:
         self._columns = columns
         self.manifest = manifest or {}
         self.file = str(file)
         self.complete = complete
 
-    def __getitem__(self, column):
+    def __getitem__(self, column: str) -> np.ndarray:
         try:
             return self._columns[column]
         except KeyError:
             raise KeyError(f"{column}; there are: {', '.join(self._columns)}") from None
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._columns)
 
     @property
-    def rows(self):
+    def rows(self) -> int:
         """Number of rows."""
         return len(next(iter(self._columns.values()), ()))
 
     @property
-    def units(self):
+    def units(self) -> dict[str, str]:
         """Unit of each column: {column: unit}."""
         return {column: unit_of(column) for column in self._columns}
 
     @property
-    def help(self):
+    def help(self) -> dict[str, str]:
         """Description of each column: {column: description}."""
         return dict(self.manifest.get("columns", {}))
 
-    def where(self, **values):
+    def where(self, **values: Any) -> "Table":
         """Returns the rows in which these columns have these values."""
         chosen = np.ones(self.rows, dtype=bool)
         for column, value in values.items():
@@ -82,14 +89,18 @@ class Table(Mapping):
         columns = {name: column[chosen] for name, column in self._columns.items()}
         return Table(columns, self.manifest, self.file, self.complete)
 
-    def pandas(self):
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the first rows."""
+        return display.table_html(self._columns, self.rows)
+
+    def pandas(self) -> Any:
         """Returns the table as a pandas.DataFrame (package python3-pandas)."""
         import pandas
 
         return pandas.DataFrame(self._columns)
 
 
-def _column(cells):
+def _column(cells: Sequence[str]) -> np.ndarray:
     if all(cell in ("true", "false") for cell in cells) and cells:
         return np.array([cell == "true" for cell in cells])
     if any(re.search(r"[^0-9eEinfa.+-]", cell) for cell in cells):
@@ -100,7 +111,7 @@ def _column(cells):
         return np.array(cells, dtype=str)
 
 
-def read_table(file):
+def read_table(file: str | Path) -> Table:
     """Reads a CSV file and its manifest: Table. Raises InputError if it is not a table."""
     path = Path(file)
     try:
@@ -120,11 +131,15 @@ def read_table(file):
     return Table({name: _column(c) for name, c in zip(header, cells)}, manifest, path)
 
 
-def programs_folder():
+def programs_folder() -> Path:
     """Returns the folder with the programs of the experiments.
 
     It belongs to the build that the environment variable TRESS_BUILD names, else to the build
-    of this module, else to the clone that holds the working folder."""
+    of this module or the packages of Debian, else to the clone that holds the working folder."""
+    if "TRESS_BUILD" not in os.environ:
+        for prefix in Path(_core.__file__).resolve().parents:
+            if (prefix / "libexec/tress/list.txt").exists():
+                return prefix / "libexec/tress"
     folders = [Path(_core.__file__).resolve().parents[2]]
     if "TRESS_BUILD" in os.environ:
         folders = [Path(os.environ["TRESS_BUILD"])]
@@ -139,7 +154,7 @@ def programs_folder():
     )
 
 
-def experiment(name, *words, out=None):
+def experiment(name: str, *words: Any, out: str | Path | None = None) -> Table:
     """Runs an experiment's program with these arguments and reads its table.
 
     Example: ``experiment("stability_limit", "--quick", "--models", "der")``.

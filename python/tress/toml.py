@@ -1,19 +1,22 @@
 """TOML text of a scene's tables."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from .errors import InputError
 
 
-def _key(key):
+def _key(key: str) -> str:
     plain = key.replace("_", "").replace("-", "")
     return key if plain.isalnum() and key.isascii() else _string(key)
 
 
-def _string(text):
+def _string(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     return '"' + "".join(c if c >= " " else f"\\u{ord(c):04x}" for c in escaped) + '"'
 
 
-def _value(value, place):
+def _value(value: Any, place: str) -> str:
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         value = value.tolist()
     if isinstance(value, bool):
@@ -30,11 +33,11 @@ def _value(value, place):
     )
 
 
-def _is_tables(value):
+def _is_tables(value: Any) -> bool:
     return isinstance(value, (list, tuple)) and value and isinstance(value[0], dict)
 
 
-def text_of(tables, path=()):
+def text_of(tables: Mapping[str, Any], path: tuple[str, ...] = ()) -> str:
     """TOML text of nested dicts: a dict is a table, a list of dicts is [[tables]]."""
     lines, nested = [], []
     for key, value in tables.items():

@@ -7,7 +7,7 @@ import subprocess
 from .command import Command
 from .counting import Worst, must
 from .messages import BAD_INPUT, Stopwatch, say
-from .scene_folder import scene_folder
+from .scene_folder import existing, scene_folder
 from .scripts import ANSWERS
 from .tree import PROGRAMS, build_programs
 
@@ -16,7 +16,7 @@ ASKED = ("stability_limit", "hard_cases", "effect_audit", "cost_of_accuracy")
 
 def _run(words, machine):
     folder = scene_folder("ask", words)
-    scene, *options = words
+    scene, *options = (existing(words[0]), *words[1:])
     build_programs(machine, *ASKED)
     os.makedirs(folder, exist_ok=True)
     worst = Worst()

@@ -3,36 +3,33 @@
 import os
 import signal
 import sys
-from pathlib import Path
 
+from . import place
 from .command import command_help, wants_help
 from .commands import COMMANDS, everything, overview
 from .messages import exit_code, refuse
 from .packages import Machine
+from .processes import run
 from .rename import present_name
+from .tree import PROGRAMS, names_in
+from .version import describe
 
 HELP = ("help", "-h", "--help")
-
-
-def repository():
-    """Returns the clone that this package belongs to, else the clone that holds the working
-    folder: an installed package is outside."""
-    own = Path(os.path.abspath(__file__)).parents[2]
-    for folder in (own, Path.cwd(), *Path.cwd().parents):
-        if (folder / "tress").is_file() and (folder / "cmake").is_dir():
-            return folder
-    return refuse("there is no clone of tress here; work in a clone")
+VERSION = ("version", "--version")
+# Commands of an installed tree. The others build, test or write the sources.
+WITHOUT_SOURCES = ("simulate", "run", "ask", "matrices", "cluster", "compare", "report", "film",
+                   "rename", "list")
 
 
 def _help_on(words):
     """Prints the commands, those named, or all of them with their options."""
     if words == ["all"]:
-        print(everything())
+        print(place.words(everything()))
         return
     for word in words:
-        print(command_help(_command(word)))
+        print(place.words(command_help(_command(word))))
     if not words:
-        print(overview())
+        print(place.words(overview()))
 
 
 def _command(word):
@@ -44,8 +41,18 @@ def _command(word):
     return refuse(f"unknown command '{word}'; ./tress help shows the commands")
 
 
+def _installed_program(words):
+    """Returns the command line of a program of an installed tree that the first word names."""
+    there = place.INSTALLED and words[0] in names_in(f"{PROGRAMS}/list.txt")
+    return [f"{PROGRAMS}/{words[0]}", *words[1:]] if there and words[0] not in WITHOUT_SOURCES else []
+
+
 def _dispatch(words):
-    os.chdir(repository())
+    if words[:1] and words[0] in VERSION:
+        print(describe())
+        return 0
+    if not place.INSTALLED:
+        os.chdir(place.clone() or refuse("there is no clone of tress here; work in a clone"))
     may_install = words[:1] != ["--no-install"]
     if not may_install:
         words = words[1:]
@@ -53,10 +60,14 @@ def _dispatch(words):
             refuse("--no-install: give a command, as in ./tress --no-install build")
     if not words or words[0] in HELP:
         return _help_on(words[1:])
+    if program := _installed_program(words):
+        return run(*program)
     command = _command(words[0])
     if wants_help(words[1:]):
-        print(command_help(command))
+        print(place.words(command_help(command)))
         return 0
+    if place.INSTALLED and command.name not in WITHOUT_SOURCES:
+        refuse(f"{command.name}: needs the sources of tress; work in a clone")
     return command.run(words[1:], Machine(may_install))
 
 

@@ -3,6 +3,8 @@
 import sys
 import time
 
+from . import place
+
 DONE, INTERNAL_ERROR, BAD_INPUT, ROWS_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 
@@ -16,7 +18,7 @@ class Ended(Exception):
 
 def say(text):
     """Prints one line on stderr; what would break the line or the terminal becomes "?"."""
-    line = "".join(c if c.isprintable() else "?" for c in text)
+    line = "".join(c if c.isprintable() else "?" for c in place.words(text))
     print(f"tress: {line}", file=sys.stderr, flush=True)
 
 

@@ -7,7 +7,7 @@ import re
 import shutil
 from pathlib import Path
 
-from . import sundials
+from . import place, sundials
 from .command import Command, no_words
 from .messages import INTERNAL_ERROR, INTERRUPTED, Ended, Stopwatch, echo, refuse, say
 from .processes import quietly, read, run
@@ -150,7 +150,9 @@ class Machine:
                 self.install(packages)
 
     def ensure(self, *lists, base=EVERYTHING):
-        """Runs the setup if something is missing."""
+        """Runs the setup if something is missing. An installed tree has what it needs."""
+        if place.INSTALLED:
+            return
         if self.missing(*lists, base=base) or (found := sundials.root()) is None:
             self.setup(*lists, base=base)
         elif not found:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .command import Command
 from .messages import refuse
+from .place import shipped
 
 # Former values belong to these keys only: `stiff` may be a title or the name of a file.
 VALUES = {"jacobian": ("stiff", "less_implicit"), "damping": ("seed",), "kind": ("bits",)}
@@ -19,7 +20,7 @@ AMBIGUOUS = ("root", "head", "seed", "stiff", "gravity", "state", "lost", "lanes
 
 def _names():
     """Returns former names with their present ones."""
-    file = Path("contract/renamed.h")
+    file = Path(shipped("contract/renamed.h"))
     text = file.read_text(encoding="utf-8") if file.is_file() else ""
     return dict(re.findall(r'^ +\{"([^"]+)", "([^"]+)"\},', text, re.MULTILINE))
 

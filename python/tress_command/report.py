@@ -6,6 +6,7 @@ from pathlib import Path
 from .command import Command, no_words
 from .counting import must
 from .messages import INTERNAL_ERROR, Ended, say
+from .place import INSTALLED
 from .processes import read, run
 from .scripts import FILM as FILM_PROGRAM
 from .scripts import PAGES, REPORT
@@ -28,7 +29,9 @@ def make_report():
 
 def write_pages():
     """Writes README.md, results/README.md and docs/ from docs/templates/ and results/*.csv.
-    Returns the exit code."""
+    Returns the exit code. An installed tree has no such pages."""
+    if INSTALLED:
+        return 0
     program = f"{PROGRAMS}/constraint_drift"
     if os.access(program, os.X_OK):
         listed = read(program, "--list")

@@ -4,6 +4,13 @@ import os
 import subprocess
 
 from .messages import refuse
+from .place import shipped
+
+
+def existing(scene):
+    """Returns the scene file of this name, else the shipped one of an installed tree."""
+    there = shipped(scene)
+    return there if not os.path.exists(scene) and os.path.isfile(there) else scene
 
 
 def scene_folder(verb, words):
@@ -11,6 +18,7 @@ def scene_folder(verb, words):
     scene = words[0] if words else ""
     if not scene or scene.startswith("-"):
         refuse(f"{verb}: give one scene file first, as in ./tress {verb} scenes/cantilever.toml")
+    scene = existing(scene)
     if os.path.isdir(scene):
         refuse(f"{verb}: '{scene}' is a folder; give a scene file")
     if not os.path.isfile(scene):

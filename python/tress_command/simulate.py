@@ -9,7 +9,7 @@ from .command import Command
 from .counting import must
 from .messages import BAD_INPUT, DONE, ROWS_FAILED, Ended, Stopwatch, refuse, say
 from .processes import run
-from .scene_folder import scene_folder
+from .scene_folder import existing, scene_folder
 from .scripts import REPORT
 from .tree import PROGRAMS, first_program
 
@@ -39,12 +39,14 @@ def _run(words, machine):
     if words == DEFAULTS:
         return run(first_program(machine, "simulate"), *words)
     folder = scene_folder("simulate", words)
-    scene, *options = words
+    scene, *options = (existing(words[0]), *words[1:])
     if options and not options[0].startswith("-"):
         refuse(f"simulate: '{options[0]}' after the scene file; give one scene, then options")
     if any(word.partition("=")[0] == "--out" for word in options):
         refuse(f"simulate: --out is {folder} here; {PROGRAM} takes another")
     program = first_program(machine, "simulate")
+    if "--check" in options:  # writes nothing
+        return run(program, scene, *options)
     watch = Stopwatch()
     with contextlib.nullcontext() if "--resume" in options else _in_place_of(folder):
         code = run(program, scene, "--out", f"{folder}/scenes", *options)

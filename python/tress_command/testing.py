@@ -9,9 +9,10 @@ from . import sundials
 from .command import Command, read_words
 from .counting import must
 from .messages import say
+from .package import LISTS, build_packages, packages
 from .packages import npm_packages
 from .scripts import (TEST_ADVICE, TEST_CLUSTER, TEST_CORPUS, TEST_LIMITS, TEST_MUTANTS,
-                      TEST_READERS)
+                      TEST_PACKAGES, TEST_READERS)
 from .tree import PROGRAMS, RELEASE, build
 
 PAIRED = ("experiments/simulate", "20")  # strands of a batch
@@ -79,6 +80,14 @@ def _readers(_, __, machine):
     must(*TEST_READERS, f"{PROGRAMS}/simulate")
 
 
+def _packages(_, __, machine):
+    if not _installs(machine, *LISTS):
+        return
+    if not packages():
+        build_packages(machine)
+    must(*TEST_PACKAGES, *packages())
+
+
 def _all(preset, words, _):
     build(preset)
     began = time.time()
@@ -92,7 +101,8 @@ def _all(preset, words, _):
 
 
 TESTS = {"fuzz": _fuzz, "mutants": _mutants, "corpus": _corpus, "extremes": _extremes,
-         "advice": _advice, "cluster": _cluster, "readers": _readers}
+         "advice": _advice, "cluster": _cluster, "readers": _readers,
+         "packages": _packages}
 
 
 def _run(words, machine):
@@ -130,4 +140,7 @@ COMMAND = Command(
          "cmake/cluster_packages.txt and cmake/mpi_packages.txt, or prints why it is left out"),
         ("--readers", "exported files: do VTK, TinyUSDZ, three.js and h5py find in them what was "
          "simulated? Installs cmake/readers_packages.txt and two packages of npm, or prints why "
-         "it is left out")))
+         "it is left out"),
+        ("--packages", "the Debian packages, installed in a new system without the clone: do a "
+         "scene, the module, a consumer and a plug-in run there? Builds them first if there are "
+         "none")))

@@ -4,14 +4,14 @@ import os
 import re
 from pathlib import Path
 
-from . import sundials
+from . import place, sundials
 from .messages import INTERNAL_ERROR, Ended, Stopwatch, echo, say
 from .packages import BUILD_LIST
 from .processes import quietly
 
 RELEASE = "release"
 FIRST = "first"  # compiles sooner; its programs are slower
-PROGRAMS = "build/release/experiments"
+PROGRAMS = place.PROGRAMS
 COMPLAINT = re.compile("FAILED:|error:|CMake Error")
 AFTER, MOST = 8, 60  # lines shown of a log
 
@@ -60,13 +60,16 @@ def compile_targets(preset, *targets):
 
 
 def build(preset, *targets):
-    """Configures a tree and compiles targets."""
-    configure(preset)
-    compile_targets(preset, *targets)
+    """Configures a tree and compiles targets. An installed tree has its programs."""
+    if not place.INSTALLED:
+        configure(preset)
+        compile_targets(preset, *targets)
 
 
 def build_programs(machine, *names):
     """Builds programs of the experiments, all or those named, and prints how long that took."""
+    if place.INSTALLED:
+        return
     machine.ensure()
     watch = Stopwatch()
     build(RELEASE, *(names or ("experiments",)))

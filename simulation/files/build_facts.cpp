@@ -5,6 +5,7 @@
 
 #include "contract/input_error.h"
 #include "contract/read_file.h"
+#include "math/instructions.h"
 #include "simulation/files/built_from.h"
 #include "simulation/files/checksum.h"
 
@@ -36,6 +37,16 @@ std::string BuildFacts::code() const {
   return std::string(commit) + (dirty() ? " with changes " + std::string(changes) : "");
 }
 
+std::string BuildFacts::described(std::string_view program) const {
+  std::ostringstream text;
+  text << program << ' ' << version << " (" << commit << ")\n";
+  if (dirty()) text << "sources: changed since this commit (" << changes << ")\n";
+  text << "build: " << type << ", " << compiler << ", flags " << flags << '\n'
+       << "instructions: " << name(Instructions::base) << " from the compiler, "
+       << name(widest_instructions()) << " in packs of strands on this processor\n";
+  return text.str();
+}
+
 const BuildFacts& build_facts() {
   static constexpr BuildFacts facts{
       TRESS_VERSION,  TRESS_GIT_COMMIT, TRESS_GIT_CHANGES, TRESS_SOURCE_TREE,
@@ -56,6 +67,7 @@ const std::string& executable_checksum() {
 }
 
 std::string checked_out(std::string_view source_tree) {
+  if (source_tree.empty()) return {};
   const fs::path tree(source_tree);
   fs::path folder = tree / ".git";
   // A further work tree of a repository has a file there.

@@ -12,7 +12,7 @@ struct BuildFacts {
   std::string_view version;      // version of tress
   std::string_view commit;       // of the tree that was compiled, or "unknown"
   std::string_view changes;      // checksum of its differences from the commit; "": none
-  std::string_view source_tree;  // absolute path
+  std::string_view source_tree;  // absolute path; "": of a package
   std::string_view compiler;     // name and version
   std::string_view flags, type;  // of the compiler; CMake's build type
 
@@ -20,6 +20,9 @@ struct BuildFacts {
   bool dirty() const { return !changes.empty(); }
   /// The commit, and the changes where there are some.
   std::string code() const;
+  /// The lines that `program --version` prints: version and commit, build, and the
+  /// vector instructions of the compiler and of this machine.
+  std::string described(std::string_view program) const;
 };
 
 /// Returns the facts of this build.

@@ -9,6 +9,7 @@
 
 #include "contract/input_error.h"
 #include "contract/read_file.h"
+#include "contract/shipped_file.h"
 #include "integrators/integrator_options.h"
 #include "models/effects/obstacle.h"
 #include "models/strand/geometry.h"
@@ -364,11 +365,13 @@ bool Scene::chooses_steps() const {
 }
 
 Scene read_scene(const std::string& file) {
-  return parse_scene(read_file(file, most_toml_bytes), file);
+  const std::string there = shipped_file(file);
+  return parse_scene(read_file(there, most_toml_bytes), there);
 }
 
 SceneOutline read_outline(const std::string& file) {
-  return parse_outline(read_file(file, most_toml_bytes), file);
+  const std::string there = shipped_file(file);
+  return parse_outline(read_file(there, most_toml_bytes), there);
 }
 
 std::vector<Scene> read_scenes(const std::vector<std::string>& files) {

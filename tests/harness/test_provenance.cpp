@@ -12,9 +12,11 @@
 
 #include "contract/input_error.h"
 #include "contract/read_file.h"
+#include "contract/shipped_file.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/message.h"
 #include "experiments/run/row_loads.h"
+#include "math/instructions.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/checksum.h"
 #include "simulation/files/files.h"
@@ -48,9 +50,19 @@ TEST(Provenance, IsThatOfTheBuildWhateverGitWouldSay) {
   const auto meta = nlohmann::json::parse(toy.read("toy.meta.json"));
   const auto built = meta.at("git").at("commit").get<std::string>();
   EXPECT_EQ(built, build_facts().commit);
-  EXPECT_THAT(toy.run("--version").out, HasSubstr("(" + built + ")"));
+  const std::string version = toy.run("--version").out;
+  EXPECT_THAT(version, HasSubstr("(" + built + ")"));
+  EXPECT_THAT(version, HasSubstr(std::string(build_facts().flags)));
+  EXPECT_THAT(version, HasSubstr(name(widest_instructions())));
   EXPECT_EQ(meta.at("build").at("executable_fnv1a_64"),
             checksum(read_file(TOY_EXPERIMENT)));
+}
+
+TEST(Provenance, ABuildTreeIsNotAnInstalledOne) {
+  EXPECT_EQ(installed_root(), "");
+  for (const char* file : {"", "none.toml", "/proc/self/exe", "."}) {
+    EXPECT_EQ(shipped_file(file), file);
+  }
 }
 
 TEST(Provenance, TheCommitOfATreeIsReadWithoutGit) {

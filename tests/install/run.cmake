@@ -3,6 +3,7 @@
 set(work ${BINARY_DIR}/install_test)
 file(REMOVE_RECURSE ${work})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${work}/first
+                        --component development
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${work}/first ${work}/moved)
 

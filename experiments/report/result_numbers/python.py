@@ -12,6 +12,7 @@ _COMPILED = {
     "load_plugin": "load_plugin(file): loads the models, integrators and effects of a plug-in; call it first",
     "scene_defaults": "scene_defaults(): a short scene to start from, as text",
     "scene_schema": "scene_schema(): the page scenes/README.md, as text",
+    "version_text": "version_text(): version, commit, compiler flags and vector instructions of this build",
 }
 
 
@@ -21,7 +22,7 @@ def _signature(node, source):
     end = next(k for k, line in enumerate(head) if line.rstrip().endswith(":"))
     text = " ".join(line.strip() for line in head[:end + 1])
     text = re.sub(r"^(class|def) |:$", "", text)
-    return re.sub(r",? \)$", ")", re.sub(r"\((self|cls)(, )?", "(", text.replace("( ", "(", 1)))
+    return re.sub(r",? \)( -> .*)?$", r")\1", re.sub(r"\((self|cls)(, )?", "(", text.replace("( ", "(", 1)))
 
 
 def names_of(source):

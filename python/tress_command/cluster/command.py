@@ -74,7 +74,8 @@ class Programs:
 
 
 def _version(program):
-    return read(program, "--version").stdout.strip()
+    """Returns version and commit of a program, without the instructions of this machine."""
+    return read(program, "--version").stdout.partition("\n")[0]
 
 
 def refuse_strange(folder):
