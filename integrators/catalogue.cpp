@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "contract/forms/bordered_form.h"
 #include "contract/forms/contact_form.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/open_catalogue.h"
@@ -135,7 +136,8 @@ std::string refusal(const IntegratorEntry& entry, System& system,
     return "the model has no constraints: the formulation is parametric";
   }
   if (!entry.order(formulation)) return std::string(entry.gap(formulation));
-  if (constrained && system.sparse_form() == nullptr) {
+  if (constrained && bordered_form(system) == nullptr &&
+      system.sparse_form() == nullptr) {
     return "constraints need the model's sparse form";
   }
   if (ContactForm* contacts = system.contact_form()) {

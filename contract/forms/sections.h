@@ -38,6 +38,8 @@ class Sections {
   virtual Kind section_kind(int point) const = 0;
   /// Returns the coordinates that turn a section, ascending; fixed for life.
   virtual std::vector<int> section_coordinates(int point) const = 0;
+  /// Returns the frame of a section.
+  virtual Frame section_frame(double t, In q, int point) = 0;
   /// Returns the motion of a section at a state (q, v, a).
   virtual SectionMotion section(double t, In q, In v, In a, int point) = 0;
   /// b += J^T moment, J = d omega/dv of a section and a moment on it (N m, world

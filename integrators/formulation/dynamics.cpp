@@ -24,7 +24,9 @@ Dynamics::Dynamics(System& system, const Options& options)
       layout_{system.layout().coordinates, options.formulation == Formulation::correction
                                                ? 0
                                                : system.layout().constraints},
-      sparse_(layout_.constraints > 0 ? system.sparse_form() : nullptr),
+      bordered_form_(layout_.constraints > 0 ? bordered_form(system) : nullptr),
+      sparse_(layout_.constraints > 0 && bordered_form_ == nullptr ? system.sparse_form()
+                                                                   : nullptr),
       constraints_(layout_.constraints > 0 ? system.constraint_form() : nullptr),
       explicit_(system.layout().constraints > 0 ? nullptr : system.explicit_form()),
       position_level_(options.formulation == Formulation::index3) {
@@ -50,8 +52,13 @@ Dynamics::Dynamics(System& system, const Options& options)
   stats.solver = "structured";
   if (constraints_ == nullptr) return;
   constraints_->scale(g_typ_);
-  kkt_.emplace(options.linear, sparse_->pattern(), constraints_->pattern());
-  s_.resize(size(sparse_->pattern().nonzeros()));
+  if (bordered_form_ != nullptr) {
+    bordered_.emplace([&system](InOut b) { return system.solve(b, b); },
+                      constraints_->pattern(), q_typ_);
+  } else {
+    kkt_.emplace(options.linear, sparse_->pattern(), constraints_->pattern());
+    s_.resize(size(sparse_->pattern().nonzeros()));
+  }
   for (auto* values : {&gt_, &ht_, &rate_gt_}) {
     values->resize(size(constraints_->pattern().nonzeros()));
   }
@@ -61,7 +68,7 @@ Status Dynamics::residual(double t, In q, In v, In a, In lambda, Out r, Out c) n
   ++stats.residuals;
   const Status answer = noted(system_.residual(t, q, v, a, r), t, q, v);
   if (answer != Status::ok || constraints_ == nullptr) return answer;
-  if (const Status s = constraints_->gradient(t, q, gt_); s != Status::ok) return s;
+  if (const Status s = find_gradient(t, q); s != Status::ok) return s;
   const Pattern& pattern = constraints_->pattern();
   for (int k = 0; k < m(); ++k) {
     for (int p = pattern.start[size(k)]; p < pattern.start[size(k) + 1]; ++p) {
@@ -92,23 +99,40 @@ Status Dynamics::linearize(double t, In q, In v, In a, In lambda, Weights w) noe
   ++stats.linearizations;
   ++matrices_;
   weights_ = w;
-  const Status answer =
-      noted(constraints_ == nullptr ? system_.linearize(t, q, v, a, w)
-                                    : sparse_->values(t, q, v, a, w, s_),
-            t, q, v);
+  const Status answer = noted(assemble(t, q, v, a, lambda, w), t, q, v);
   if (answer != Status::ok || constraints_ == nullptr) return answer;
-  if (w.pos != 0) {
-    const Status s = constraints_->add_curvature(t, q, lambda, -w.pos, s_);
-    if (s != Status::ok) return s;
-  }
-  if (const Status s = constraints_->gradient(t, q, gt_); s != Status::ok) return s;
+  if (const Status s = find_gradient(t, q); s != Status::ok) return s;
   if (const Status s = constraint_tangent(t, q, v, a, w); s != Status::ok) return s;
-  const Status s = kkt_->factor(s_, gt_, ht_);
-  const KktReport& report = kkt_->report();
+  const Status s = bordered_ ? bordered_->factor(gt_, ht_) : kkt_->factor(s_, gt_, ht_);
+  const KktReport& report = bordered_ ? bordered_->report() : kkt_->report();
   stats.solver = report.solver;
   stats.rank_deficiency = std::max(stats.rank_deficiency, report.rank_deficiency);
   stats.condition = std::max(stats.condition, report.condition);
   return s;
+}
+
+/// Sets gt_. Newton's method needs it for the matrix and for the residual of one state.
+Status Dynamics::find_gradient(double t, In q) noexcept {
+  if (bordered_ && t == gradient_t_ && std::ranges::equal(q, gradient_q_)) {
+    return Status::ok;
+  }
+  gradient_t_ = std::numeric_limits<double>::quiet_NaN();
+  if (const Status s = constraints_->gradient(t, q, gt_); s != Status::ok) return s;
+  if (bordered_) {
+    gradient_q_.assign(q.begin(), q.end());
+    gradient_t_ = t;
+  }
+  return Status::ok;
+}
+
+/// Prepares S(w) with the second derivatives of the constraints: for the system's own
+/// solve(), or as s_.
+Status Dynamics::assemble(double t, In q, In v, In a, In lambda, Weights w) noexcept {
+  if (constraints_ == nullptr) return system_.linearize(t, q, v, a, w);
+  if (bordered_) return bordered_form_->linearize_bordered(t, q, v, a, lambda, w);
+  const Status s = sparse_->values(t, q, v, a, w, s_);
+  if (s != Status::ok || w.pos == 0) return s;
+  return constraints_->add_curvature(t, q, lambda, -w.pos, s_);
 }
 
 /// Sets ht_ = (w.acc dc/da + w.vel dc/dv + w.pos dc/dq)^T, where dc/da = G. With R(v) =
@@ -135,7 +159,7 @@ Status Dynamics::solve(InOut r, InOut c) noexcept {
   if (position_level_ && weights_.pos != 0) {
     for (double& entry : c) entry /= weights_.pos;
   }
-  return kkt_->solve(r, c);
+  return bordered_ ? bordered_->solve(r, c) : kkt_->solve(r, c);
 }
 
 Status Dynamics::directional(double t, In q, In v, In a, In lambda, In dq, In dv, Out dr,

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "contract/forms/bordered_form.h"
 #include "contract/forms/constraint_form.h"
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/integrator.h"
+#include "linear/bordered.h"
 #include "linear/kkt.h"
 
 namespace tress::integrators {
@@ -27,7 +30,8 @@ inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
 ///
 /// Unconstrained systems, and every system under `correction`, pass through to
 /// System::linearize and solve. Constrained ones are solved by the KKT matrix of
-/// linear/kkt.h. No call allocates after the first.
+/// linear/kkt.h, or by linear/bordered.h if the system has a BorderedForm. No call
+/// allocates after the first.
 class Dynamics {
  public:
   /// Takes formulation, gains and linear solver from the options; the system must
@@ -91,6 +95,7 @@ class Dynamics {
 
   /// To be called before a run: resets the counts and all memory of the previous run.
   void begin() {
+    gradient_t_ = std::numeric_limits<double>::quiet_NaN();
     stats = Stats{.solver = stats.solver};
     ++matrices_;
     forget();
@@ -117,11 +122,14 @@ class Dynamics {
   }
   void keep_lost(double t, In q, In v) noexcept;
   Status constraint_row(double t, In q, In v, In a, Out c) noexcept;
+  Status assemble(double t, In q, In v, In a, In lambda, Weights w) noexcept;
+  Status find_gradient(double t, In q) noexcept;
   Status constraint_tangent(double t, In q, In v, In a, Weights w) noexcept;
 
   System& system_;
   Layout layout_;
-  SparseForm* sparse_;
+  BorderedForm* bordered_form_;
+  SparseForm* sparse_;  // null: not used
   ConstraintForm* constraints_;
   ExplicitForm* explicit_;
   bool position_level_;
@@ -131,6 +139,11 @@ class Dynamics {
   Weights weights_;
   long matrices_ = 0;
   std::optional<Kkt> kkt_;
+  std::optional<Bordered> bordered_;
+  // State of gt_, whose rows are full; no memory of a system with a BorderedForm changes
+  // it at the same q. NaN: none.
+  double gradient_t_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> gradient_q_;
   std::vector<double> q_typ_, v_typ_, g_typ_;
   std::vector<double> s_, gt_, ht_, rate_gt_;                         // matrix values
   std::vector<double> zero_n_, zero_m_, q_shift_, v_shift_, r_base_;  // scratch

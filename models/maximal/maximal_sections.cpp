@@ -66,20 +66,39 @@ std::vector<int> MaximalSystem::section_coordinates(int point) const {
   return all;
 }
 
+/// At the coordinates of place().
+Frame MaximalSystem::frame_of(int point, const EndTurn& turn) const {
+  const Frame& to_section = point == 0 ? strand_.to_root : strand_.to_tip;
+  if (turn.quaternion >= 0) {
+    const Quaternion p = load_quaternion(&z_[static_cast<std::size_t>(turn.quaternion)]);
+    return axes((1 / std::sqrt(dot(p, p))) * p) * to_section;
+  }
+  const std::size_t first = first_of_end(point);
+  const Vec e = load3(&z_[first + 3]) - load3(&z_[first]);
+  // Without a frame the rest shape of the half edge has no direction.
+  if (turn.angle < 0) return edge_frame(frame_along((1 / norm(e)) * e), e, 0.0);
+  return edge_frame(turn.reference, e, z_[static_cast<std::size_t>(turn.angle)]) *
+         to_section;
+}
+
+Frame MaximalSystem::section_frame(double t, In q, int point) {
+  place(t, q);
+  return frame_of(point, end_turn(point).value());
+}
+
 SectionMotion MaximalSystem::section(double t, In q, In v, In a, int point) {
   place(t, q, v);
   std::ranges::copy(a, force_.begin() + static_cast<std::ptrdiff_t>(held()));
   if (strand_.clamped) store3(pose_.a, force_.data());
   const EndTurn turn = end_turn(point).value();
   SectionMotion m;
-  Frame to_section = point == 0 ? strand_.to_root : strand_.to_tip;
+  m.frame = frame_of(point, turn);
   if (turn.quaternion >= 0) {
     const auto at = [&](In x) {
       return load_quaternion(&x[static_cast<std::size_t>(turn.quaternion)]);
     };
     const Quaternion p = at(z_), rate = at(rate_);
     const double square = dot(p, p);
-    m.frame = axes((1 / std::sqrt(square)) * p);
     m.omega = (2 / square) * (rate * conjugate(p)).v;
     m.alpha = (2 / square) * (at(force_) * conjugate(p)).v -
               (2 * dot(p, rate) / square) * m.omega;
@@ -90,15 +109,10 @@ SectionMotion MaximalSystem::section(double t, In q, In v, In a, int point) {
       return turn.angle < 0 ? 0 : x[static_cast<std::size_t>(turn.angle)];
     };
     const Vec e = along(z_);
-    const Frame reference =
-        turn.angle < 0 ? frame_along((1 / norm(e)) * e) : turn.reference;
-    m.frame = edge_frame(reference, e, angle(z_));
-    // Without a frame the rest shape of the half edge has no direction.
-    if (turn.angle < 0) to_section = {};
-    move_edge(EdgeTurn(reference.e0, e), along(rate_), along(force_), angle(rate_),
+    const Vec tangent = turn.angle < 0 ? (1 / norm(e)) * e : turn.reference.e0;
+    move_edge(EdgeTurn(tangent, e), along(rate_), along(force_), angle(rate_),
               angle(force_), m);
   }
-  m.frame = m.frame * to_section;
   return m;
 }
 

@@ -131,6 +131,7 @@ class MaximalSystem final : public System,
   /// Returns the kind of the tip, and of a free root; others have no section.
   Kind section_kind(int point) const override;
   std::vector<int> section_coordinates(int point) const override;
+  Frame section_frame(double t, In q, int point) override;
   SectionMotion section(double t, In q, In v, In a, int point) override;
   void add_moment(double t, In q, int point, const Vec& moment, InOut b) override;
 
@@ -182,6 +183,7 @@ class MaximalSystem final : public System,
   void build_pattern();
   bool diagonal_mass() const;
   void look_at(double t) noexcept;
+  Frame frame_of(int point, const EndTurn& turn) const;
   void place(double t, In q) noexcept;
   void place(double t, In q, In v) noexcept;
   Placement placement() const { return {pose_, z_, rate_}; }

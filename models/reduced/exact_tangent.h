@@ -114,6 +114,34 @@ class ExactTangent {
     }
   }
 
+  /// Adds the derivatives of a load on a point with this motion to those of the wrench at
+  /// the point by its state (SegmentTangent::tip). Expects the load to be part of
+  /// at_tip() and at_root() (InverseDynamics::hang). A force f that keeps its direction
+  /// changes its components by f x phi, a moment likewise.
+  static void load(const SectionLoad& load, const FrameMotion& m,
+                   Eigen::Matrix<double, Shape::wrench, Shape::states>& tip) {
+    const Frame& f = m.frame;
+    const Vec force = f.back(load.force), moment = f.back(load.moment);
+    for (int c = 0; c < S::rotations; ++c) {
+      const Vec e = Frames::axis(S::rotation[c]), turn = f * e;
+      Vec by_turn = load.by_turn * turn;
+      // In the plane, omega turns with the frame: its variation in the world is the
+      // state.
+      if constexpr (modes > 1) {
+        by_turn = by_turn - load.by_spin * (f * cross(m.omega, e));
+      }
+      subtract_wrench(cross(force, e), f.back(by_turn) + cross(moment, e), t + c, tip);
+      subtract_wrench({}, f.back(load.by_spin * turn), size + t + c, tip);
+    }
+  }
+  /// load() on the root, with `root` of root().
+  void load_root(const SectionLoad& of, RootTangent<Shape>& root) const {
+    Eigen::Matrix<double, size, Shape::states> by_state;
+    by_state.setZero();
+    load(of, kinematics_.root(), by_state);
+    add_product(root.lift, product(by_state, root.transfer), root.local);
+  }
+
   /// Results of the transposed product at a segment (TransposedProduct).
   using Rows = Eigen::Matrix<double, Shape::rows, 1>;
   using State = Eigen::Matrix<double, Shape::states, 1>;
@@ -198,6 +226,14 @@ class ExactTangent {
   static void put(const Vec& translation, const Vec& rotation, Column&& column,
                   int level) {
     Frames::put(translation, rotation, &column[level * size]);
+  }
+
+  /// Subtracts a wrench from a column.
+  static void subtract_wrench(const Vec& force, const Vec& moment, int column,
+                              Eigen::Matrix<double, size, Shape::states>& to) {
+    double wrench[size];
+    Frames::put(force, moment, wrench);
+    for (int r = 0; r < size; ++r) to(r, column) -= wrench[r];
   }
 
   /// Derivatives of the positions in a segment with respect to its unknowns.

@@ -30,13 +30,18 @@ class ForceTransport final : public ReducedSystem<BallLink, dofs> {
   }
 
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    return linearize_loaded(t, q, v, a, w, {}, {});
+  }
+  Status linearize_loaded(double t, In q, In v, In a, Weights w,
+                          std::span<const SectionLoad> loads,
+                          In springs) noexcept override {
     const bool exact = Base::exact_ && (w.vel != 0 || w.pos != 0);
     dense_in_use_ = exact || always_dense_;
     if (!dense_in_use_) return factored_ = sweeps_.factor(q, w);
     kinematics_.shape(q);
     sweeps_.compose(q);
     if (exact) {
-      Base::take_exact_tangent(t, q, v, zero_, {0, w.vel, w.pos});
+      Base::take_exact_tangent(t, q, v, zero_, {0, w.vel, w.pos}, loads, springs);
       gyroscopic_.assemble(Base::full_);
       sweeps_.matrix().add_slope(kinematics_, w.pos, a, dense_.matrix);
     } else {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contract/forms/loaded_tangent.h"
 #include "math/wrench.h"
 #include "models/effects/effect.h"
 #include "models/reduced/kinematics.h"
@@ -171,6 +172,31 @@ class InverseDynamics {
   /// Returns the wrench that moves all segments, in components of the root; from the last
   /// residual().
   const Wrench& at_root() const { return at_root_; }
+  /// Adds loads on points (0: the root, i + 1: the tip of segment i) of a chain to what
+  /// at_tip() and at_root() return, after residual().
+  void hang(std::span<const SectionLoad> loads) {
+    Wrench below;  // in components of the tip, or start, that the sweep is at
+    const auto take = [&](std::size_t point, const FrameMotion& at) {
+      for (const SectionLoad& load : loads) {
+        if (load.point != static_cast<int>(point)) continue;
+        below.force = below.force - at.frame.back(load.force);
+        below.moment = below.moment - at.frame.back(load.moment);
+      }
+    };
+    for (std::size_t i = at_tip_.size(); i-- > 0;) {
+      take(i + 1, kinematics_.motion(i).tip);
+      Wrench& tip = at_tip_[i];
+      tip = {tip.force + below.force, tip.moment + below.moment};
+      const auto& g = kinematics_.geometry(i);
+      below.force = g.rotation * below.force;
+      below.moment = g.rotation * below.moment + cross(g.position, below.force);
+      const auto& segment = kinematics_.segments()[i];
+      if (!segment.mounted) continue;
+      below = {segment.mount * below.force, segment.mount * below.moment};
+    }
+    take(0, kinematics_.root());
+    at_root_ = {at_root_.force + below.force, at_root_.moment + below.moment};
+  }
   /// Returns the quantities of points that any of the effects reads.
   const Needs& effect_needs() const { return needs_; }
   /// Returns all effects on the strand.

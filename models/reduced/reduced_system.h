@@ -10,6 +10,7 @@
 #include "contract/forms/energetics.h"
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/history.h"
+#include "contract/forms/loaded_tangent.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/natural_strains.h"
 #include "contract/forms/point_accelerations.h"
@@ -41,6 +42,7 @@ class ReducedSystem : public System,
                       public TransposedForm,
                       public PointAccelerations,
                       public Sections,
+                      public LoadedTangent,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
@@ -134,11 +136,17 @@ class ReducedSystem : public System,
   }
 
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
+    return ReducedSystem::linearize_loaded(t, q, v, a, w, {}, {});
+  }
+  bool takes_loads() const override { return exact_ && chain_; }
+  Status linearize_loaded(double t, In q, In v, In a, Weights w,
+                          std::span<const SectionLoad> loads,
+                          In springs) noexcept override {
     // Without velocity and position weights, only the mass remains.
     full_in_use_ = exact_ && (w.vel != 0 || w.pos != 0);
     swept_ = false;
     if (!full_in_use_) return factored_ = factor_mass(t, q, v, a, w);
-    take_exact_tangent(t, q, v, a, w);
+    take_exact_tangent(t, q, v, a, w, loads, springs);
     return factored_ = exact_solver().factor(full_);
   }
 
@@ -330,6 +338,10 @@ class ReducedSystem : public System,
     std::iota(all.begin(), all.end(), 0);
     return all;
   }
+  [[gnu::noinline]] Frame section_frame(double t, In q, int point) override {
+    const Frame& frame = kinematics_.frames(t, q)[static_cast<std::size_t>(point)];
+    return point == kinematics_.count() ? frame * to_tip_ : frame;
+  }
   // Cold and out of line for the reason that is given at factor_transposed().
   [[gnu::cold, gnu::noinline]] SectionMotion section(double t, In q, In v, In a,
                                                      int point) override {
@@ -409,8 +421,11 @@ class ReducedSystem : public System,
     return mass_solver_->factor(mass_.at(t, q, v, w));
   }
 
-  void take_exact_tangent(double t, In q, In v, In a, Weights w) {
+  void take_exact_tangent(double t, In q, In v, In a, Weights w,
+                          std::span<const SectionLoad> loads, In springs) {
     dynamics_.residual(t, q, v, a, scratch_);
+    if (!loads.empty()) dynamics_.hang(loads);
+    if (!hung_.empty()) release_tips();
     const auto effects = effect_blocks(t);
     dynamics_.couplings(t, contacts_);
     full_.couplings.clear();
@@ -418,6 +433,38 @@ class ReducedSystem : public System,
       full_.couplings.push_back(ContactTangent(kinematics_).of(contact, w));
     }
     fill_tangent(w, effects, v, a, full_);
+    if (!loads.empty() || !springs.empty()) add_loads(loads, w.pos, springs);
+  }
+
+  // Of supports alone; see factor_transposed().
+  [[gnu::cold, gnu::noinline]] void release_tips() {
+    for (const std::size_t i : hung_) full_.segments[i].tip.setZero();
+    hung_.clear();
+  }
+  /// Adds the derivatives of loads, which hang on the strand, and of springs times
+  /// `factor`.
+  [[gnu::cold, gnu::noinline]] void add_loads(std::span<const SectionLoad> loads,
+                                              double factor, In springs) {
+    for (const SectionLoad& load : loads) {
+      if (load.point == 0) {
+        if (full_.free_root) exact_tangent_.load_root(load, full_.root);
+        continue;
+      }
+      const auto i = static_cast<std::size_t>(load.point) - 1;
+      exact_tangent_.load(load, kinematics_.motion(i).tip, full_.segments[i].tip);
+      hung_.push_back(i);
+    }
+    if (springs.empty()) return;
+    const std::size_t root = dofs * full_.segments.size();
+    for (std::size_t i = 0; i < root; ++i) {
+      const auto k = static_cast<int>(i % dofs);
+      full_.segments[i / dofs].local(Exact::wrench + k, Exact::states + k) +=
+          factor * springs[i];
+    }
+    for (std::size_t i = root; i < springs.size(); ++i) {
+      const auto k = static_cast<int>(i - root);
+      full_.root.local(k, k) += factor * springs[i];
+    }
   }
 
   /// Fills in the matrices of all segments, at the motion of the last residual().
@@ -432,6 +479,7 @@ class ReducedSystem : public System,
 
   void take_transposed_tangent(double t, In q, In v, In a, Weights w) {
     dynamics_.residual(t, q, v, a, scratch_);
+    if (!hung_.empty()) release_tips();
     fill_tangent(w, effect_blocks(t), v, a, full_);
     t_transposed_ = t;
     q_transposed_.assign(q.begin(), q.end());
@@ -683,6 +731,7 @@ class ReducedSystem : public System,
   std::vector<double> u_world_;  // likewise, of power_of_loads()
   bool loads_placed_ = false;    // u_world_ and points are those of u_
   bool full_in_use_ = false, swept_ = false;
+  std::vector<std::size_t> hung_;  // segments with loads on their tips in full_
   Weights weights_, transposed_weights_;
   Status factored_ = Status::retry;
   std::vector<double> zero_, scratch_, by_position_, by_velocity_, by_direction_,

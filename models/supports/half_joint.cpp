@@ -22,10 +22,7 @@ Vec HalfJoint::stress(const SectionGap& gap) const {
               entrywise(joint_.friction, gap.rate));
 }
 
-Vec HalfJoint::rotation(double t, In q) {
-  zero_.resize(q.size());
-  return held(section_.gap(t, q, zero_, zero_).value);
-}
+Vec HalfJoint::rotation(double t, In q) { return held(section_.gap(t, q).value); }
 
 void HalfJoint::add_force(double t, In q, In v, InOut r) {
   zero_.resize(q.size());
@@ -58,10 +55,11 @@ double HalfJoint::energy_rate(double t, In q, In v) {
   return dot(held(entrywise(joint_.stiffness, gap.value - lead_)), gap.rate);
 }
 
-Vec HalfJoint::moment(double t, In q, In v) {
+SectionLoad HalfJoint::load(double t, In q, In v) {
   zero_.resize(q.size());
-  const SectionGap gap = section_.gap(t, q, v, zero_);
-  return -1.0 * gap.moment(stress(gap));
+  const Vec opposed = stress(section_.gap(t, q, v, zero_));
+  return section_.load(t, q, v, zero_, -1.0 * opposed, -1.0 * held(joint_.stiffness),
+                       -1.0 * held(joint_.friction));
 }
 
 }  // namespace tress::models

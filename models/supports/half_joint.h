@@ -28,12 +28,12 @@ class HalfJoint {
   void add_force(double t, In q, In v, InOut r);
   /// s += w.pos dr/dq + w.vel dr/dv.
   void add_tangent(double t, In q, In v, Weights w, InOut s);
+  /// Returns the moment of the joint on the section, with its derivatives.
+  SectionLoad load(double t, In q, In v);
   /// Returns the elastic energy, J.
   double energy(double t, In q);
   /// Returns the rate of the elastic energy, W.
   double energy_rate(double t, In q, In v);
-  /// Returns the moment of the joint on the strand, N m, world components.
-  Vec moment(double t, In q, In v);
   /// Returns the path whose frame is the wall.
   const RootMotion& path() const { return section_.path(); }
 

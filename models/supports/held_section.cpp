@@ -22,7 +22,7 @@ Sections::Kind section_to_hold(System& strand, int point, const std::string& whe
 }
 
 HeldSection::HeldSection(System& strand, int point, RootMotion path, bool whole_frame,
-                         const Pattern& matrix, const std::string& where)
+                         SparseForm* matrix, const std::string& where)
     : sections_(sections(strand)), point_(point), path_(std::move(path)) {
   using enum Sections::Turning;
   const Sections::Kind kind = section_to_hold(strand, point, where);
@@ -33,10 +33,18 @@ HeldSection::HeldSection(System& strand, int point, RootMotion path, bool whole_
                 : turning_ == tangent ? std::vector{1, 2}
                                       : std::vector{1};
   coordinates_ = sections_->section_coordinates(point);
+  if (matrix != nullptr) find_entries(matrix->pattern(), where);
+  const auto n = static_cast<std::size_t>(strand.layout().coordinates);
+  for (auto* x : {&q_typ_, &change_}) x->assign(n, 0.0);
+  strand.scale(q_typ_, change_);
+  steps_.resize(coordinates_.size());
+}
+
+void HeldSection::find_entries(const Pattern& matrix, const std::string& where) {
   for (const int column : coordinates_) {
-    const auto from = matrix.row.begin() + matrix.start[static_cast<std::size_t>(column)],
-               to = matrix.row.begin() +
-                    matrix.start[static_cast<std::size_t>(column) + 1];
+    const auto at = static_cast<std::size_t>(column);
+    const auto from = matrix.row.begin() + matrix.start[at],
+               to = matrix.row.begin() + matrix.start[at + 1];
     for (const int row : coordinates_) {
       const auto entry = std::find(from, to, row);
       refuse_if(entry == to,
@@ -45,10 +53,6 @@ HeldSection::HeldSection(System& strand, int point, RootMotion path, bool whole_
       entries_.push_back(static_cast<std::size_t>(entry - matrix.row.begin()));
     }
   }
-  const auto n = static_cast<std::size_t>(strand.layout().coordinates);
-  for (auto* x : {&q_typ_, &change_}) x->assign(n, 0.0);
-  strand.scale(q_typ_, change_);
-  steps_.resize(coordinates_.size());
 }
 
 void HeldSection::find_steps(double t, In q) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "contract/forms/sections.h"
-#include "contract/pattern.h"
+#include "contract/forms/sparse_form.h"
 #include "models/motion/root_motion.h"
 #include "models/supports/section_gap.h"
 
@@ -23,9 +23,9 @@ class HeldSection {
  public:
   /// Holds the section at a point: all of its rotation, or its tangent alone. Throws
   /// InputError naming `where` if the model does not determine the rotation. `strand`
-  /// must outlive it; the entries of `matrix` are those of its S.
+  /// must outlive it; `matrix` is its S (null: full).
   HeldSection(System& strand, int point, RootMotion path, bool whole_frame,
-              const Pattern& matrix, const std::string& where);
+              SparseForm* matrix, const std::string& where);
 
   /// Returns the held components of the rotation: indices of its axes.
   const std::vector<int>& components() const { return components_; }
@@ -36,6 +36,10 @@ class HeldSection {
   /// Returns the path whose frame holds the section.
   const RootMotion& path() const { return path_; }
 
+  /// Returns the rotation, without its derivatives.
+  SectionGap gap(double t, In q) {
+    return {turning_, path_.at(t), {sections_->section_frame(t, q, point_), {}, {}}};
+  }
   /// Returns the rotation and its derivatives at a state.
   SectionGap gap(double t, In q, In v, In a) {
     return {turning_, path_.at(t), sections_->section(t, q, v, a, point_)};
@@ -43,6 +47,16 @@ class HeldSection {
   /// b += J^T moment of a stress on the rotation at a state.
   void pull(double t, In q, const SectionGap& gap, const Vec& stress, InOut b) {
     sections_->add_moment(t, q, point_, gap.moment(stress), b);
+  }
+
+  /// Returns the moment of a stress on the rotation at a state, as section_load().
+  SectionLoad load(double t, In q, In v, In a, const Vec& stress, const Vec& stiffness,
+                   const Vec& friction) {
+    return load(t, sections_->section(t, q, v, a, point_), stress, stiffness, friction);
+  }
+  /// Returns that of a constant stress.
+  SectionLoad load(double t, In q, const Vec& stress) {
+    return load(t, {sections_->section_frame(t, q, point_), {}, {}}, stress, {}, {});
   }
 
   /// Adds factor d force/dx to s, by central differences. `force`(x, b) adds to the
@@ -66,13 +80,23 @@ class HeldSection {
       force(shifted_, change_);
       shifted_[column] = x[column];
       for (std::size_t i = 0; i < count; ++i) {
-        s[entries_[k * count + i]] +=
-            factor / (2 * step) * change_[static_cast<std::size_t>(coordinates_[i])];
+        const auto row = static_cast<std::size_t>(coordinates_[i]);
+        const std::size_t entry =
+            entries_.empty() ? column * x.size() + row : entries_[k * count + i];
+        s[entry] += factor / (2 * step) * change_[row];
       }
     }
   }
 
  private:
+  SectionLoad load(double t, const SectionMotion& at, const Vec& stress,
+                   const Vec& stiffness, const Vec& friction) {
+    SectionLoad made =
+        section_load(turning_, path_.at(t), at, stress, stiffness, friction);
+    made.point = point_;
+    return made;
+  }
+  void find_entries(const Pattern& matrix, const std::string& where);
   void find_steps(double t, In q);
 
   Sections* sections_;
@@ -81,7 +105,8 @@ class HeldSection {
   Sections::Turning turning_;
   bool half_edge_;
   std::vector<int> components_, coordinates_;
-  std::vector<std::size_t> entries_;  // of the coordinates' block in S, by columns
+  // Of the coordinates' block in S, by columns; empty: S is full.
+  std::vector<std::size_t> entries_;
   std::vector<double> q_typ_, steps_, shifted_, change_;
 };
 

@@ -58,4 +58,54 @@ Vec SectionGap::moment(const Vec& stress) const {
   return wall_ * cross(t, slope);
 }
 
+SectionLoad section_load(Sections::Turning turning, const RootPose& wall,
+                         const SectionMotion& section, const Vec& stress,
+                         const Vec& stiffness, const Vec& friction) {
+  RootPose still;
+  still.frame = wall.frame;
+  const auto turned = [&](const Vec& omega) {
+    return SectionGap(turning, still, {section.frame, omega, {}});
+  };
+  const auto times = [](const Vec& a, const Vec& b) {
+    return Vec{a.x * b.x, a.y * b.y, a.z * b.z};
+  };
+  const Vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const SectionGap along[3] = {turned(axes[0]), turned(axes[1]), turned(axes[2])};
+  // b(x, y), with what is known of x and y.
+  const auto bilinear = [&](const Vec& x, const SectionGap& of_x, const Vec& y,
+                            const SectionGap& of_y) {
+    return 0.5 * (turned(x + y).acceleration - of_x.acceleration - of_y.acceleration);
+  };
+  Vec second[3][3];  // b of two axes
+  for (std::size_t i = 0; i < 3; ++i) {
+    second[i][i] = along[i].acceleration;
+    for (std::size_t j = 0; j < i; ++j) {
+      second[i][j] = second[j][i] = bilinear(axes[i], along[i], axes[j], along[j]);
+    }
+  }
+  const SectionGap gap(turning, wall, section);
+  SectionLoad load;
+  load.moment = gap.moment(stress);
+  Vec by_turn[3], by_spin[3];  // columns
+  const bool constant = norm(stiffness) + norm(friction) == 0;
+  const Vec relative = section.omega - wall.omega;
+  const SectionGap moving = turned(relative);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Vec& axis = axes[j];
+    by_turn[j] = Vec{dot(stress, second[0][j]), dot(stress, second[1][j]),
+                     dot(stress, second[2][j])} -
+                 0.5 * cross(load.moment, axis);
+    if (constant) continue;
+    const Vec slope = along[j].rate;
+    const Vec rate_slope = bilinear(axis, along[j], relative, moving) -
+                           0.5 * turned(cross(axis, relative)).rate;
+    by_turn[j] =
+        by_turn[j] + gap.moment(times(stiffness, slope) + times(friction, rate_slope));
+    by_spin[j] = gap.moment(times(friction, slope));
+  }
+  load.by_turn = Matrix3<double>::columns(by_turn[0], by_turn[1], by_turn[2]);
+  load.by_spin = Matrix3<double>::columns(by_spin[0], by_spin[1], by_spin[2]);
+  return load;
+}
+
 }  // namespace tress::models

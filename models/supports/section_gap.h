@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contract/forms/loaded_tangent.h"
 #include "contract/forms/sections.h"
 #include "models/motion/root_motion.h"
 
@@ -33,5 +34,15 @@ class SectionGap {
   double scalar_ = 1;
   Vec vector_;  // of the quaternion, or the section's tangent, in the wall's components
 };
+
+/// Computes the moment C^T stress on a section and its derivatives, where c' = C omega.
+/// The stress (N m, of c) changes by `stiffness` times c and by `friction` times c'.
+///
+/// No differences are needed. Let b(x, x) be the acceleration c'' at a constant angular
+/// velocity x, and b(x, y) the symmetric bilinear function. The derivative of C y along a
+/// rotation x is then b(x, y) - C (x x y)/2.
+SectionLoad section_load(Sections::Turning turning, const RootPose& wall,
+                         const SectionMotion& section, const Vec& stress,
+                         const Vec& stiffness, const Vec& friction);
 
 }  // namespace tress::models

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string>
 
 #include "contract/input_error.h"
-#include "models/supports/dense_tangent.h"
 
 namespace tress::models {
 namespace {
@@ -29,7 +27,7 @@ SupportRows::SupportRows(System& strand, std::vector<Support> supports)
       points_(points_of(strand)),
       accelerations_(point_accelerations(strand)),
       own_(strand.layout().constraints > 0 ? strand.constraint_form() : nullptr),
-      own_rows_(strand.layout().constraints),
+      own_rows_(static_cast<std::size_t>(strand.layout().constraints)),
       supports_(std::move(supports)) {
   const auto n = static_cast<std::size_t>(strand.layout().coordinates);
   for (auto* x : {&q_typ_, &v_typ_, &zero_, &shifted_, &ahead_, &behind_, &column_}) {
@@ -43,7 +41,7 @@ SupportRows::SupportRows(System& strand, std::vector<Support> supports)
     pattern_ = own_->pattern();
     own_entries_ = static_cast<std::size_t>(pattern_.nonzeros());
   }
-  turns_.assign(static_cast<std::size_t>(own_rows_), false);
+  turns_.assign(own_rows_, false);
   linear_ = points_.mean(0).has_value();
   std::vector<double> q(n), v(n);
   strand.initial_state(q, v);
@@ -51,9 +49,6 @@ SupportRows::SupportRows(System& strand, std::vector<Support> supports)
   for (std::size_t i = 3; i < x_.size(); i += 3) {
     length_ += norm(load3(&x_[i]) - load3(&x_[i - 3]));
   }
-  SparseForm* const form = strand.sparse_form();
-  const Pattern matrix =
-      form == nullptr ? full_pattern(static_cast<int>(n)) : form->pattern();
   for (std::size_t i = 0; i < supports_.size(); ++i) {
     const Support& support = supports_[i];
     check(support.path, name_of(i));
@@ -71,7 +66,8 @@ SupportRows::SupportRows(System& strand, std::vector<Support> supports)
     add_place(support, i, q, column_);
     if (support.section == HeldPart::nothing) continue;
     HeldSection section(strand, support.point, support.path,
-                        support.section == HeldPart::frame, matrix, name_of(i));
+                        support.section == HeldPart::frame, strand.sparse_form(),
+                        name_of(i));
     if (section.half_edge()) continue;
     for (std::size_t k = 0; k < section.components().size(); ++k) {
       add_row(section.coordinates(), true);
@@ -123,8 +119,8 @@ void SupportRows::add_place(const Support& support, std::size_t i, In q, Out col
 
 /// Lengths have the size of the strand, rotations that of one radian.
 void SupportRows::scale(Out g_typ) const {
-  if (own_ != nullptr) own_->scale(g_typ.first(static_cast<std::size_t>(own_rows_)));
-  for (std::size_t k = static_cast<std::size_t>(own_rows_); k < g_typ.size(); ++k) {
+  if (own_ != nullptr) own_->scale(g_typ.first(own_rows_));
+  for (std::size_t k = own_rows_; k < g_typ.size(); ++k) {
     g_typ[k] = turns_[k] ? 1 : length_;
   }
 }
@@ -148,12 +144,12 @@ void SupportRows::fill(const Read& place, const Turn& turn, Out rows) {
 
 Status SupportRows::value(double t, In q, Out g) noexcept {
   if (own_ != nullptr) {
-    const Status s = own_->value(t, q, g.first(static_cast<std::size_t>(own_rows_)));
+    const Status s = own_->value(t, q, g.first(own_rows_));
     if (s != Status::ok) return s;
   }
   points_.positions(t, q, x_);
   fill([t](const Vec& x, const RootMotion& path) { return x - path.at(t).x; },
-       [&](HeldSection& section) { return section.gap(t, q, zero_, zero_).value; }, g);
+       [&](HeldSection& section) { return section.gap(t, q).value; }, g);
   return Status::ok;
 }
 
@@ -172,7 +168,7 @@ void SupportRows::add_gradient(double t, In q, double factor, InOut entries) {
     }
     if (!held_[i].section) continue;
     HeldSection& section = *held_[i].section;
-    const SectionGap gap = section.gap(t, q, zero_, zero_);
+    const SectionGap gap = section.gap(t, q);
     for (const int k : section.components()) {
       for (const int c : section.coordinates()) column_[static_cast<std::size_t>(c)] = 0;
       section.pull(t, q, gap, factor * Vec(k == 0, k == 1, k == 2), column_);
@@ -197,8 +193,7 @@ Status SupportRows::gradient(double t, In q, Out gt) noexcept {
 
 Status SupportRows::rate(double t, In q, In v, Out g_dot) noexcept {
   if (own_ != nullptr) {
-    const Status s =
-        own_->rate(t, q, v, g_dot.first(static_cast<std::size_t>(own_rows_)));
+    const Status s = own_->rate(t, q, v, g_dot.first(own_rows_));
     if (s != Status::ok) return s;
   }
   points_.velocities(t, q, v, x_);
@@ -209,7 +204,7 @@ Status SupportRows::rate(double t, In q, In v, Out g_dot) noexcept {
 
 Status SupportRows::bias(double t, In q, In v, Out b) noexcept {
   if (own_ != nullptr) {
-    const Status s = own_->bias(t, q, v, b.first(static_cast<std::size_t>(own_rows_)));
+    const Status s = own_->bias(t, q, v, b.first(own_rows_));
     if (s != Status::ok) return s;
   }
   accelerations_->accelerations(t, q, v, zero_, x_);
@@ -253,11 +248,16 @@ Status SupportRows::rate_gradient(double t, In q, In v, Out values) noexcept {
 /// sum += G^T lambda of the held places.
 void SupportRows::multiplied(double t, In q, In lambda, InOut sum) {
   for (std::size_t i = 0; i < supports_.size(); ++i) {
-    Vec force;
-    std::size_t row = held_[i].first;
-    for (const Vec& axis : supports_[i].axes) force = force + lambda[row++] * axis;
-    pull(t, q, supports_[i], force, sum);
+    pull(t, q, supports_[i], force(i, lambda), sum);
   }
+}
+
+/// Force of support i.
+Vec SupportRows::force(std::size_t i, In lambda) const {
+  Vec sum;
+  std::size_t row = held_[i].first;
+  for (const Vec& axis : supports_[i].axes) sum = sum + lambda[row++] * axis;
+  return sum;
 }
 
 /// Multipliers of the rotation of support i, in the components of its wall.
@@ -268,23 +268,23 @@ Vec SupportRows::stress(std::size_t i, In lambda) const {
   return load3(all);
 }
 
-std::pair<Vec, Vec> SupportRows::reaction(double t, In q, In lambda, std::size_t i) {
-  Vec force;
-  std::size_t row = held_[i].first;
-  for (const Vec& axis : supports_[i].axes) force = force + lambda[row++] * axis;
-  if (!held_[i].section) return {force, {}};
-  const SectionGap gap = held_[i].section->gap(t, q, zero_, zero_);
-  return {force, gap.moment(stress(i, lambda))};
+SectionLoad SupportRows::load(double t, In q, In lambda, std::size_t i) {
+  SectionLoad load;
+  if (held_[i].section) {
+    load = held_[i].section->load(t, q, stress(i, lambda));
+  }
+  load.point = supports_[i].point;
+  load.force = force(i, lambda);
+  return load;
 }
 
 Status SupportRows::add_curvature(double t, In q, In lambda, double factor,
                                   InOut s) noexcept {
   if (own_ != nullptr) {
-    const Status done = own_->add_curvature(
-        t, q, lambda.first(static_cast<std::size_t>(own_rows_)), factor, s);
+    const Status done = own_->add_curvature(t, q, lambda.first(own_rows_), factor, s);
     if (done != Status::ok) return done;
   }
-  const In of_supports = lambda.subspan(static_cast<std::size_t>(own_rows_));
+  const In of_supports = lambda.subspan(own_rows_);
   if (std::ranges::all_of(of_supports, [](double x) { return x == 0; })) {
     return Status::ok;
   }
@@ -293,7 +293,7 @@ Status SupportRows::add_curvature(double t, In q, In lambda, double factor,
     HeldSection& section = *held_[i].section;
     const Vec moment = stress(i, lambda);
     const auto force = [&](In x, InOut b) {
-      section.pull(t, x, section.gap(t, x, zero_, zero_), moment, b);
+      section.pull(t, x, section.gap(t, x), moment, b);
     };
     section.add_derivative(t, q, true, factor, force, s);
   }

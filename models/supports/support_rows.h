@@ -55,16 +55,15 @@ class SupportRows final : public ConstraintForm {
   /// Returns the supports.
   const std::vector<Support>& supports() const { return supports_; }
   /// Returns the number of the strand's own constraints, which come first.
-  int own() const { return own_rows_; }
+  int own() const { return static_cast<int>(own_rows_); }
   /// Returns the number of all constraints.
   int rows() const { return pattern_.cols; }
   /// Returns the length of the strand, m.
   double length() const { return length_; }
   /// Returns true if a constraint is a rotation (rad), not a place (m).
   bool turns(int row) const { return turns_[static_cast<std::size_t>(row)]; }
-  /// Returns the force (N) and the moment (N m) of support i on the strand, world
-  /// components, for all multipliers.
-  std::pair<Vec, Vec> reaction(double t, In q, In lambda, std::size_t i);
+  /// Returns the force and the moment of support i on the strand, for all multipliers.
+  SectionLoad load(double t, In q, In lambda, std::size_t i);
 
   const Pattern& pattern() const override { return pattern_; }
   void scale(Out g_typ) const override;
@@ -93,15 +92,15 @@ class SupportRows final : public ConstraintForm {
   }
   void add_gradient(double t, In q, double factor, InOut entries);
   void multiplied(double t, In q, In lambda, InOut sum);
+  Vec force(std::size_t i, In lambda) const;
   Vec stress(std::size_t i, In lambda) const;
   double step(double t, In q, In v);
 
   System& strand_;
   MaterialPoints& points_;
   PointAccelerations* accelerations_;
-  ConstraintForm* own_;  // null: the strand has no constraints
-  int own_rows_ = 0;
-  std::size_t own_entries_ = 0;  // of G^T
+  ConstraintForm* own_;                         // null: the strand has no constraints
+  std::size_t own_rows_ = 0, own_entries_ = 0;  // of G^T
   std::vector<Support> supports_;
   std::vector<Held> held_;  // of each support
   bool linear_;             // points are means of coordinates

@@ -13,24 +13,27 @@ namespace tress::models {
 
 SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
                                  std::vector<Support> supports)
-    : strand_(std::move(strand)), rows_(*strand_, std::move(supports)) {
+    : strand_(std::move(strand)),
+      rows_(*strand_, std::move(supports)),
+      loaded_(strand_->sparse_form() == nullptr ? loaded_tangent(*strand_) : nullptr) {
   refuse_if(strand_->contact_form() != nullptr,
             "supports of a strand with exact contact: the response of contacts to their "
             "forces leaves supports out",
             "support 0", "use law = \"regularised\" for bodies");
-  if (strand_->sparse_form() == nullptr) dense_.emplace(*strand_);
-  of_strand_ = dense_ ? &*dense_ : strand_->sparse_form();
   for (std::size_t i = 0; i < this->supports(); ++i) {
     const Support& support = rows_.supports()[i];
     if (support.section == HeldPart::nothing) continue;
     HeldSection section(*strand_, support.point, support.path,
-                        support.section == HeldPart::frame, of_strand_->pattern(),
+                        support.section == HeldPart::frame, strand_->sparse_form(),
                         "support " + std::to_string(i));
     if (section.half_edge()) {
       joints_.emplace_back(i, HalfJoint(std::move(section), support.half_edge));
     }
   }
-  if (!joints_.empty()) assembled_.emplace(static_cast<SparseForm&>(*this));
+  if (!joints_.empty() && loaded_ == nullptr) {
+    of_strand();
+    assembled_.emplace(static_cast<SparseForm&>(*this));
+  }
   const auto n = static_cast<std::size_t>(strand_->layout().coordinates);
   std::vector<double> q_typ(n);
   for (auto* x : {&acceleration_, &zero_, &v_typ_}) x->assign(n, 0.0);
@@ -41,6 +44,12 @@ SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
   }
   gradient_.resize(static_cast<std::size_t>(rows_.pattern().nonzeros()));
   bias_.resize(static_cast<std::size_t>(rows_.rows()));
+}
+
+SparseForm& SupportedSystem::of_strand() {
+  if (SparseForm* const form = strand_->sparse_form()) return *form;
+  if (!dense_) dense_.emplace(*strand_);
+  return *dense_;
 }
 
 void SupportedSystem::begin_at(In q, In v) {
@@ -78,8 +87,46 @@ Status SupportedSystem::residual(double t, In q, In v, In a, Out r) noexcept {
   return s;
 }
 
+Status SupportedSystem::factor(double t, In q, In v, In a, In lambda, Weights w,
+                               In springs) noexcept {
+  if (assembled_) return assembled_->linearize(t, q, v, a, w);
+  if (loaded_ == nullptr) return strand_->linearize(t, q, v, a, w);
+  loads_.clear();
+  if (w.vel != 0 || w.pos != 0) {
+    for (std::size_t i = 0; i < supports() && !lambda.empty(); ++i) {
+      loads_.push_back(rows_.load(t, q, lambda, i));
+    }
+    for (auto& [support, joint] : joints_) loads_.push_back(joint.load(t, q, v));
+  }
+  return loaded_->linearize_loaded(t, q, v, a, w, loads_, springs);
+}
+
+Status SupportedSystem::linearize_with_springs(double t, In q, In v, In a, In lambda,
+                                               Weights w, In springs) noexcept {
+  last_.t = t;
+  last_.w = w;
+  for (const auto& [to, from] :
+       {std::pair{&last_.q, q}, std::pair{&last_.v, v}, std::pair{&last_.a, a},
+        std::pair{&last_.lambda, lambda}, std::pair{&last_.springs, springs}}) {
+    to->assign(from.begin(), from.end());
+  }
+  disturbed_ = false;
+  return factor(t, q, v, a, lambda, w, springs);
+}
+
+Status SupportedSystem::solve(In b, Out x) noexcept {
+  if (disturbed_) {
+    disturbed_ = false;
+    const Status s =
+        factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w, last_.springs);
+    if (s != Status::ok) return s;
+  }
+  return solve_factored(b, x);
+}
+
 Status SupportedSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
-  const Status status = of_strand_->values(t, q, v, a, w, s);
+  if (dense_) disturbed_ = !last_.q.empty();
+  const Status status = of_strand().values(t, q, v, a, w, s);
   if (status != Status::ok) return status;
   for (auto& [support, joint] : joints_) joint.add_tangent(t, q, v, w, s);
   return Status::ok;
@@ -121,13 +168,15 @@ Status SupportedSystem::hold(double t, In q, In v) {
   const auto n = static_cast<Eigen::Index>(q.size());
   const Eigen::Index m = rows_.rows();
   const Weights w{1, short_time_, short_time_ * short_time_};
+  disturbed_ = !last_.q.empty();
   for (const Status s :
        {rows_.gradient(t, q, gradient_), rows_.bias(t, q, v, bias_),
-        residual(t, q, v, zero_, acceleration_), linearize(t, q, v, zero_, w)}) {
+        residual(t, q, v, zero_, acceleration_), factor(t, q, v, zero_, {}, w, {})}) {
     if (s != Status::ok) return s;
   }
   for (double& entry : acceleration_) entry = -entry;
-  if (const Status s = solve(acceleration_, acceleration_); s != Status::ok) return s;
+  if (const Status s = solve_factored(acceleration_, acceleration_); s != Status::ok)
+    return s;
   const Pattern& pattern = rows_.pattern();
   responses_.setZero(n, m);
   compliance_.resize(m, m);
@@ -139,7 +188,7 @@ Status SupportedSystem::hold(double t, In q, In v) {
       responses_(pattern.row[entry], k) = gradient_[entry];
     }
     const Out column(responses_.col(k).data(), q.size());
-    if (const Status s = solve(column, column); s != Status::ok) return s;
+    if (const Status s = solve_factored(column, column); s != Status::ok) return s;
     needed_[k] = -bias_[row] - product(k, acceleration_.data());
   }
   for (Eigen::Index k = 0; k < m; ++k) {
@@ -170,12 +219,12 @@ Status SupportedSystem::support_forces(double t, In q, In v, Out forces, Out mom
   std::vector<double> lambda;
   multipliers(rows_.rows(), lambda);
   for (std::size_t i = 0; i < supports(); ++i) {
-    const auto [force, moment] = rows_.reaction(t, q, lambda, i);
-    store3(force, &forces[3 * i]);
-    store3(moment, &moments[3 * i]);
+    const SectionLoad load = rows_.load(t, q, lambda, i);
+    store3(load.force, &forces[3 * i]);
+    store3(load.moment, &moments[3 * i]);
   }
   for (auto& [support, joint] : joints_) {
-    store3(joint.moment(t, q, v), &moments[3 * support]);
+    store3(joint.load(t, q, v).moment, &moments[3 * support]);
   }
   return Status::ok;
 }
@@ -198,7 +247,7 @@ double SupportedSystem::power(double t, In q, In v) {
   if (!joints_.empty()) {
     add_joint_forces(t, q, v, change);
     for (double& entry : change) entry = -entry;
-    if (solve(change, change) != Status::ok) return std::nan("");
+    if (solve_factored(change, change) != Status::ok) return std::nan("");
     for (Eigen::Index k = 0; k < rows_.own(); ++k)
       needed_[k] += product(k, change.data());
     for (auto& [support, joint] : joints_) alone += joint.energy_rate(t, q, v);

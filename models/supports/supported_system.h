@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "contract/forms/bordered_form.h"
 #include "contract/forms/energetics.h"
+#include "contract/forms/loaded_tangent.h"
 #include "contract/forms/moving_history.h"
 #include "contract/forms/support_forces.h"
 #include "models/supports/assembled_solver.h"
@@ -17,8 +19,15 @@ namespace tress::models {
 
 /// A strand whose points and sections are held by supports: the strand's own equations
 /// with the forces of HalfJoints and the constraints of SupportRows. Methods drive it in
-/// every formulation that they have for systems with constraints. S is the strand's own
-/// sparse form, or a DenseTangent, with the derivatives of the joints.
+/// every formulation that they have for systems with constraints.
+///
+/// S is the strand's own, with the derivatives of the joints and of the constraints:
+///
+///     strand                  matrix
+///     has a SparseForm        its sparse matrix
+///     takes loads             LoadedTangent in O(n): forces of supports and joints are
+///                             loads. Methods that need entries get a DenseTangent
+///     any other               a DenseTangent
 ///
 /// The power of supports belongs to Energetics::power. At a state, let a and a' be the
 /// accelerations with and without supports, and U the energy of the joints. Kinetic
@@ -29,6 +38,7 @@ namespace tress::models {
 /// which has the work of the supports and the change of the work of a moving root.
 class SupportedSystem final : public System,
                               public SupportForces,
+                              public BorderedForm,
                               private SparseForm,
                               private Energetics,
                               private MovingHistory {
@@ -50,17 +60,28 @@ class SupportedSystem final : public System,
   void scale(Out q_typ, Out v_typ) const override { strand_->scale(q_typ, v_typ); }
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
   Status linearize(double t, In q, In v, In a, Weights w) noexcept override {
-    return assembled_ ? assembled_->linearize(t, q, v, a, w)
-                      : strand_->linearize(t, q, v, a, w);
+    return linearize_bordered(t, q, v, a, {}, w);
   }
-  Status solve(In b, Out x) noexcept override {
-    return assembled_ ? assembled_->solve(b, x) : strand_->solve(b, x);
+  Status solve(In b, Out x) noexcept override;
+  bool bordered() const override { return loaded_ != nullptr && rows_.rows() > 0; }
+  Status linearize_bordered(double t, In q, In v, In a, In lambda,
+                            Weights w) noexcept override {
+    return linearize_with_springs(t, q, v, a, lambda, w, {});
   }
+  /// Returns true if linearize_with_springs() takes springs.
+  bool takes_springs() const { return loaded_ != nullptr; }
+  /// linearize_bordered() with w.pos times springs on the coordinates (n; none: empty),
+  /// for strands that take loads.
+  Status linearize_with_springs(double t, In q, In v, In a, In lambda, Weights w,
+                                In springs) noexcept;
   double next_breakpoint(double t) const override;
   std::string not_finite(double t, In q, In v) override {
     return strand_->not_finite(t, q, v);
   }
-  SparseForm* sparse_form() override { return joints_.empty() ? of_strand_ : this; }
+  SparseForm* sparse_form() override {
+    SparseForm& own = of_strand();
+    return joints_.empty() ? &own : this;
+  }
   ConstraintForm* constraint_form() override { return &rows_; }
   StressForm* stress_form() override { return strand_->stress_form(); }
   Energetics* energetics() override {
@@ -82,7 +103,17 @@ class SupportedSystem final : public System,
   void lead_joints(In by);
 
  private:
-  const Pattern& pattern() const override { return of_strand_->pattern(); }
+  /// Arguments of the last linearize_with_springs().
+  struct Linearized {
+    double t = 0;
+    std::vector<double> q, v, a, lambda, springs;
+    Weights w;
+  };
+
+  SparseForm& of_strand();
+  const Pattern& pattern() const override {
+    return dense_ ? dense_->pattern() : strand_->sparse_form()->pattern();
+  }
   Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
   Energy energy(double t, In q, In v) override;
   std::optional<Momentum> momentum(double t, In q, In v) override {
@@ -101,6 +132,10 @@ class SupportedSystem final : public System,
   }
   std::string not_smooth() const override { return tress::not_smooth(*strand_); }
 
+  Status factor(double t, In q, In v, In a, In lambda, Weights w, In springs) noexcept;
+  Status solve_factored(In b, Out x) noexcept {
+    return assembled_ ? assembled_->solve(b, x) : strand_->solve(b, x);
+  }
   void add_joint_forces(double t, In q, In v, InOut r);
   double product(Eigen::Index row, const double* x) const;
   Status hold(double t, In q, In v);
@@ -108,10 +143,13 @@ class SupportedSystem final : public System,
 
   std::unique_ptr<System> strand_;
   SupportRows rows_;
-  std::optional<DenseTangent> dense_;  // none: the strand has a sparse form
-  SparseForm* of_strand_;              // of both
+  LoadedTangent* loaded_;              // null: the strand takes no loads
+  std::optional<DenseTangent> dense_;  // made when of_strand() is needed
   std::vector<std::pair<std::size_t, HalfJoint>> joints_;  // with their supports
-  std::optional<AssembledSolver> assembled_;               // if there are joints
+  std::optional<AssembledSolver> assembled_;  // if there are joints and no loads
+  std::vector<SectionLoad> loads_;            // scratch of factor()
+  Linearized last_;
+  bool disturbed_ = false;  // hold() has factored another matrix since
   std::vector<double> begin_q_, begin_v_, begin_memory_;
   // Of hold(), at its state.
   std::vector<double> gradient_, acceleration_, bias_, zero_, v_typ_;
