@@ -1,7 +1,7 @@
 #include "tests/models/maximal/clamped_modes.h"
 
 #include "experiments/numerics/dense_form.h"
-#include "experiments/validation/rods/small_motions.h"
+#include "experiments/numerics/small_motions.h"
 
 namespace tress::testing_support {
 
