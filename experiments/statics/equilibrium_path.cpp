@@ -14,7 +14,6 @@ namespace tress::experiments::statics {
 namespace {
 
 using Eigen::Index;
-using Eigen::VectorXd;
 
 constexpr int usual_iterations = 6;
 constexpr double least_step = 1e-7;   // of the first one
@@ -81,7 +80,7 @@ class Follower {
     Station first{measured_point(strand_, at, newton, -1), {}, strand_.memory()};
     first.point.event = Event::start;
     newton_.neutral = first.point.stability.neutral;
-    first.tangent = newton_.tangent(at, {VectorXd::Zero(at.q.size()), range()});
+    first.tangent = newton_.tangent(at, {Eigen::VectorXd::Zero(at.q.size()), range()});
     return first;
   }
 
@@ -164,8 +163,9 @@ class Follower {
 
   /// The end of the range that lies between two values; NaN: none.
   double end_between(double before, double after) const {
-    const double last = strand_.varied().to, first = strand_.varied().from - range();
-    if (after >= last && before < last) return last;
+    const Varied& of = strand_.varied();  // supports rest before their first row
+    const double first = of.from - (of.kind == Varied::Kind::supports ? 0 : range());
+    if (after >= of.to && before < of.to) return of.to;
     if (after <= first && before > first) return first;
     return std::nan("");
   }

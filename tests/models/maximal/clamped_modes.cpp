@@ -6,7 +6,6 @@
 namespace tress::testing_support {
 
 using namespace experiments;
-using namespace experiments::validation;
 
 Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
   SparseForm& form = *system.sparse_form();
