@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <utility>
 
 #include "linear/dense_lu.h"
 
@@ -17,6 +18,21 @@ MatrixXd solution(const MatrixXd& a, const MatrixXd& b) {
   MatrixXd x = b;
   for (Eigen::Index j = 0; j < x.cols(); ++j) lu.solve(x.col(j));
   return x;
+}
+
+MixedSolution mixed_solution(MatrixXd a, VectorXd b, In typical) {
+  VectorXd size(a.cols());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    size[j] = at < typical.size() ? typical[at] : 1 / a.col(j).cwiseAbs().maxCoeff();
+  }
+  a = a * size.asDiagonal();
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    const double entry = a.row(i).cwiseAbs().maxCoeff();
+    a.row(i) /= entry;
+    b[i] /= entry;
+  }
+  return {solution(a, b), std::move(size)};
 }
 
 VectorXd least_squares_solution(const MatrixXd& a, const VectorXd& b) {

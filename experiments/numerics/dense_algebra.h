@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "contract/basics.h"
 #include "contract/layers.h"
 
 /// Decompositions of dense matrices, O(n^3), instantiated here once: each costs some
@@ -10,6 +11,17 @@ namespace tress::experiments {
 
 /// Solves a x = b by LU.
 Eigen::MatrixXd solution(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+/// Solution of equations whose unknowns have different units.
+struct MixedSolution {
+  Eigen::VectorXd scaled;  // the unknowns over their sizes
+  Eigen::VectorXd size;    // sizes of the unknowns
+  /// Returns the unknowns.
+  Eigen::VectorXd unknowns() const { return size.cwiseProduct(scaled); }
+};
+/// Solves a x = b by LU, with rows divided by their largest entries. `typical` has the
+/// sizes of the first unknowns. The size of any other unknown is the inverse of the
+/// largest entry of its column.
+MixedSolution mixed_solution(Eigen::MatrixXd a, Eigen::VectorXd b, In typical);
 /// Minimises |a x - b|; the columns of a have full rank.
 Eigen::VectorXd least_squares_solution(const Eigen::MatrixXd& a,
                                        const Eigen::VectorXd& b);

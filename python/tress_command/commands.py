@@ -1,13 +1,15 @@
 """All commands, in the order of the help."""
 
 from . import (ask, bench, build, check, docs, lint, listing, matrices, new, other_simulators,
-               package, packages, python_module, rename, report, run, simulate, sweeps, testing)
+               package, packages, python_module, rename, report, run, simulate, statics, sweeps,
+               testing)
 from .command import command_help, paragraph, usage_of
 
 COMMANDS = (build.COMMAND, simulate.COMMAND, run.COMMAND, ask.COMMAND, check.COMMAND,
-            matrices.COMMAND, testing.COMMAND, sweeps.CLUSTER, bench.COMMAND, other_simulators.COMMAND,
-            sweeps.COMPARE, python_module.COMMAND, package.COMMAND, report.COMMAND, docs.COMMAND, report.FILM,
-            new.COMMAND, rename.COMMAND, listing.COMMAND, lint.COMMAND, packages.COMMAND)
+            statics.COMMAND, matrices.COMMAND, testing.COMMAND, sweeps.CLUSTER, bench.COMMAND,
+            other_simulators.COMMAND, sweeps.COMPARE, python_module.COMMAND, package.COMMAND,
+            report.COMMAND, docs.COMMAND, report.FILM, new.COMMAND, rename.COMMAND, listing.COMMAND,
+            lint.COMMAND, packages.COMMAND)
 HEAD = "tress: testbed for rod and elastic-strand solvers"
 FOOT = (
     "./tress COMMAND --help prints the options of a command, with an example and its time. "

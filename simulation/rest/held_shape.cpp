@@ -33,19 +33,6 @@ RootMotion still(RootMotion motion) {
   return motion;
 }
 
-/// The scene held at t = 0. A sine wind is calm then.
-Scene still(Scene scene) {
-  scene.head = still(scene.head);
-  for (Strand& strand : scene.strands) strand.root = still(strand.root);
-  for (EffectChoice& choice : scene.effects) {
-    if (choice.entry->id != "wind") continue;
-    if (choice.parameters.word("profile") == "gusts") {
-      choice.parameters.set("profile", "constant");
-    }
-  }
-  return scene;
-}
-
 /// The elastic stiffness that grows with the moduli.
 MatrixXd elastic_stiffness(DenseStatics& statics, NaturalStrains& strains) {
   const std::vector<double> stiffness = strains.natural_stiffness();
@@ -141,6 +128,18 @@ HeldShape held_shape(const Scene& scene, std::size_t k, const Effects& between) 
 }
 
 }  // namespace
+
+Scene still(Scene scene) {
+  scene.head = still(scene.head);
+  for (Strand& strand : scene.strands) strand.root = still(strand.root);
+  for (EffectChoice& choice : scene.effects) {
+    if (choice.entry->id != "wind") continue;
+    if (choice.parameters.word("profile") == "gusts") {
+      choice.parameters.set("profile", "constant");
+    }
+  }
+  return scene;
+}
 
 std::vector<HeldShape> held_shapes(const Scene& scene,
                                    const std::function<Effects(std::size_t)>& between,

@@ -60,6 +60,10 @@ std::vector<HeldShape> held_shapes(
     const Scene& scene, const std::function<models::Effects(std::size_t)>& between,
     Crew& crew, std::span<const std::size_t> numbers = {});
 
+/// Returns the scene with roots, and bodies that move with them, held where they are at
+/// t = 0. Wind has its mean; a sine wind is calm at t = 0.
+Scene still(Scene scene);
+
 /// Root and tips of elements of all strands at t = 0, (3 points) m.
 std::vector<double> points_at_start(const Scene& scene);
 

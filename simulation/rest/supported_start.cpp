@@ -36,19 +36,13 @@ constexpr double most_change = 3;       // of the typical sizes, in a correction
 constexpr int most_steps = 2000, most_corrections = 25;
 constexpr double converged = 1e-11, stalled = 1e-7;  // of the typical sizes
 
-Options options_of_search() {
-  Options options;
-  options.formulation = Formulation::index3;
-  return options;
-}
-
 /// The search for an equilibrium.
 class Search {
  public:
   explicit Search(SupportedSystem& system)
       : system_(system),
         tethered_(system),
-        dynamics_(tethered_, options_of_search()),
+        dynamics_(tethered_, {.formulation = Formulation::index3, .own = {}}),
         n_(static_cast<std::size_t>(dynamics_.n())),
         m_(static_cast<std::size_t>(dynamics_.m())) {
     for (auto* x : {&q, &v, &a_, &r_, &next_, &zero_, &kept_}) x->assign(n_, 0.0);
@@ -105,12 +99,11 @@ class Search {
     return integrators::Projection(dynamics_).velocities(0, q, v);
   }
 
-  /// The number of steps; 0: no equilibrium was found.
-  int find() {
+  /// The number of steps, of a strand that is `bent` a little first; 0: none was found.
+  int find(bool bent) {
     std::ranges::fill(v, 0.0);
-    bend();
-    const double most = gap().over(length_);
-    const double lead = std::min(1.0, most_lead / std::max(most, 1e-300));
+    if (bent) bend();
+    const double lead = std::min(1.0, most_lead / std::max(gap().over(length_), 1e-300));
     // Springs as stiff as the loads of the bent strand are large.
     if (system_.residual(0, q, zero_, zero_, r_) != Status::ok) return 0;
     double stiffness = 0;
@@ -301,7 +294,7 @@ SupportedStart begin_on_supports(System& of, const std::string& where) {
     search.v = v;
     start.moved = gap.distance;
     start.turned = gap.rotation;
-    start.steps = search.find();
+    start.steps = search.find(true);
     refuse_if(start.steps == 0,
               fmt::format(
                   "no equilibrium of a strand that begins {:g} m and {:.3g} rad off its "
@@ -315,6 +308,13 @@ SupportedStart begin_on_supports(System& of, const std::string& where) {
             "give the strand slack, or supports that begin at rest");
   system.begin_at(search.q, search.v);
   return start;
+}
+
+bool come_to_rest(SupportedSystem& system, InOut q) {
+  Search search(system);
+  if (search.find(false) == 0) return false;
+  std::ranges::copy(search.q, q.begin());
+  return true;
 }
 
 }  // namespace tress::simulation

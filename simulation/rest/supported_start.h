@@ -4,6 +4,7 @@
 
 #include "contract/layers.h"
 #include "contract/system.h"
+#include "models/supports/supported_system.h"
 
 namespace tress::simulation {
 
@@ -30,5 +31,10 @@ struct SupportedStart {
 /// `system` is a SupportedSystem. `where` is named in the InputError if no shape is
 /// found.
 SupportedStart begin_on_supports(System& system, const std::string& where);
+
+/// Finds the equilibrium in which a strand comes to rest from its initial state, by the
+/// steps of begin_on_supports(). The strand stays straight where it is straight and the
+/// loads bend it nowhere. Writes its coordinates to q; returns false if none is found.
+bool come_to_rest(models::SupportedSystem& system, InOut q);
 
 }  // namespace tress::simulation

@@ -101,6 +101,8 @@ RULES = (
     Rule("docs/python.md", "my_environment", left_out="compiles for minutes"),
     Rule("docs/start/fit.md", f"{experiment('calibrate')} --scene experiments/calibrate/data/buckling_0.toml",
          left_out="takes a minute; test_calibrate_points.cpp fits a part of its record"),
+    Rule("docs/start/statics.md", "./tress statics", instead=f"{experiment('statics')} --scene",
+         why="builds first, for which a copy of the sources has no tree"),
     Rule("experiments/calibrate/data/README.md", f"{experiment('calibrate')} --set data=measured.csv", exits=(3,),
          why="a record of another hair, which it says"),
     Rule("experiments/cost_of_accuracy/README.md", f"{experiment('cost_of_accuracy')} --advise",

@@ -70,6 +70,7 @@ class Words(StandIns):
             (["check"], "check: give a plug-in"),
             (["check", "none.so"], "check: no file 'none.so'; paths are relative to"),
             (["matrices"], "matrices: give a scene file"),
+            (["statics"], "statics: give a scene file"),
             (["matrices", "--time", "1"], "matrices: give a scene file"),
             (["simulate"], "simulate: give one scene file"),
             (["ask", "--quick"], "ask: give one scene file"),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "contract/forms/constraint_form.h"
 #include "contract/forms/energetics.h"
@@ -166,20 +167,11 @@ double Statics::newton_step() {
 
   MatrixXd all(n + rows, n + rows);
   all << stiffness(), -now.columns, now.rows, MatrixXd(now.compliance.asDiagonal());
-  // Sizes of rows and columns differ by the units of a dozen kinds of unknowns.
-  VectorXd size(n + rows);
-  for (Index j = 0; j < n; ++j) size[j] = q_typ_[static_cast<std::size_t>(j)];
-  for (Index j = n; j < n + rows; ++j) size[j] = 1 / all.col(j).cwiseAbs().maxCoeff();
-  all = all * size.asDiagonal();
-  for (Index i = 0; i < n + rows; ++i) {
-    const double entry = all.row(i).cwiseAbs().maxCoeff();
-    all.row(i) /= entry;
-    right[i] /= entry;
-  }
-  const VectorXd correction = solution(all, right);
-  if (!correction.allFinite()) throw std::runtime_error("no static correction");
-  const double largest = correction.head(n).cwiseAbs().maxCoeff();
-  const VectorXd moved = std::min(1.0, longest / largest) * size.cwiseProduct(correction);
+  const MixedSolution correction =
+      mixed_solution(std::move(all), std::move(right), q_typ_);
+  if (!correction.scaled.allFinite()) throw std::runtime_error("no static correction");
+  const double largest = correction.scaled.head(n).cwiseAbs().maxCoeff();
+  const VectorXd moved = std::min(1.0, longest / largest) * correction.unknowns();
   for (Index j = 0; j < n; ++j) q_[static_cast<std::size_t>(j)] -= moved[j];
   lambda_ -= moved.segment(n, m);
   holding_ -= moved.tail(conditions_->rows());

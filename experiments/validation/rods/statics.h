@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "experiments/numerics/small_motions.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/validation/rods/end.h"
 #include "experiments/validation/rods/loads.h"
-#include "experiments/validation/rods/small_motions.h"
 #include "models/strand/strand.h"
 
 namespace tress::experiments::validation {

@@ -1,12 +1,11 @@
 #include "tests/models/maximal/clamped_modes.h"
 
 #include "experiments/numerics/dense_form.h"
-#include "experiments/validation/rods/small_motions.h"
+#include "experiments/numerics/small_motions.h"
 
 namespace tress::testing_support {
 
 using namespace experiments;
-using namespace experiments::validation;
 
 Eigen::MatrixXd dense_tangent(System& system, In q, Weights w) {
   SparseForm& form = *system.sparse_form();

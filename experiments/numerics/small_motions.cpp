@@ -1,10 +1,10 @@
-#include "experiments/validation/rods/small_motions.h"
+#include "experiments/numerics/small_motions.h"
 
 #include <algorithm>
 
 #include "experiments/numerics/dense_algebra.h"
 
-namespace tress::experiments::validation {
+namespace tress::experiments {
 namespace {
 
 using Eigen::MatrixXd;
@@ -79,4 +79,4 @@ std::vector<std::complex<double>> squares_of_motions(const MatrixXd& mass,
   return all;
 }
 
-}  // namespace tress::experiments::validation
+}  // namespace tress::experiments

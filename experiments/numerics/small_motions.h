@@ -6,7 +6,7 @@
 
 #include "contract/basics.h"
 
-namespace tress::experiments::validation {
+namespace tress::experiments {
 
 /// A small motion x(t) = shape exp(i omega t).
 struct SmallMotion {
@@ -33,4 +33,4 @@ std::vector<std::complex<double>> squares_of_motions(const Eigen::MatrixXd& mass
                                                      const Eigen::MatrixXd& rows,
                                                      In typical);
 
-}  // namespace tress::experiments::validation
+}  // namespace tress::experiments

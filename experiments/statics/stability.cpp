@@ -1,0 +1,94 @@
+#include "experiments/statics/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "experiments/numerics/dense_algebra.h"
+#include "experiments/numerics/small_motions.h"
+
+namespace tress::experiments::statics {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Differences of a residual make a symmetric matrix to 1e-9 of its largest entry.
+constexpr double unsymmetric = 1e-6;
+/// A double real eigenvalue is computed as a pair sqrt(eps) apart.
+constexpr double complex_pair = 1e-6;
+
+/// Indices of the eigenvalues of least size that count as neutral.
+std::vector<Index> neutral_of(const VectorXd& values, int modes) {
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::ranges::sort(order, {}, [&](Index i) { return std::abs(values[i]); });
+  if (modes < 0) {
+    const double rounding = 64 * std::numeric_limits<double>::epsilon() *
+                            (values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0);
+    const double limit = std::max(neutral_limit, rounding);
+    modes = static_cast<int>(std::ranges::count_if(
+        order, [&](Index i) { return std::abs(values[i]) <= limit; }));
+  }
+  order.resize(std::min(order.size(), static_cast<std::size_t>(modes)));
+  std::ranges::sort(order);
+  return order;
+}
+
+Stability of_following_loads(StaticStrand& strand, const Balance& at,
+                             const StaticStrand::Slopes& slopes) {
+  Stability all;
+  all.symmetric = false;
+  const double unit =
+      strand.bending() / (strand.strand().mass() * std::pow(strand.length(), 2));
+  const std::vector<std::complex<double>> squares =
+      squares_of_motions(strand.mass(at), slopes.stiffness, slopes.gradient,
+                         slopes.gradient.transpose(), strand.typical());
+  all.values.resize(std::ssize(squares));
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    all.values[static_cast<Index>(i)] = squares[i].real() / unit;
+    if (std::abs(squares[i].imag()) > complex_pair * std::abs(squares[i])) {
+      all.oscillates = true;
+    }
+  }
+  all.neutral.resize(at.q.size(), 0);
+  return all;
+}
+
+}  // namespace
+
+Stability stability(StaticStrand& strand, const Balance& at, int neutral_modes) {
+  const StaticStrand::Slopes slopes = strand.slopes(at);
+  const Eigen::Map<const VectorXd> size(strand.typical().data(), strand.coordinates());
+  const MatrixXd basis =
+      size.asDiagonal() * complement(size.asDiagonal() * slopes.gradient);
+  MatrixXd stiffness = basis.transpose() * slopes.stiffness * basis / strand.bending();
+  const double largest = stiffness.size() > 0 ? stiffness.cwiseAbs().maxCoeff() : 0;
+  const double skew = stiffness.size() > 0
+                          ? (stiffness - stiffness.transpose()).cwiseAbs().maxCoeff()
+                          : 0;
+  Stability all;
+  if (skew > unsymmetric * largest) {
+    all = of_following_loads(strand, at, slopes);
+  } else {
+    stiffness = (0.5 * (stiffness + stiffness.transpose())).eval();
+    const auto [values, vectors] = symmetric_eigenpairs(
+        stiffness, MatrixXd::Identity(stiffness.rows(), stiffness.cols()));
+    const std::vector<Index> neutral = neutral_of(values, neutral_modes);
+    std::vector<Index> others;
+    for (Index i = 0; i < values.size(); ++i) {
+      if (!std::ranges::binary_search(neutral, i)) others.push_back(i);
+    }
+    all.values = values(others);
+    all.shapes = basis * vectors(Eigen::all, others);
+    all.neutral = basis * vectors(Eigen::all, neutral);
+  }
+  all.negative = static_cast<int>((all.values.array() < 0).count());
+  return all;
+}
+
+}  // namespace tress::experiments::statics

@@ -1,0 +1,151 @@
+// Euler's column: the load at which it buckles, its bent branch, and a little
+// imperfection.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "experiments/numerics/small_motions.h"
+#include "experiments/statics/equilibrium_path.h"
+#include "experiments/statics/path_words.h"
+#include "models/catalogue.h"
+#include "simulation/scene/changes.h"
+#include "tests/statics/static_scenes.h"
+
+namespace tress::test_column {
+
+using namespace experiments::statics;
+using namespace testing_support;
+
+constexpr double euler = std::numbers::pi * std::numbers::pi / 4;
+const std::string planar_helix = "id = \"super_helix\"\nmodes = \"bend_planar\"";
+const std::string planar_clothoid = "id = \"super_clothoid\"\nmodes = \"bend_planar\"";
+
+/// Modulus k of the elastica of a clamped and free column: P L^2/EI = K(k)^2.
+double modulus(double load) {
+  double low = 0, high = 1 - 1e-12;
+  for (int i = 0; i < 200; ++i) {
+    const double k = (low + high) / 2;
+    (std::pow(std::comp_ellint_1(k), 2) < load ? low : high) = k;
+  }
+  return low;
+}
+
+/// Tip of the elastica over the length: height 2 E/K - 1, to the side 2 k/K.
+struct Tip {
+  double side, height;
+};
+Tip tip_of_elastica(double load) {
+  const double k = modulus(load), complete = std::comp_ellint_1(k);
+  return {2 * k / complete, 2 * std::comp_ellint_2(k) / complete - 1};
+}
+
+/// Every model of a strand. 20 elements of order 2 err by 5e-4; helices, links and edges
+/// agree on 0.206/n^2.
+TEST(Column, OfEveryModelBucklesAtEulersLoad) {
+  for (const models::ModelEntry& model : models::model_catalogue()) {
+    if (model.on_strand == nullptr) continue;
+    const auto scene = simulation::parse_scene(column("id = \"der\"", 20), "column.toml");
+    StaticStrand strand(simulation::with_method(scene, {&model, {}, "bdf2", {}}), 0,
+                        varied(scene, "point_force=0..3", "--over"));
+    const auto path = equilibrium_path(strand, {.resolution = 0.1});
+    const std::vector<double> loads = values_at(path, Event::bifurcation);
+    ASSERT_EQ(loads.size(), 1U) << model.id;
+    std::printf("%s: %+.1e\n", std::string(model.id).c_str(), loads.front() / euler - 1);
+    EXPECT_NEAR(loads.front() / euler, 1, 1e-3) << model.id;
+    // Both planes, where the model has them.
+    for (const PathPoint& point : path) {
+      EXPECT_EQ(point.crossing, point.event == Event::bifurcation ? 2 : 0) << model.id;
+      EXPECT_EQ(point.failure, "") << model.id;
+      EXPECT_LE(point.correction, 1e-6) << model.id;
+    }
+    EXPECT_EQ(path.front().stability.negative, 0) << model.id;
+    EXPECT_EQ(path.back().stability.negative, 2) << model.id;
+  }
+}
+
+/// The signs of the eigenvalues are those of the squares of small motions, which another
+/// algorithm finds with the mass matrix [Sylvester's law of inertia].
+TEST(Column, IsAsStableAsItsSmallMotionsAre) {
+  StaticStrand strand = static_strand(column("id = \"der\"", 10), "point_force=0..4");
+  const auto path = equilibrium_path(strand, {.resolution = 0.1});
+  for (const PathPoint& point : path) {
+    if (point.event == Event::bifurcation) continue;
+    const auto slopes = strand.slopes(point.at);
+    const auto motions = experiments::small_motions(
+        strand.mass(point.at), slopes.stiffness, slopes.gradient,
+        slopes.gradient.transpose(), strand.typical());
+    const auto negative = std::ranges::count_if(
+        motions, [](const auto& motion) { return motion.square < 0; });
+    EXPECT_EQ(negative, point.stability.negative) << point.at.value;
+  }
+}
+
+/// The branch of the bent column is the elastica. 20 clothoids err by order 4 in the
+/// load, 1e-7, which the root at the bifurcation turns into 1e-4 of the length near by.
+TEST(Column, BendsAsTheElasticaOnItsBranch) {
+  for (const int side : {1, -1}) {
+    const auto path = static_path(column(planar_clothoid, 20), "point_force=0..8",
+                                  {.resolution = 0.1, .branch = side});
+    ASSERT_EQ(path.back().event, Event::end);
+    double worst = 0;
+    int bent = 0;
+    for (const PathPoint& point : path) {
+      EXPECT_EQ(point.failure, "");
+      const bool on_branch = norm(tip_of(point) - Vec{0, 0, 0.1}) > 1e-4;
+      if (!on_branch) continue;
+      ++bent;
+      EXPECT_EQ(point.stability.negative, 0);
+      const Tip tip = tip_of_elastica(point.at.value);
+      const Vec at = (1 / 0.1) * tip_of(point);
+      worst = std::max(
+          {worst, std::abs(std::abs(at.x) - tip.side), std::abs(at.z - tip.height)});
+    }
+    std::printf("branch to side %d: %d points, worst %.1e\n", side, bent, worst);
+    EXPECT_GE(bent, 10);
+    EXPECT_LE(worst, 1e-4);
+  }
+}
+
+/// A force to the side of 1e-3 of EI/L^2 replaces the bifurcation by a smooth path. The
+/// side force F turns the force by F/P, and with it the elastica by as much: 1e-3/4 at P
+/// = 4 at most, times its lengths.
+TEST(Column, WithALittleImperfectionFollowsTheBranch) {
+  const std::string side = "[[effects.point_force]]\nforce_n = [" +
+                           std::to_string(1e9 * 1e-3 * bending_of_strand / 0.01) +
+                           "e-9, 0, 0]\n";
+  const auto path = static_path(column(planar_clothoid, 20, side), "point_force=0..4",
+                                {.resolution = 0.1});
+  EXPECT_TRUE(values_at(path, Event::bifurcation).empty());
+  EXPECT_TRUE(values_at(path, Event::limit_point).empty());
+  ASSERT_EQ(path.back().at.value, 4);
+  const Tip tip = tip_of_elastica(4);
+  const Vec at = (1 / 0.1) * tip_of(path.back());
+  EXPECT_NEAR(at.x, tip.side, 1e-3);
+  EXPECT_NEAR(at.z, tip.height, 1e-3);
+  for (const PathPoint& point : path) EXPECT_EQ(point.stability.negative, 0);
+}
+
+/// Beck's column, under a force along its tangent, has no other equilibrium, whatever the
+/// load, and flutters at 20.05: its stiffness is unsymmetric.
+TEST(Column, UnderAFollowerForceFlutters) {
+  const std::string text =
+      static_scene(planar_clothoid, "length_m = 0.1\nelements = 10",
+                   "[[effects.point_force]]\nfollower_n = " +
+                       std::to_string(-1e9 * bending_of_strand / 0.01) + "e-9\n");
+  const auto path = static_path(text, "point_force=0..30", {.resolution = 0.02});
+  double flutters = 0;
+  for (const PathPoint& point : path) {
+    EXPECT_NE(point.event, Event::bifurcation);
+    EXPECT_EQ(point.stability.symmetric, point.at.value == 0);
+    if (point.stability.oscillates && flutters == 0) flutters = point.at.value;
+  }
+  // Points are 0.6 apart; the load of 10 clothoids errs by 1e-4.
+  EXPECT_GT(flutters, 20.05 - 0.01);
+  EXPECT_LT(flutters, 20.05 + 0.61);
+}
+
+}  // namespace tress::test_column
