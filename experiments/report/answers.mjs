@@ -68,7 +68,7 @@ function tolerances() {
 function survival() {
   const rows = rows_of('hard_cases');
   const head = (row) => `${by_tolerance(row) ? '' : 'step '}${pace(row)}`;
-  const heads = distinct(rows.toSorted(by_pace).map(head));
+  const heads = distinct([...rows].sort(by_pace).map(head));
   const whose = (row) =>
     [row.model, row.variant, row.integrator].filter(Boolean).join(', ');
   // The guard's words begin with the outcome.
