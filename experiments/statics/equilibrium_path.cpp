@@ -15,13 +15,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int usual_iterations = 6;
 constexpr double least_step = 1e-7;   // of the first one
 constexpr double least_cosine = 0.9;  // between tangents of successive points
 constexpr double located = 1e-7;      // of the step, of a limit point or bifurcation
 constexpr double apart = 1e-3;        // of the step, between different bifurcations
 constexpr int most_probes = 40, most_crossings = 4;
-constexpr double first_branch_step = 0.02;
+constexpr double first_branch_step = 0.02, usual_iterations = 6;
 
 /// A point with all that its neighbours need.
 struct Station {
@@ -94,13 +93,17 @@ class Follower {
            std::max(fastest / strand_.length(), std::abs(from.tangent.value) / range());
   }
 
-  /// The point at a step s from a station; none: Newton's method fails.
+  /// The point at a step s from a station; none: it is no equilibrium.
   std::optional<Station> probe(const Station& from, double s) {
     strand_.recall(from.memory);
     Balance at = along(from.point.at, from.tangent, s);
     const Newton newton = newton_.correct(at, newton_.row(from.tangent), at);
     if (!newton.converged) return {};
     Station found{measured_point(strand_, at, newton, neutral_modes()), {}, {}};
+    if (!found.point.failure.empty()) {
+      why_ = found.point.failure;
+      return {};
+    }
     found.tangent = newton_.tangent(at, from.tangent);
     found.point.arclength = from.point.arclength + s;
     return found;
@@ -131,7 +134,6 @@ class Follower {
   }
 
   Station arrive(const Station& from, Station to, std::vector<Station> events) {
-    const double taken = step_;
     const Balance raw = to.point.at;
     const double end = end_between(from.point.at.value, raw.value);
     for (Station& event : events) {
@@ -155,9 +157,8 @@ class Follower {
     newton_.neutral = to.point.stability.neutral;
     to.tangent = newton_.tangent(to.point.at, to.tangent);
     add(to.point);
-    const double ease = std::sqrt(static_cast<double>(usual_iterations) /
-                                  std::max(1, to.point.iterations));
-    step_ = taken * std::clamp(ease, 0.5, 1.5);
+    const double ease = std::sqrt(usual_iterations / std::max(1, to.point.iterations));
+    step_ *= std::clamp(ease, 0.5, 1.5);
     return to;
   }
 
@@ -219,14 +220,13 @@ class Follower {
     return from;
   }
 
-  /// s in (0, to) where f of the point at s vanishes, and that point.
+  /// s in (0, to) where f of the point at s vanishes, and that point: Illinois.
   template <class F>
   std::optional<std::pair<double, Station>> zero_of(const Station& from, double to,
                                                     double f_from, double f_to, F f) {
     double a = 0, b = to;
     std::optional<std::pair<double, Station>> best;
     for (int i = 0; i < most_probes && std::abs(b - a) > located * to; ++i) {
-      // Illinois, with a bisection now and then.
       const double s = i % 5 == 4 ? (a + b) / 2 : b - f_to * (b - a) / (f_to - f_from);
       std::optional<Station> there = probe(from, s);
       if (!there) return {};

@@ -33,8 +33,8 @@ struct PathOptions {
 /// another eigenvalue does. Both are located on the path by the regula falsi (Illinois).
 ///
 /// The path ends where p leaves the range at its end, or by the length of the range at
-/// its beginning (supports: at once, for they rest before their first row). Where the
-/// step vanishes, the last point has the reason.
+/// its beginning. Over supports it ends at the beginning itself, for supports rest before
+/// their first row. Where the step vanishes, the last point has the reason.
 std::vector<PathPoint> equilibrium_path(StaticStrand& strand, const PathOptions& options);
 
 }  // namespace tress::experiments::statics

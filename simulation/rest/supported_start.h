@@ -4,7 +4,10 @@
 
 #include "contract/layers.h"
 #include "contract/system.h"
-#include "models/supports/supported_system.h"
+
+namespace tress::models {
+class SupportedSystem;
+}
 
 namespace tress::simulation {
 

@@ -94,6 +94,23 @@ TEST(Statics, RefusesAModelWithoutStrand) {
   EXPECT_THAT(result.err, HasSubstr("has a geometry of its own and no strand"));
 }
 
+/// A support that pulls an inextensible strand taut: the path ends there, in a row with
+/// the reason, and the exit code is 3.
+TEST(Statics, EndsAPathThatFailsWithARowAndItsReason) {
+  Toy toy;
+  toy.write(
+      "s.toml",
+      static_scene("id = \"super_helix\"\nmodes = \"bend_planar\"",
+                   "length_m = 0.1\nelements = 4\nroot_tangent = [1, 0, 0.5]\nshape "
+                   "= \"along\"\ndarboux_along = [[0, 0, 10, 0]]",
+                   "[[supports]]\nat = \"tip\"\nslide = [1, 0, 0]\nkeyframes = [[0, "
+                   "0, 0, 0.0], [1, 0, 0, -0.2]]\n"));
+  const Toy::Result result = toy.run("--scene s.toml --out t.csv --progress none");
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("the step vanishes: "));
+  EXPECT_THAT(toy.read("t.csv"), HasSubstr(",diverged,"));
+}
+
 /// Table, pictures, shapes and words of a path.
 TEST(Statics, WritesAPathAndItsPictures) {
   Toy toy;
