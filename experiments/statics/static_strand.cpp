@@ -249,8 +249,8 @@ const std::vector<models::Support>& StaticStrand::supports() {
 Vec StaticStrand::support_force(const Balance& state, std::size_t support) {
   return at(state.value)
       .rows()
-      .reaction(time(state.value), values_of(state.q), values_of(state.lambda), support)
-      .first;
+      .load(time(state.value), values_of(state.q), values_of(state.lambda), support)
+      .force;
 }
 
 }  // namespace tress::experiments::statics
