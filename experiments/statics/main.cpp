@@ -37,11 +37,12 @@ constexpr Parameter own_settings[] = {
      .text = true,
      .fallback = shipped_scenes},
     {.name = "over",
-     .help = "parameter of the path and its range, as in point_force=0..2. gravity and "
-             "point_force: factor on the load of the scene (point_force_2: the second "
-             "one). supports: time of their keyframes (s). Or a number of the scene, as "
-             "in youngs_modulus_pa=1e9..3e9, named as in [gradient]. Empty: the supports "
-             "if they move, else the point force, else gravity",
+     .help =
+         "parameter of the path and its range, as in point_force=0..2. `gravity` and "
+         "`point_force` (`point_force_2`: the second one) are factors on the loads of "
+         "the scene. `supports` is the time of their keyframes (s). Numbers of the "
+         "scene have the names of [gradient], as in youngs_modulus_pa=1e9..3e9. "
+         "Without it: supports that move, else the point force, else gravity",
      .text = true},
     {.name = "strand",
      .help = "number of the strand in the scene, from 1",

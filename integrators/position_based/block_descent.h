@@ -69,9 +69,10 @@ struct DescentChoice {
 /// k/(1 - k alpha) [Rockafellar 1976].
 ///
 /// chebyshev: x <- omega (x - x_2) + x_2, x_2 of two sweeps ago, omega <- 4/(4 - rho^2
-/// omega) [Wang 2015]. anderson: AndersonMixing of x, in the norm of the masses, after
-/// every sweep, or after every second one where odd sweeps have other windows. Nothing
-/// allocates in run().
+/// omega) [Wang 2015].
+///
+/// anderson: AndersonMixing of x, in the norm of the masses, after every sweep, or after
+/// every second one where odd sweeps have other windows. Nothing allocates in run().
 class BlockDescent {
  public:
   /// Works on the compliance form of a system, which must outlive it.

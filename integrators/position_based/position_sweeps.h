@@ -40,9 +40,10 @@ std::vector<std::size_t> sweep_indices(std::string_view sweep_order, std::size_t
 ///
 /// so that converged sweeps solve x = guess + h^2 W G^T s, except for the change of G.
 /// The stress s is that of the energy and of its friction at the rates (x - origin)/h.
-/// [Macklin, Mueller & Chentanez 2016, eqs. 18, 26] anderson: AndersonMixing of x and
-/// lambda together, which keeps x - guess = W G^T lambda for linear C; the norm is that
-/// of x by the masses. unsettled() does not allow for it.
+/// [Macklin, Mueller & Chentanez 2016, eqs. 18, 26]
+///
+/// anderson: AndersonMixing of x and lambda together. This keeps x - guess = W G^T lambda
+/// for linear C. The norm is that of x by the masses. unsettled() does not allow for it.
 class PositionSweeps {
  public:
   /// Constructs the sweeps from sweep_options(), or from another list that contains them

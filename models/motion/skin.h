@@ -10,8 +10,8 @@ namespace tress::models {
 
 /// A surface of triangles that deforms over time and carries roots. A root keeps its
 /// place and direction relative to the triangle of the first frame that is nearest to it.
-/// It keeps its coordinates in that triangle, and its offset in the triangle's axes. These
-/// are the first edge, the normal and their product.
+/// It keeps its coordinates in that triangle, and its offset in the triangle's axes.
+/// These are the first edge, the normal and their product.
 class Skin {
  public:
   /// Takes one mesh per time (s, ascending, at least two). Throws InputError naming
