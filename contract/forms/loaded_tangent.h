@@ -10,12 +10,11 @@ namespace tress {
 /// A force that keeps its direction, and a moment, on the section at a point of a strand;
 /// world components.
 struct SectionLoad {
-  int point = 0;  // of MaterialPoints
-  Vec force;      // N
-  Vec moment;     // N m, about the point
-  /// Derivatives of the moment by a rotation (N m) and by the angular velocity (N m s) of
-  /// the section.
-  Matrix3<double> by_turn{}, by_spin{};
+  int point = 0;              // of MaterialPoints
+  Vec force;                  // N
+  Vec moment;                 // N m, about the point
+  Matrix3<double> by_turn{};  // derivative of the moment by a rotation, N m
+  Matrix3<double> by_spin{};  // derivative of the moment by the angular velocity, N m s
 };
 
 /// S(w) of a strand under additional loads on its points, an optional capability.

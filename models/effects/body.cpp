@@ -15,7 +15,7 @@ namespace {
 constexpr Parameter parameters_of_body[] = {
     {.name = "shape",
      .help = "plane: z < 0 of its frame is inside; capsule: along its z; sdf: a signed "
-             "distance grid; mesh: a closed surface, turned into such a grid",
+             "distance grid; mesh: a closed surface, as such a grid",
      .choices = "plane|sphere|capsule|ellipsoid|sdf|mesh"},
     {.name = "centre_m",
      .help = "origin x, y, z of the frame of the body; for a plane any of "

@@ -10,10 +10,11 @@ namespace tress::models {
 
 /// A distance grid computed from a mesh, and how far it is true to it.
 struct MeshGrid {
-  DistanceGrid grid;
-  std::size_t triangles = 0;
-  double error = 0;  // m, largest distance of the grid's surface at the mesh's corners,
-                     // middles of edges and centres of triangles
+  DistanceGrid grid;          // signed distances
+  std::size_t triangles = 0;  // number of triangles of the mesh
+  /// Largest distance (m) of the grid's surface at corners, middles of edges and centres
+  /// of triangles of the mesh.
+  double error = 0;
 };
 
 /// Settings of the grid of a mesh file.

@@ -85,7 +85,6 @@ TriangleTree::TriangleTree(TriangleMesh mesh) {
 }
 TriangleTree::~TriangleTree() = default;
 TriangleTree::TriangleTree(TriangleTree&&) noexcept = default;
-TriangleTree& TriangleTree::operator=(TriangleTree&&) noexcept = default;
 
 NearestOnMesh TriangleTree::nearest(const Vec& x, std::size_t from) const {
   NearestSearch<Parts> search{.parts = *parts_, .x = x};

@@ -29,8 +29,8 @@ class TriangleTree {
   /// Builds the tree of at least one triangle. All corners must be finite.
   explicit TriangleTree(TriangleMesh mesh);
   ~TriangleTree();
+  /// Takes over the tree of another object, which must not be used any more.
   TriangleTree(TriangleTree&&) noexcept;
-  TriangleTree& operator=(TriangleTree&&) noexcept;
 
   /// Returns the place of the mesh that is nearest to x (m). The search is faster from a
   /// triangle that is near: `from`, such as that of a neighbour of x.

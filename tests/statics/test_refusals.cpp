@@ -7,7 +7,7 @@
 #include "tests/harness/toy_process.h"
 #include "tests/statics/static_scenes.h"
 
-namespace tress::test_static_refusals {
+namespace tress::test_refusals {
 
 using namespace testing_support;
 using testing::HasSubstr;
@@ -132,4 +132,4 @@ TEST(Statics, WritesAPathAndItsPictures) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-}  // namespace tress::test_static_refusals
+}  // namespace tress::test_refusals

@@ -7,6 +7,7 @@
 #include "models/motion/root_motion.h"
 #include "tests/models/effects/cloud.h"
 #include "tests/models/effects/sphere_grid.h"
+#include "tests/models/mesh/mesh_files.h"
 #include "tests/support/tested.h"
 
 // What every effect of the catalogue keeps, with every word of every choice.
@@ -14,7 +15,9 @@ namespace tress::test_effect_contract {
 
 using namespace models;
 
+using testing_support::as_obj;
 using testing_support::as_text;
+using testing_support::ball;
 using testing_support::Cloud;
 using testing_support::derivatives;
 using testing_support::load;
@@ -53,12 +56,14 @@ Settings lively(std::string_view id) {
             {"factor_over_time", "0,0.5;1,2"}};
   }
   if (id == "body") {
+    setenv("XDG_CACHE_HOME", TRESS_BINARY_DIR "/mesh_cache/contract", 1);
     return {{"centre_m", "0.1,-0.05,0.08"},
             {"rotation_rad", "0.3,-0.5,0.2"},
             {"radius_m", "0.6"},
             {"length_m", "0.7"},
             {"half_axes_m", "0.5,0.8,0.65"},
             {"sdf_file", write_file("contract.sdf", as_text(sphere_samples(0.6, 1, 21)))},
+            {"mesh_file", write_file("contract.obj", as_obj(ball(0.6, 3)))},
             {"stiffness_n_m2", "50"},
             {"damping_s_m", "0.4"},
             {"friction", "0.6"},
