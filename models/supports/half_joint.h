@@ -11,6 +11,9 @@ namespace tress::models {
 ///
 ///     U = sum_k stiffness_k (c_k - lead_k)^2/2,    friction_k on c'_k.
 ///
+/// With a hinge, the joint has no stress about the axis of the hinge. Its stiffness is
+/// that of a section as stiff in every direction across the tangent.
+///
 /// A clamp with this joint is accurate to second order in the length of the edges. To
 /// hold the direction of the last edge itself would be accurate to first order.
 class HalfJoint {

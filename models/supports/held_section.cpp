@@ -22,7 +22,7 @@ Sections::Kind section_to_hold(System& strand, int point, const std::string& whe
 }
 
 HeldSection::HeldSection(System& strand, int point, RootMotion path, bool whole_frame,
-                         SparseForm* matrix, const std::string& where)
+                         const Vec& hinge, SparseForm* matrix, const std::string& where)
     : sections_(sections(strand)), point_(point), path_(std::move(path)) {
   using enum Sections::Turning;
   const Sections::Kind kind = section_to_hold(strand, point, where);
@@ -32,6 +32,14 @@ HeldSection::HeldSection(System& strand, int point, RootMotion path, bool whole_
   components_ = turning_ == frame     ? std::vector{0, 1, 2}
                 : turning_ == tangent ? std::vector{1, 2}
                                       : std::vector{1};
+  if (norm(hinge) > 0) {
+    refuse_if(turning_ == in_plane,
+              "a hinge of a planar model, which turns about one axis only", where,
+              "use kind = \"ball\"");
+    axes_ = {{1, 0, 0}, hinge, cross({1, 0, 0}, hinge)};
+    path_.frame = path_.frame * axes_;
+    std::erase(components_, 1);
+  }
   coordinates_ = sections_->section_coordinates(point);
   if (matrix != nullptr) find_entries(matrix->pattern(), where);
   const auto n = static_cast<std::size_t>(strand.layout().coordinates);

@@ -18,14 +18,17 @@ inline constexpr double difference_step = 6e-6;
 Sections::Kind section_to_hold(System& strand, int point, const std::string& where);
 
 /// Section of a strand that a support turns, with its rotation from the path's frame
-/// (SectionGap). Components of the rotation that are not held are free.
+/// (SectionGap). Components of the rotation that are not held are free. With a hinge,
+/// both frames have the axis of the hinge as e1, and that component is free. A rotation
+/// about e1 has no other component, whatever its angle.
 class HeldSection {
  public:
-  /// Holds the section at a point: all of its rotation, or its tangent alone. Throws
+  /// Holds the section at a point: all of its rotation, or its tangent alone, except a
+  /// rotation about `hinge` (Support::hinge). Throws
   /// InputError naming `where` if the model does not determine the rotation. `strand`
   /// must outlive it; `matrix` is its S (null: full).
   HeldSection(System& strand, int point, RootMotion path, bool whole_frame,
-              SparseForm* matrix, const std::string& where);
+              const Vec& hinge, SparseForm* matrix, const std::string& where);
 
   /// Returns the held components of the rotation: indices of its axes.
   const std::vector<int>& components() const { return components_; }
@@ -37,12 +40,10 @@ class HeldSection {
   const RootMotion& path() const { return path_; }
 
   /// Returns the rotation, without its derivatives.
-  SectionGap gap(double t, In q) {
-    return {turning_, path_.at(t), {sections_->section_frame(t, q, point_), {}, {}}};
-  }
+  SectionGap gap(double t, In q) { return {turning_, path_.at(t), at_rest(t, q)}; }
   /// Returns the rotation and its derivatives at a state.
   SectionGap gap(double t, In q, In v, In a) {
-    return {turning_, path_.at(t), sections_->section(t, q, v, a, point_)};
+    return {turning_, path_.at(t), moving(t, q, v, a)};
   }
   /// b += J^T moment of a stress on the rotation at a state.
   void pull(double t, In q, const SectionGap& gap, const Vec& stress, InOut b) {
@@ -52,11 +53,11 @@ class HeldSection {
   /// Returns the moment of a stress on the rotation at a state, as section_load().
   SectionLoad load(double t, In q, In v, In a, const Vec& stress, const Vec& stiffness,
                    const Vec& friction) {
-    return load(t, sections_->section(t, q, v, a, point_), stress, stiffness, friction);
+    return load(t, moving(t, q, v, a), stress, stiffness, friction);
   }
   /// Returns that of a constant stress.
   SectionLoad load(double t, In q, const Vec& stress) {
-    return load(t, {sections_->section_frame(t, q, point_), {}, {}}, stress, {}, {});
+    return load(t, at_rest(t, q), stress, {}, {});
   }
 
   /// Adds factor d force/dx to s, by central differences. `force`(x, b) adds to the
@@ -96,12 +97,21 @@ class HeldSection {
     made.point = point_;
     return made;
   }
+  SectionMotion at_rest(double t, In q) {
+    return {sections_->section_frame(t, q, point_) * axes_, {}, {}};
+  }
+  SectionMotion moving(double t, In q, In v, In a) {
+    SectionMotion all = sections_->section(t, q, v, a, point_);
+    all.frame = all.frame * axes_;
+    return all;
+  }
   void find_entries(const Pattern& matrix, const std::string& where);
   void find_steps(double t, In q);
 
   Sections* sections_;
   int point_;
   RootMotion path_;
+  Frame axes_;  // in components of the section, and of the path's frame before
   Sections::Turning turning_;
   bool half_edge_;
   std::vector<int> components_, coordinates_;

@@ -66,8 +66,8 @@ SupportRows::SupportRows(System& strand, std::vector<Support> supports)
     add_place(support, i, q, column_);
     if (support.section == HeldPart::nothing) continue;
     HeldSection section(strand, support.point, support.path,
-                        support.section == HeldPart::frame, strand.sparse_form(),
-                        name_of(i));
+                        support.section == HeldPart::frame, support.hinge,
+                        strand.sparse_form(), name_of(i));
     if (section.half_edge()) continue;
     for (std::size_t k = 0; k < section.components().size(); ++k) {
       add_row(section.coordinates(), true);

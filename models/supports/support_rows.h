@@ -29,6 +29,9 @@ struct Support {
   /// Directions in which the point is held, orthonormal; none: its place is free.
   std::vector<Vec> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   HeldPart section = HeldPart::nothing;  // held by the path's frame
+  /// Axis of a hinge, in the components of the path's frame and across its e0: the held
+  /// part turns freely about it. 0: no hinge.
+  Vec hinge{};
   RodJoint half_edge{};  // joint of half an edge to the path's frame (HalfJoint)
 };
 

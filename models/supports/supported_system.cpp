@@ -24,8 +24,8 @@ SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
     const Support& support = rows_.supports()[i];
     if (support.section == HeldPart::nothing) continue;
     HeldSection section(*strand_, support.point, support.path,
-                        support.section == HeldPart::frame, strand_->sparse_form(),
-                        "support " + std::to_string(i));
+                        support.section == HeldPart::frame, support.hinge,
+                        strand_->sparse_form(), "support " + std::to_string(i));
     if (section.half_edge()) {
       joints_.emplace_back(i, HalfJoint(std::move(section), support.half_edge));
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "contract/decimal.h"
 #include "contract/input_error.h"
@@ -44,9 +45,18 @@ constexpr Parameter support_parameters[] = {
      .text = true,
      .fallback = "tip"},
     {.name = "kind",
-     .help = "held part: ball, the position; clamp, position, direction and twist (if "
-             "the model has a frame there); direction, the direction alone",
-     .choices = "ball|clamp|direction"},
+     .help =
+         "held part. `ball`: the position. `clamp`: position, direction and twist (if "
+         "the model has a frame there). `direction`: the direction alone. `hinge`: as "
+         "`clamp`, but free to turn about `axis`",
+     .choices = "ball|clamp|direction|hinge"},
+    {.name = "axis",
+     .help = "axis of a hinge in the world, across the direction of the strand at the "
+             "start, of any length",
+     .min = -farthest_place,
+     .max = farthest_place,
+     .components = 3,
+     .fallback = "0,0,0"},
     {.name = "keyframes",
      .help =
          "rows of t, x, y, z (s, m): places of the support in the world, t ascending. "
@@ -106,6 +116,25 @@ int point_of(const Table& table, const Strand& strand) {
           : "give \"tip\", \"root\" or a number of 0 to 1");
 }
 
+/// The axis of a hinge in the components of the section at the start.
+Vec hinge_axis(const Table& table, const Frame& section) {
+  const char* const remedy =
+      "give [supports] axis, such as [0, 1, 0] for a strand along x that turns in a "
+      "vertical plane";
+  const Vec axis = section.back(table.values().vec("axis"));
+  const double length = norm(axis);
+  const std::string& place =
+      table.given("axis") ? table.place("axis") : table.place("kind");
+  refuse_if(length == 0, "a hinge without an axis", place, remedy);
+  refuse_if(std::abs(axis.x) > 1e-6 * length,
+            fmt::format("the axis of a hinge {:.3g} deg off the plane across the strand",
+                        std::asin(std::min(1.0, std::abs(axis.x) / length)) * 180 /
+                            std::numbers::pi),
+            place, "give an axis perpendicular to the direction of the strand there");
+  const Vec across{0, axis.y, axis.z};
+  return (1 / norm(across)) * across;
+}
+
 /// Refuses keys that the kind of a support does not read.
 void check_keys(const Table& table) {
   const std::string_view kind = table.values().word("kind");
@@ -117,6 +146,10 @@ void check_keys(const Table& table) {
   };
   const char* const leave = "leave it out, or give kind = \"clamp\"";
   if (kind == "ball") refuse("directions", "which holds no direction", leave);
+  if (kind == "hinge") refuse("directions", "which follows no directions", leave);
+  if (kind != "hinge") {
+    refuse("axis", "which turns about no axis", "leave it out, or give kind = \"hinge\"");
+  }
   if (kind != "clamp") refuse("twist_rad", "which holds no twist", leave);
   if (kind == "direction") {
     refuse("keyframes", "which holds no position", leave);
@@ -185,7 +218,8 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
   if (kind == "direction") support.axes.clear();
   if (kind != "ball") {
     const auto held = models::section_to_hold(system, point, table.place("kind"));
-    support.section = kind == "clamp" ? HeldPart::frame : HeldPart::tangent;
+    support.section = kind == "direction" ? HeldPart::tangent : HeldPart::frame;
+    if (kind == "hinge") support.hinge = hinge_axis(table, start.frame);
     refuse_if(table.given("twist_rad") && held.turning != Sections::Turning::frame,
               "a twist of a model without frames of its sections",
               table.place("twist_rad"),
