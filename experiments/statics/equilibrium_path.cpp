@@ -41,6 +41,7 @@ class Follower {
       step_ = longest_step(station);
       shortest_ = least_step * step_;
       while (!over_) station = next(std::move(station));
+      say_what_is_missing();
     } catch (const std::runtime_error& error) {
       fail(error.what());
     }
@@ -62,6 +63,18 @@ class Follower {
     point.failure = why;
     all_.push_back(std::move(point));
     over_ = true;
+  }
+  /// A row with the reason, where a path ends before what was asked for.
+  void say_what_is_missing() {
+    const PathPoint& last = all_.back();
+    if (!last.failure.empty() || last.event == Event::end) {
+      if (bifurcations_ >= std::abs(options_.branch) || !last.failure.empty()) return;
+      fail("the path has " + std::to_string(bifurcations_) +
+           " bifurcations, and branch asks for number " +
+           std::to_string(std::abs(options_.branch)));
+    } else if (std::ssize(all_) >= options_.points) {
+      fail("the largest number of points, before the end of the range; give more points");
+    }
   }
   void add(const PathPoint& point) {
     all_.push_back(point);
@@ -194,7 +207,9 @@ class Follower {
   Station leave(const Station& from, const Station& event) {
     const Stability& critical = event.point.stability;
     if (critical.shapes.cols() == 0) {
-      fail("the other branch is not known where loads follow the strand");
+      fail(
+          "the other branch is not known: no mode of the bifurcation was found, as for "
+          "loads that follow the strand");
       return from;
     }
     Index least = 0;

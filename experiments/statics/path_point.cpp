@@ -7,7 +7,7 @@
 namespace tress::experiments::statics {
 namespace {
 
-constexpr double verified = 1e-6;  // largest residual and gap of an equilibrium
+constexpr double verified = 1e-7;  // largest residual and gap of an equilibrium
 
 /// Also takes what is not a number.
 void take_larger(double x, double& most) {

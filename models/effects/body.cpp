@@ -202,8 +202,10 @@ std::string surface_in_words(const Parameters& parameters) {
   std::ostringstream words;
   words.precision(3);
   words << mesh.triangles << " triangles as a grid of " << s.nx << " x " << s.ny << " x "
-        << s.nz << " distances, " << s.spacing << " m apart; its surface is within "
-        << mesh.error << " m of the mesh";
+        << s.nz << " distances, " << s.spacing
+        << " m apart; at corners, middles of edges "
+        << "and centres of triangles the distance is wrong by " << mesh.error
+        << " m at most";
   return words.str();
 }
 

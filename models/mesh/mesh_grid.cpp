@@ -20,6 +20,9 @@ struct Extent {
   double largest() const {
     return std::max({most.x - least.x, most.y - least.y, most.z - least.z});
   }
+  double smallest() const {
+    return std::min({most.x - least.x, most.y - least.y, most.z - least.z});
+  }
 };
 
 Extent extent(const std::vector<Vec>& corners) {
@@ -37,6 +40,16 @@ DistanceGrid::Samples places(const Extent& e, const MeshGridOptions& options,
                              const std::string& where) {
   DistanceGrid::Samples s;
   s.spacing = options.spacing > 0 ? options.spacing : e.largest() / 64;
+  // A thinner body may fall between the points.
+  constexpr double fewest = 4;
+  if (!(fewest * s.spacing <= e.smallest())) {
+    std::ostringstream problem, remedy;
+    problem.precision(3), remedy.precision(3);
+    problem << "the mesh is " << e.smallest() / s.spacing
+            << " spacings of its grid across, which is too few";
+    remedy << "take mesh_spacing_m of " << e.smallest() / fewest << " or less";
+    throw InputError(problem.str(), where, remedy.str());
+  }
   const double around = options.offset + margin * s.spacing;
   s.origin = e.least - Vec{around, around, around};
   const auto points = [&](double from, double to) {

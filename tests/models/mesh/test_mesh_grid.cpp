@@ -190,6 +190,11 @@ TEST_F(MeshReader, RefusesSurfacesThatMeetThemselvesAndTooFineGrids) {
               mesh_grid(ClosedSurface(cube(0.5), "c"), {.spacing = 1e-4}, "c.obj");
             }).find("take mesh_spacing_m above 0.00"),
             std::string::npos);
+  // A body thinner than some spacings would vanish between the points.
+  EXPECT_NE(refusal([&] {
+              mesh_grid(ClosedSurface(cube(0.5), "c"), {.spacing = 0.3}, "c.obj");
+            }).find("take mesh_spacing_m of 0.25 or less"),
+            std::string::npos);
 }
 
 TEST_F(MeshCache, KeepsTheGridAndSeesDamage) {
