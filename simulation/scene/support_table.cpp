@@ -147,7 +147,7 @@ void check_keys(const Table& table) {
   const char* const leave = "leave it out, or give kind = \"clamp\"";
   if (kind == "ball") refuse("directions", "which holds no direction", leave);
   if (kind == "hinge") refuse("directions", "which follows no directions", leave);
-  if (kind != "hinge") {
+  if (kind != "hinge" && norm(table.values().vec("axis")) > 0) {
     refuse("axis", "which turns about no axis", "leave it out, or give kind = \"hinge\"");
   }
   if (kind != "clamp") refuse("twist_rad", "which holds no twist", leave);
