@@ -28,8 +28,8 @@ LIMIT_S = 60
 LIMIT_KIB = 2 << 20
 WATCH_S = 0.02
 MESSAGE = re.compile(r"\w+: error: [^\r\n]+ \([^\r\n]+\): [^\r\n]+\n", re.A)
-# That a machine is busy is not about the input, nor is the size of a head.
-ASIDE = (re.compile(r"^\w+: warning: the machine is busy.*\n", re.M),
+# That a machine is busy or work goes on is not about the input, nor is the size of a head.
+ASIDE = (re.compile(r"^\w+: warning: the machine is busy.*\n", re.M), re.compile(r"^\w+: .*, for \d+ s\n", re.M),
          re.compile(r"^simulate: \w+: a batch of .*\n", re.M))
 KINDS = ("signal", "hang", "internal error", "accepted", "message", "left something behind")
 
