@@ -4,6 +4,7 @@
 
 #include "integrators/entry.h"
 #include "integrators/position_based/position_sweeps.h"
+#include "integrators/sundials/arkstep.h"
 
 namespace tress::integrators {
 namespace {
@@ -84,20 +85,10 @@ int ArkodeArk::restart() {
 }
 
 int ArkodeArk::step(double t_end, double& t) {
-  int code = ARKStepSetStopTime(memory_.get(), t_end);
-  if (code < 0) return code;
-  code = ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
-  return code < 0 && parts_.gave_up() ? ARK_RHSFUNC_FAIL : code;
+  return arkstep_step(memory_, parts_, y_.handle(), t_end, t);
 }
 
-Stats ArkodeArk::counters() const {
-  long errors = 0, stalls = 0;
-  ARKStepGetNumErrTestFails(memory_.get(), &errors);
-  ARKStepGetNumStepSolveFails(memory_.get(), &stalls);
-  Stats stats;
-  stats.rejected = errors + stalls;
-  return stats;
-}
+Stats ArkodeArk::counters() const { return arkstep_counters(memory_); }
 
 std::string ArkodeArk::reason(int code) const {
   return code_name(&ARKStepGetReturnFlagName, code);

@@ -4,6 +4,7 @@
 
 #include "contract/input_error.h"
 #include "integrators/entry.h"
+#include "integrators/sundials/arkstep.h"
 
 namespace tress::integrators {
 namespace {
@@ -92,20 +93,10 @@ int ArkodeDirk::restart() {
 }
 
 int ArkodeDirk::step(double t_end, double& t) {
-  int code = ARKStepSetStopTime(memory_.get(), t_end);
-  if (code < 0) return code;
-  code = ARKStepEvolve(memory_.get(), t_end, y_.handle(), &t, ARK_ONE_STEP);
-  return code < 0 && equations_.gave_up() ? ARK_RHSFUNC_FAIL : code;
+  return arkstep_step(memory_, equations_, y_.handle(), t_end, t);
 }
 
-Stats ArkodeDirk::counters() const {
-  long errors = 0, stalls = 0;
-  ARKStepGetNumErrTestFails(memory_.get(), &errors);
-  ARKStepGetNumStepSolveFails(memory_.get(), &stalls);
-  Stats stats;
-  stats.rejected = errors + stalls;
-  return stats;
-}
+Stats ArkodeDirk::counters() const { return arkstep_counters(memory_); }
 
 std::string ArkodeDirk::reason(int code) const {
   return code_name(&ARKStepGetReturnFlagName, code);

@@ -86,11 +86,7 @@ TriangleMesh outwards(const TriangleMesh& given, const std::string& where) {
   TriangleMesh mesh = joined(given);
   refuse_if(mesh.triangle.size() < 4, "fewer than four triangles", where,
             "name a mesh of a closed surface");
-  static_cast<void>(checked_edges(mesh, where));
-  const double volume = volume_of(mesh);
-  refuse_if(!std::isfinite(volume) || volume == 0, "the mesh encloses no volume", where,
-            "name a mesh of a closed surface");
-  if (volume < 0) {
+  if (volume_of(mesh) < 0) {
     for (MeshCorners& t : mesh.triangle) std::swap(t[1], t[2]);
   }
   return mesh;
@@ -102,6 +98,8 @@ ClosedSurface::ClosedSurface(const TriangleMesh& given, const std::string& where
     : tree_(outwards(given, where)), volume_(volume_of(mesh())) {
   const auto& [corners, triangles] = mesh();
   const MeshEdges edges = checked_edges(mesh(), where);
+  refuse_if(!std::isfinite(volume_) || volume_ == 0, "the mesh encloses no volume", where,
+            "name a mesh of a closed surface");
   corner_.resize(corners.size());
   edge_.resize(triangles.size());
   for (const auto& [a, b, c] : triangles) {

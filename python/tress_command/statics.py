@@ -1,32 +1,19 @@
 """./tress statics."""
 
-import os
-
 from .command import Command
-from .counting import must
-from .messages import refuse
-from .tree import PROGRAMS, RELEASE, build
+from .scene_program import runs
+from .tree import PROGRAMS
 
 PROGRAM = f"{PROGRAMS}/statics"
-
-
-def _run(words, machine):
-    if not words or words[0].startswith("-"):
-        refuse("statics: give a scene file, as in ./tress statics scenes/cantilever.toml "
-               "--over gravity=0..2")
-    machine.ensure()
-    build(RELEASE, "statics")
-    os.makedirs("results", exist_ok=True)
-    must(PROGRAM, "--scene", *words)
-
+EXAMPLE = "./tress statics scenes/cantilever.toml --over gravity=0..2"
 
 COMMAND = Command(
     "statics", "SCENE.toml [--over KEY=FROM..TO] [OPTIONS]",
     "finds the equilibria of a strand along one parameter, with limit points, bifurcations and "
     "stability. The table is results/statics.<scene>.csv, pictures are in "
     "results/statics.<scene>/.",
-    _run,
-    example="./tress statics scenes/cantilever.toml --over gravity=0..2",
+    runs("statics", EXAMPLE),
+    example=EXAMPLE,
     time="seconds after the first build.",
     options=(("--over KEY=FROM..TO", "parameter and its range: gravity, point_force, supports, or a "
               "number of the scene"),
