@@ -82,6 +82,17 @@ _BY_HAND = {
         "height": "height of the picture in pixels",
         "picture_ms": "wall time of a picture (ms), median of five times ten",
     },
+    "cost_of_accuracy_two_engines": {
+        "commit": "commit of the table",
+        "scene": "scene of the search",
+        "target_error_rel": "target error over the length",
+        "model": "model of the cheapest run",
+        "integrator": "integrator of the cheapest run",
+        "elements": "number of elements of the cheapest run",
+        "next_model": "model of the next best run",
+        "next_integrator": "integrator of the next best run",
+        "cost_factor": "time of the next best run over that of the cheapest",
+    },
     "other_simulators_published": {
         "name": "name of the method",
         "cited_as": "citation in this repository",

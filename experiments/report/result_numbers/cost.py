@@ -89,6 +89,42 @@ def winners_by_target(tables):
          for scene, members in groups(rows, "scene")])
 
 
+def _pairs_of_engines(tables):
+    """Returns pairs of winners: with two engines, and now."""
+    now = {(row["scene"], row["target_error_rel"]): row for row in records(winners(tables))}
+    before = records(tables["cost_of_accuracy_two_engines"])
+    return [(row, now[row["scene"], row["target_error_rel"]])
+            for row in before if (row["scene"], row["target_error_rel"]) in now]
+
+
+def two_engines_table(tables):
+    """Returns the winners at 1 % before and after the models became one engine."""
+    following = _of_kind(tables, "runner_up")
+    lines = []
+    for before, now in _pairs_of_engines(tables):
+        if before["target_error_rel"] != _TARGET:
+            continue
+        other = first(following[following["scene"] == now["scene"]])
+        lines.append([spaced(now["scene"]),
+                      f"`{before['model']}`, `{before['integrator']}`, {before['elements']:.0f}", number(before["cost_factor"]),
+                      f"`{now['model']}`, `{now['integrator']}`, {now['elements']:.0f}",
+                      "" if other is None else number(other["cost_factor"])])
+    return table(["scene", "two engines: cheapest, elements", "next best", "one engine: cheapest, elements", "next best"], lines)
+
+
+def commit_of_two_engines(tables):
+    return next(iter(tables["cost_of_accuracy_two_engines"]["commit"]))
+
+
+def two_engines(tables):
+    """Returns how many winners the engine has changed."""
+    pairs = _pairs_of_engines(tables)
+    models = sum(before["model"] != now["model"] for before, now in pairs)
+    methods = sum(before["integrator"] != now["integrator"] for before, now in pairs)
+    return (f"Of {len(pairs)} winners (scenes and targets), {len(pairs) - models} keep their model and "
+            f"{len(pairs) - methods} their integrator")
+
+
 def _tally(tables, column):
     """Returns "`esdirk43` on 3 of 7 scenes (and tied on 1), `bdf2` on 2". A tie is no win."""
     rows = winners(tables, _TARGET)
