@@ -2,14 +2,15 @@
 import re
 
 from .report import quoted, told
-from .words import bullets, counted, markdown, table
+from .words import bullets, counted, markdown, number, table
 
 _MOST = 12  # the report page has the rest
 
 
-def _listed(name, most=_MOST):
+def _listed(name, without="", most=_MOST):
+    """Returns a query that lists the sentences but those that contain `without`: the page has them as a table."""
     def query(tables):
-        sentences = told(tables, name)
+        sentences = [one for one in told(tables, name) if not without or without not in one]
         rest = len(sentences) - most
         more = f"The report page has {counted(rest, 'further finding')}."
         return bullets(sentences[:most] + ([more] if rest > 0 else []))
@@ -17,38 +18,35 @@ def _listed(name, most=_MOST):
     return query
 
 
-def _with_table(name, start, head):
+def _with_table(name, start, head, value=r"(.*?),? (\d.*)$"):
     """Returns a query whose sentences are a list, except the one that begins with `start`: "start: a 1; b 2." is a
-    table with the columns `head`, a row for each part and its last words, from the first digit on."""
+    table with the columns `head`, a row for each part and its last words: from the first digit on, or by `value`."""
     def query(tables):
         sentences = told(tables, name)
         long = [one for one in sentences if one.startswith(start)]
         shown = bullets([one for one in sentences if one not in long])
         for one in long:
             what, _, parts = one.rstrip(".").partition(": ")
-            rows = (re.match(r"(.*?),? (\d.*)$", part).groups() for part in parts.split("; "))
+            rows = (re.match(value, part).groups() for part in parts.split("; "))
             shown += f"\n\n{what}:\n\n{markdown(table(head, rows))}"
         return shown
 
     return query
 
 
-bdf = _listed("bdf")
+bdf = _listed("bdf", without="Steps at maximum order")
 boundary = _listed("boundary")
-descent = _listed("descent")
+descent = _with_table("descent", "Distance of the tip", ["method", "distance"], r"(.*) (\S+)$")
 drift = _listed("drift")
 hard = _listed("hard")
 cosserat_map = _listed("map")
-models = _listed("models")
 nodal = _listed("nodal")
 recovery = _listed("recovery")
 scaling = _with_table("scaling", "Cost of one step on a straight strand", ["method", "exponent"])
 stability = _with_table("stability", "Stable at 33 ms", ["method", "stable cases"])
 swing = _listed("swing")
 transport = _listed("transport")
-# Sorted by success: without its end the list would leave out the models that fail.
-validation = _listed("validation", most=1000)
-work = _listed("work")
+work = _listed("work", without="cheapest per simulated second")
 
 
 def control(tables):
@@ -61,6 +59,15 @@ def control(tables):
 
 def fields(tables):
     return table(["problem", "error", "integrators", "runs"], told(tables, "fields"))
+
+
+def cheapest(tables):
+    levels = (f"error {number(level)}" for level in told(tables, "work_levels"))
+    return table(["problem", "integrators tried", *levels], told(tables, "cheapest"))
+
+
+def bdf_steps(tables):
+    return table(["relative tolerance", "order 2", "order 3", "order 4", "order 5"], told(tables, "bdf_steps"))
 
 
 def orders(tables):

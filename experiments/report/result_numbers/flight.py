@@ -15,7 +15,7 @@ def seconds(tables):
 
 def _changes(members):
     rows = [(model, own.iloc[0]) for model, own in groups(members, "model")]
-    return "; ".join(f"{model} {signed_percent(row['angular_change_rel'])}, {percent(row['angular_error_rel'])}, "
+    return "<br>".join(f"`{model}` {signed_percent(row['angular_change_rel'])}, {percent(row['angular_error_rel'])}, "
                      f"{signed_percent(row['energy_change_rel'])}" for model, row in rows)
 
 

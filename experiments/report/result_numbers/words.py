@@ -1,6 +1,7 @@
 """Text of values on pages: numbers of few digits, shares, times, ranges, tables."""
 import math
 import numbers
+import re
 from decimal import ROUND_HALF_UP, Decimal
 
 import pandas as pd
@@ -94,6 +95,14 @@ def code(names):
     return ", ".join(f"`{name}`" for name in names)
 
 
+_IDS = re.compile(r'(?<![\w`./"])(?:[a-z]\w*_\w+(?:\.csv)?|der|corde|xpbd|vbd|rk4|bdf2|radau5|rodas5p|esdirk43|newmark)(?![\w`/])', re.ASCII)
+
+
+def coded(text):
+    """Returns a text of a table with the ids of models, integrators and columns as code."""
+    return _IDS.sub(r"`\g<0>`", text)
+
+
 def is_set(flag):
     return str(flag).lower() in ("1", "true", "yes")
 
@@ -118,6 +127,7 @@ def _cell(value):
     if value is None:
         return ""
     text = plain(value) if isinstance(value, numbers.Real) else str(value)
+    text = text if re.search(r"`|\]\(", text) else coded(text)
     return text.replace("|", "\\|")
 
 
