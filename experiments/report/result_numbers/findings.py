@@ -1,16 +1,24 @@
 """Sentences of the report page, as lists."""
 import re
 
+from . import catalogue
 from .report import quoted, told
-from .words import bullets, counted, markdown, number, table
+from .words import bullets, counted, markdown, number, spaced, table
 
 _MOST = 12  # the report page has the rest
+
+
+def _told(tables, name):
+    """Returns the sentences with the names of models as ids: "articulated chain" as "`articulated_chain`"."""
+    models = {spaced(model): f"`{model}`" for model in catalogue.models(tables) if "_" in model}
+    named = re.compile("|".join(sorted(models, key=len, reverse=True)))
+    return [named.sub(lambda found: models[found[0]], one) for one in told(tables, name)]
 
 
 def _listed(name, without="", most=_MOST):
     """Returns a query that lists the sentences but those that contain `without`: the page has them as a table."""
     def query(tables):
-        sentences = [one for one in told(tables, name) if not without or without not in one]
+        sentences = [one for one in _told(tables, name) if not without or without not in one]
         rest = len(sentences) - most
         more = f"The report page has {counted(rest, 'further finding')}."
         return bullets(sentences[:most] + ([more] if rest > 0 else []))
@@ -22,7 +30,7 @@ def _with_table(name, start, head, value=r"(.*?),? (\d.*)$"):
     """Returns a query whose sentences are a list, except the one that begins with `start`: "start: a 1; b 2." is a
     table with the columns `head`, a row for each part and its last words: from the first digit on, or by `value`."""
     def query(tables):
-        sentences = told(tables, name)
+        sentences = _told(tables, name)
         long = [one for one in sentences if one.startswith(start)]
         shown = bullets([one for one in sentences if one not in long])
         for one in long:
