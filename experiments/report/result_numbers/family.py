@@ -160,10 +160,15 @@ def twist_straight(tables):
     return _sentence(tables, f"{twist_straight_share(tables)}. The displacement has {_spread(row, _change)}", row)
 
 
-def twist_straight_ranges(tables):
-    """Returns the share of hairs for which twist is negligible at rest, by range of the gravito-bending number."""
-    found = [(of, claim(tables, "twist_straight_negligible", "hair", of)) for of in _RANGES]
-    return ", ".join(f"{_share(row)} ({of})" for of, row in found)
+def by_range(tables, name):
+    """Returns the share of hairs for which a claim is true, by range of the gravito-bending number."""
+    return ", ".join(f"{_share(claim(tables, name, 'hair', of))} ({of})" for of in _RANGES)
+
+
+def by_curl(tables, name):
+    """Returns the share of hairs for which a claim is true, by group of natural curvature."""
+    rows = tables.ok_rows("family", {"family": "hair", "claim": name}).sort_values("natural_curvature_per_m")
+    return ", ".join(f"{percent((members['holds'] == 'true').mean())} ({kind})" for kind, members in groups(rows, "kind"))
 
 
 def twist_curly(tables):
