@@ -1,5 +1,6 @@
 """The words of the repository, and that docs/site/prose_check.py finds a fault of each kind:
 python3 tests/docs/test_prose.py"""
+import re
 import subprocess
 import sys
 import tempfile
@@ -144,6 +145,14 @@ class Limits(Folder):
 
 
 class Repository(unittest.TestCase):
+    def test_every_program_is_on_the_page_of_the_command_line(self):
+        built = (ROOT / "experiments/CMakeLists.txt").read_text()
+        programs = set(re.findall(r"^(?:tress_study|add_executable)\((\w+)", built, re.M))
+        page = (ROOT / "docs/reference/command_line.md").read_text()
+        listed = set(re.findall(r"^\| `(\w+)` \|", page, re.M))
+        self.assertGreater(len(programs), 15)
+        self.assertEqual(programs - listed, set())
+
     def test_is_within_the_limits(self):
         report = prose_check.check(ROOT)
         # Enough of every surface is read for the limits to mean something.
