@@ -126,7 +126,7 @@ export function descent_findings(tables) {
     ...cost_finding(rows),
     ...penalty_windows(tables).map(({ dt_s, tried, good }) =>
       good.length === 0
-        ? `Steps of ${format_time(dt_s)}: no penalty of ${tried} comes within 1 %.`
+        ? `Steps of ${format_time(dt_s)}: none of the ${tried} tried penalties comes within 1 %.`
         : `Steps of ${format_time(dt_s)}: penalties within 1 % of the direct step from ` +
           `${power(Math.min(...good))} to ${power(Math.max(...good))} 1/s².`,
     ),

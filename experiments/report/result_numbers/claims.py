@@ -94,17 +94,17 @@ def multipliers_free(tables):
     return must(
         _held(tables, "block_descent", "multipliers_free") and has_window(1 / 300) and has_window(1e-3)
         and (_penalties(tables, 1 / 60)[1] > 0.01).all(),
-        "Multipliers that carry the stress from step to step remove the locking, if the penalty is within its window. Below "
-        "it multipliers converge too slowly, above it nodes lock again. The window follows the square of the step, and "
-        "closes at the longest step tried")
+        "Multipliers that carry the stress from step to step remove the locking, if the penalty is within its window. With "
+        "a smaller penalty, multipliers converge too slowly. With a larger one, nodes lock again. The window is inversely "
+        "proportional to the square of the step, and closes at the longest step tried")
 
 
 def map_unreached(tables):
     rows = tables.rows("block_descent", {"part": "rods", "scene": "swing"})
     return must(
         len(rows) >= 40 and ((rows["status"] == "ok") & (rows["error_rel"] > 0.01)).all(),
-        "On the hair no point of the map reaches the target error. With its real stiffness the hair locks at every tested "
-        "number of sweeps; softened until sweeps converge it is another rod. All tested points are stable")
+        "On the hair, no point of the map reaches the target error. With its real stiffness, the hair locks at every tested "
+        "number of sweeps. A hair that is softened until sweeps converge is another rod. All tested points are stable")
 
 
 def transport_wrong(tables):

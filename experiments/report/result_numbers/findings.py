@@ -3,22 +3,22 @@ import re
 
 from . import catalogue
 from .report import quoted, told
-from .words import bullets, counted, markdown, number, spaced, table
+from .words import bullets, coded, counted, markdown, number, spaced, table
 
 _MOST = 12  # the report page has the rest
 
 
 def _told(tables, name):
-    """Returns the sentences with the names of models as ids: "articulated chain" as "`articulated_chain`"."""
+    """Returns the sentences with ids as code, also those of models in words: "articulated chain"."""
     models = {spaced(model): f"`{model}`" for model in catalogue.models(tables) if "_" in model}
     named = re.compile("|".join(sorted(models, key=len, reverse=True)))
-    return [named.sub(lambda found: models[found[0]], one) for one in told(tables, name)]
+    return [coded(named.sub(lambda found: models[found[0]], one)) for one in told(tables, name)]
 
 
-def _listed(name, without="", most=_MOST):
-    """Returns a query that lists the sentences but those that contain `without`: the page has them as a table."""
+def _listed(name, without=(), most=_MOST):
+    """Returns a query that lists the sentences, except those with a text of `without`: the page has them as a table."""
     def query(tables):
-        sentences = [one for one in _told(tables, name) if not without or without not in one]
+        sentences = [one for one in _told(tables, name) if not any(text in one for text in without)]
         rest = len(sentences) - most
         more = f"The report page has {counted(rest, 'further finding')}."
         return bullets(sentences[:most] + ([more] if rest > 0 else []))
@@ -42,7 +42,7 @@ def _with_table(name, start, head, value=r"(.*?),? (\d.*)$"):
     return query
 
 
-bdf = _listed("bdf", without="Steps at maximum order")
+bdf = _listed("bdf", without=["Steps at maximum order"])
 boundary = _listed("boundary")
 descent = _with_table("descent", "Distance of the tip", ["method", "distance"], r"(.*) (\S+)$")
 drift = _listed("drift")
@@ -54,7 +54,7 @@ scaling = _with_table("scaling", "Cost of one step on a straight strand", ["meth
 stability = _with_table("stability", "Stable at 33 ms", ["method", "stable cases"])
 swing = _listed("swing")
 transport = _listed("transport")
-work = _listed("work", without="cheapest per simulated second")
+work = _listed("work", without=["cheapest per simulated second", "fitted order"])
 
 
 def control(tables):

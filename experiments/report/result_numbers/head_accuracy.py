@@ -60,7 +60,7 @@ def answers_table(tables):
 
     return table(
         ["groom", "target", "sampled hairs", "simulated", "elements, step, bits", "error: mean, 95 %, largest",
-         "of interpolation", "of elements and step", "ms a frame: simulated, following"],
+         "error of interpolation", "error of elements and step", "ms per frame: simulated, following"],
         map(line, records(answers(tables))))
 
 
