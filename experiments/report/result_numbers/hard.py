@@ -131,6 +131,9 @@ _CONTACT = {"grazing_contact": ["grazing_exact", "grazing_impulse"],
             "coil_contact": ["coil_impulse"]}
 
 
+_OUTCOMES = {"stable": "stable, inaccurate", "stable, not compared": "stable, no reference"}
+
+
 def friction_table(tables):
     """Returns outcomes of `backward_euler` at its longest step, with the number of Newton iterations."""
     rows = judged(tables)
@@ -140,8 +143,8 @@ def friction_table(tables):
     rows = rows[rows["case"].isin(names)]
     models = rows["model"].unique()
     rows = rows[(rows["dt_s"] == longest) & (rows["outcome"] != "refused")]
-    shown = {(row["model"], row["case"]): f"{row['outcome']} ({row['newton_iterations']:.0f})" if row["survives"] else row["outcome"]
-             for row in reversed(records(rows))}
+    shown = {(row["model"], row["case"]): f"{_OUTCOMES.get(row['outcome'], row['outcome'])} ({row['newton_iterations']:.0f})"
+             if row["survives"] else row["outcome"] for row in reversed(records(rows))}
     lines = [[f"`{model}`", *(shown.get((model, name), "") for name in names)] for model in models]
     return table(["model", *(f"`{name}`" for name in names)], [line for line in lines if any(line[1:])])
 
@@ -172,11 +175,11 @@ def rising_count(tables):
 
 
 _WHY_NOT = {
-    "its work was done": "not finished within its work",
-    "speed": "faster than its root can make it",
-    "reach": "farther from its root than it is long",
+    "its work was done": "not finished within the work limit",
+    "speed": "faster than the root can drive it",
+    "reach": "tip farther from the root than the strand is long",
     "energy": "gains energy at the impact",
-    "penetration_over_bound": "deeper than allowed",
+    "penetration_over_bound": "penetrates deeper than allowed",
     "overlap_over_radius": "parts pass through each other",
 }
 
