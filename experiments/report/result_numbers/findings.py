@@ -53,8 +53,18 @@ recovery = _listed("recovery")
 scaling = _with_table("scaling", "Cost of one step on a straight strand", ["method", "exponent"])
 stability = _with_table("stability", "Stable at 33 ms", ["method", "stable cases"])
 swing = _listed("swing")
-transport = _listed("transport")
 work = _listed("work", without=["cheapest per simulated second", "fitted order"])
+
+
+def transport(tables):
+    """Returns a row for each sentence "quantity: 0.1 at 5, 0.2 at 10 elements.", a column for each number of elements."""
+    rows = {}
+    for sentence in _told(tables, "transport"):
+        quantity, parts = re.fullmatch(r"(.*): (.*) elements\.", sentence).groups()
+        rows[quantity] = {int(elements): value for value, elements in (part.split(" at ") for part in parts.split(", "))}
+    counts = sorted({elements for values in rows.values() for elements in values})
+    return table(["quantity", *(f"{count} elements" for count in counts)],
+                 [[quantity, *(values.get(count, "") for count in counts)] for quantity, values in rows.items()])
 
 
 def control(tables):

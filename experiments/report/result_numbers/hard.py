@@ -63,9 +63,9 @@ def super_helix(tables):
     words = []
     for dt, members in sorted(groups(rows, "dt_s"), reverse=True):
         lost = [f"`{case}`" for case in members["case"][~members["survives"]]]
-        words.append(f"{len(members) - len(lost)} of {len(members)} cases at steps of {duration(dt)}"
-                     + (f" (not: {', '.join(lost)})" if lost else ""))
-    return ", and ".join(words)
+        words.append(f"At steps of {duration(dt)}, it survives {len(members) - len(lost)} of {len(members)} cases"
+                     + (f". It fails in {', '.join(lost)}" if lost else ""))
+    return ". ".join(words)
 
 
 def survivors(tables):
