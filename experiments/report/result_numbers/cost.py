@@ -146,7 +146,7 @@ _CHOICES = {
     "dt_s": "time step",
     "position_tol_rel": "step control",
     "extrapolated": "extrapolation",
-    "mesh": "cuts of elements",
+    "mesh": "mesh",
     "refresh": "refresh of the matrix",
     "radau5": "`radau5`",
     "rodas5p": "`rodas5p`",
