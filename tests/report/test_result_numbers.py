@@ -36,6 +36,13 @@ class Values(unittest.TestCase):
     def test_a_table_is_markdown(self):
         self.assertEqual(markdown(table(["a", ""], [["x|y", 3.0], [None, "z"]])), "| a |  |\n|---|---|\n| x\\|y | 3 |\n|  | z |")
 
+    def test_ids_in_tables_are_code(self):
+        self.assertEqual(words.coded("super_helix over der, family.csv and t_s.csv"),
+                         "`super_helix` over `der`, family.csv and `t_s.csv`")
+        for text in ("van der Heijden & Thompson 2000", "`a_b` and [c](d_e.md)", "models/a_b.cpp", '{"a_b": 1}'):
+            self.assertEqual(words.coded(text), text)
+        self.assertEqual(markdown(table(["rk4"], [["a_b, der"]])), "| `rk4` |\n|---|\n| `a_b`, `der` |")
+
     def test_a_sentence_whose_condition_failed_is_not_printed(self):
         self.assertEqual(must(True, "A wins"), "A wins")
         with self.assertRaisesRegex(InputError, '"A wins everywhere"'):
@@ -306,6 +313,18 @@ class Queries(Made):
         by_drive = self.say("family.model_steps", family_summary=[{**row, "decided_by": "drive is gust_of_wind"}, rods])
         self.assertIn("the drive: the statement is true for 9.4 % of the hairs with gust of wind and for 88 % of the others",
                       by_drive)
+
+    def test_claims_about_hairs_are_counted_by_curl(self):
+        def hair(kind, curvature, holds, status="ok"):
+            return {"family": "hair", "claim": "super_helix_step_longer", "kind": kind, "natural_curvature_per_m": curvature,
+                    "holds": holds, "status": status}
+
+        hairs = [hair("wavy", 60, "false"), hair("straight", 10, "true"), hair("straight", 20, "false"),
+                 hair("wavy", 50, "", "unresolved")]
+        statement = {"family": "hair", "range": "all", "study": "stable_steps", "claim": "super_helix_step_longer"}
+        self.assertEqual(self.say("family.by_curl", "super_helix_step_longer", family=hairs), "50 % (straight), 0 % (wavy)")
+        self.assertRegex(self.say("family.curls", family=hairs, family_summary=[statement]),
+                         r"straight: 10 to 20 1/m \| wavy: 50 to 60 1/m \|\n.*\n.*\| 50 % of 2 \| 0 % of 1; 1 inconclusive \|")
 
     def test_counts_of_a_study_are_those_that_its_program_stored(self):
         counts = {"hairs": 40, "hairs_at_rest": 29, "hairs_half": 31, "elements": 18, "elements_remeshed": 2,
