@@ -10,9 +10,10 @@ _MOST = 12  # the report page has the rest
 
 def _told(tables, name):
     """Returns the sentences with ids as code, also those of models in words: "articulated chain"."""
+    sentences = told(tables, name)
     models = {spaced(model): f"`{model}`" for model in catalogue.models(tables) if "_" in model}
     named = re.compile("|".join(sorted(models, key=len, reverse=True)))
-    return [coded(named.sub(lambda found: models[found[0]], one)) for one in told(tables, name)]
+    return [coded(named.sub(lambda found: models[found[0]], one)) for one in sentences]
 
 
 def _listed(name, without=(), most=_MOST):
