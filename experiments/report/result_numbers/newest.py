@@ -69,9 +69,9 @@ def other_simulators_confirm(tables):
     errors = [row["total_error_rel"] for row in finest]
     must(max(errors) < _FLOOR, "the finest runs of all engines are above the least target")
     mujoco = [row["total_error_rel"] for row in finest if row["simulator"] == "mujoco_3"]
-    return (f"At their shortest steps all {len(finest)} methods in double precision, with {_LINKS} links, are "
-            f"{span(errors, percent)} off the continuous rod{f' (MuJoCo 3: {span(mujoco, percent)})' if mujoco else ''}. This is the "
-            f"error of their links: a target below {percent(_FLOOR)} compares meshes, not methods.")
+    return (f"At their shortest steps, all {len(finest)} methods in double precision have an error of {span(errors, percent)} against the "
+            f"continuous rod, with {_LINKS} links{f' (MuJoCo 3: {span(mujoco, percent)})' if mujoco else ''}. This is the error of the "
+            f"links: a target below {percent(_FLOOR)} compares meshes, not methods.")
 
 
 def order_two(tables):
