@@ -42,7 +42,7 @@ export function nodal_step_findings(tables) {
     const outcome =
       row.at_claim === 'nothing'
         ? 'stable'
-        : `breaks (${row.at_claim}) after ${format_time(row.t_claim_s)}`;
+        : `unstable (${row.at_claim}) after ${format_time(row.t_claim_s)}`;
     const limit = is_positive(row.dt_max_s)
       ? `; largest stable step found ${format_time(row.dt_max_s)}`
       : '';
