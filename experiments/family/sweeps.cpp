@@ -15,16 +15,16 @@ constexpr double accepted = 1.2;  // times the error of xpbd
 
 constexpr Claim claims[] = {
     {"sweep_order2_at_300x4",
-     "xpbd_bdf2 errs no more than 1.2 times as much as xpbd at 1/300 s and 4 sweeps",
+     "the error of xpbd_bdf2 is at most 1.2 times that of xpbd, 1/300 s and 4 sweeps",
      "error of xpbd_bdf2 over that of xpbd"},
     {"sweep_order2_at_300x20",
-     "xpbd_bdf2 errs no more than 1.2 times as much as xpbd at 1/300 s and 20 sweeps",
+     "the error of xpbd_bdf2 is at most 1.2 times that of xpbd, 1/300 s and 20 sweeps",
      "error of xpbd_bdf2 over that of xpbd"},
     {"sweep_order2_at_1500x4",
-     "xpbd_bdf2 errs no more than 1.2 times as much as xpbd at 1/1500 s and 4 sweeps",
+     "the error of xpbd_bdf2 is at most 1.2 times that of xpbd, 1/1500 s and 4 sweeps",
      "error of xpbd_bdf2 over that of xpbd"},
     {"sweep_order2_at_1000x1",
-     "xpbd_bdf2 errs no more than 1.2 times as much as xpbd at 1 ms and 1 sweep",
+     "the error of xpbd_bdf2 is at most 1.2 times that of xpbd, 1 ms and 1 sweep",
      "error of xpbd_bdf2 over that of xpbd"}};
 
 struct Pace {

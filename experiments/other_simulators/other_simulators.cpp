@@ -1,6 +1,6 @@
-// What do other simulators pay for a strand? Debian's Simbody, Bullet, MuJoCo and ODE,
-// and npm's MuJoCo 3 and Jolt, on scene `swing`: tip error against each one's own finest
-// run, over a ladder of steps.
+// How much time do other simulators need for a strand? Debian's Simbody, Bullet, MuJoCo
+// and ODE, and npm's MuJoCo 3 and Jolt, on scene `swing`: tip error against each one's
+// own finest run, over a ladder of steps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -306,7 +306,7 @@ int main(int argc, char** argv) {
   using namespace tress::experiments::other_simulators;
   const Experiment experiment{
       .name = "other_simulators",
-      .question = "what do other simulators pay for the same strand?",
+      .question = "how much time do other simulators need for the same strand?",
       .example = "--elements 5,20 --set simulator=mujoco",
       .columns = columns,
       .settings = settings,

@@ -1,20 +1,28 @@
 // quoted.mjs RESULTS: sentences and rows that the report page computes and other pages quote, as
 // JSON {name: {tables, value}}, or {name: {tables, error}} where the tables do not allow it.
+import { figures } from './figures/all.mjs';
 import { descent_findings } from './figures/block_descent.mjs';
 import { map_findings } from './figures/cosserat_map.mjs';
 import { transport_findings } from './figures/force_transport.mjs';
 import { hard_findings } from './figures/hard_cases.mjs';
-import { model_step_findings } from './figures/model_steps.mjs';
 import { family_runs, newest } from './figures/newest_methods.mjs';
 import { nodal_step_findings } from './figures/nodal_steps.mjs';
-import { validation_cells, validation_findings } from './figures/validation.mjs';
+import { validation_cells } from './figures/validation.mjs';
 import { validation_orders } from './figures/validation_orders.mjs';
 import { boundary_sentences, drift_findings, recovery_sentences } from './src/findings/drift.mjs';
 import { scaling_findings } from './src/findings/scaling.mjs';
 import { stability_findings } from './src/findings/stability.mjs';
 import { swing_findings } from './src/findings/swing.mjs';
 import { control_findings } from './src/findings/tolerance.mjs';
-import { bdf_findings, field_table, order_table, work_findings } from './src/findings/work.mjs';
+import {
+  bdf_findings,
+  bdf_table,
+  cheapest_table,
+  field_table,
+  levels,
+  order_table,
+  work_findings,
+} from './src/findings/work.mjs';
 import { hard_rows, judged, not_compared, rank, survives } from './src/hard.mjs';
 import { InputError } from './src/input.mjs';
 import { load_results } from './src/load.mjs';
@@ -32,25 +40,33 @@ const as_counted = (row) => ({
   compared: row.outcome !== not_compared,
 });
 
+// The tables that each figure is drawn from.
+const figure_tables = (tables) =>
+  Object.fromEntries(
+    figures.map((figure) => [figure.id, answer((all) => figure.rows(all), tables).tables]),
+  );
+
 const quoted = {
   bdf: bdf_findings,
+  bdf_steps: bdf_table,
   boundary: boundary_sentences,
   control: control_findings,
   descent: descent_findings,
+  cheapest: cheapest_table,
   drift: drift_findings,
   fields: field_table,
+  figures: figure_tables,
   orders: order_table,
   hard: hard_findings,
   map: map_findings,
-  models: model_step_findings,
   nodal: nodal_step_findings,
   recovery: ({ constraint_drift = [] }) => recovery_sentences(constraint_drift),
   scaling: scaling_findings,
   stability: stability_findings,
   swing: swing_findings,
   transport: transport_findings,
-  validation: validation_findings,
   work: work_findings,
+  work_levels: () => levels,
   hard_judged: (tables) => judged(tables).map(as_counted),
   hard_rows: (tables) => hard_rows(tables).map(as_counted),
   newest_methods: () => newest,

@@ -83,10 +83,10 @@ std::string by_step(const Row& row) {
 
 std::string by_tolerance(const Row& row) {
   if (!row.has("tolerance_loosest")) {
-    return fmt::format("{} by tolerance: none found that is stable: {}", method(row),
+    return fmt::format("{} with a tolerance: none found that is stable: {}", method(row),
                        row.text("reason"));
   }
-  return fmt::format("{} by tolerance: stable from {:.1g} to {:.1g}; judged over {}",
+  return fmt::format("{} with a tolerance: stable from {:.1g} to {:.1g}; judged over {}",
                      method(row), row.number("tolerance_loosest"),
                      row.number("tolerance_tightest"), duration(row.number("t_end_s")));
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Times the programs that answer the README's questions on the scene of its quick start:
+"""Times the programs that answer the README's questions on the scene of its quick start, and keeps a
+line of each answer:
 
     python3 tests/commands/question_times.py [BUILD] [--out FILE]
 
@@ -8,6 +9,7 @@ the load of the machine, wall times do."""
 import argparse
 import csv
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -32,6 +34,19 @@ QUESTIONS = {
     "head_accuracy": ["--scene", str(GROOM), "--set", "accuracy=0.01", "--quick"],
 }
 PROGRAMS = {"error_bars": "simulate", "gradient": "simulate"}
+# By question: the parts of the output that are its answer, in their order on a line.
+ANSWERS = {
+    "simulate": [r"\d+ frames, \S+ s simulated"],
+    "error_bars": [r"space error \S+ of the length"],
+    "gradient": [r"1 % of \w+ moves the tip by \S+ mm"],
+    "cost_of_accuracy": [r"take \w+", r"\d+ elements, \w+", r"\S+ % of the length"],
+    "stability_limit": [r"backward_euler", r"stable at every one of \d+ steps tried from .+? to \S+ ms"],
+    "hard_cases": [r"\w+: \d+ of \d+ runs are stable"],
+    "work_precision": [r"within 1 %", r"\w+, \w+, [^:]+: \S+ % in \S+ \w+ per simulated second"],
+    "scaling": [r"der", r"160 elements takes \S+ us", r"grows with the power \S+"],
+    "effect_audit": [r"gravity: \w+ ", r"without it the tips move by \S+ % of the length"],
+    "head_accuracy": [r"take [^,]+, \d+ elements", r"95 % of hairs within \S+ % of their length"],
+}
 GRADIENT = '\n[gradient]\nby = ["youngs_modulus_pa", "radius_m", "density_kg_m3"]\n'
 ANSWERED = {0, 3}  # done; some rows failed, which is an answer
 
@@ -39,6 +54,15 @@ ANSWERED = {0, 3}  # done; some rows failed, which is an answer
 def processor_s():
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
+
+
+def answer(question, output):
+    """Returns the first line of the output that has all parts of the answer, with "..." for the rest."""
+    for line in output.split("\n"):
+        parts = re.search(".*?".join(f"({part})" for part in ANSWERS[question]), line)
+        if parts:
+            return " ... ".join(part.strip(" :") for part in parts.groups())
+    sys.exit(f"question_times: the output of {question} has no answer:\n{output}")
 
 
 def measured(question, options, programs, folder):
@@ -49,7 +73,7 @@ def measured(question, options, programs, folder):
     if done.returncode not in ANSWERED:
         sys.exit(f"question_times: {program} ended with {done.returncode}: {done.stderr.strip()}")
     return {"question": question, "options": " ".join(option.replace(f"{ROOT}/", "") for option in options),
-            "processor_s": round(processor_s() - used, 2), "wall_s": round(time.monotonic() - begin, 2)}
+            "processor_s": round(processor_s() - used, 2), "wall_s": round(time.monotonic() - begin, 2), "answer": answer(question, done.stdout + done.stderr)}
 
 
 def main():

@@ -25,7 +25,7 @@ class Made(unittest.TestCase):
         (self.root / path).parent.mkdir(parents=True, exist_ok=True)
         (self.root / path).write_text(text)
 
-    def say(self, query, **tables):
+    def say(self, query, *words, **tables):
         """What `study.query` says of these tables: lists of rows, whose other columns are empty."""
         for name, rows in tables.items():
             with (ROOT / f"results/{name}.csv").open(newline="") as shipped:
@@ -38,5 +38,5 @@ class Made(unittest.TestCase):
                 lines.writeheader()
                 lines.writerows(rows)
         study, name = query.split(".")
-        answer = getattr(Study(study, Tables(self.root)), name)()
+        answer = getattr(Study(study, Tables(self.root)), name)(*words)
         return answer if isinstance(answer, str) else markdown(answer)

@@ -331,7 +331,7 @@ test('WorkPrecision_TellsFamiliesAndKindsOfErrorApart', () => {
 });
 
 test('Choices_AreComparedByTheirMedian', () => {
-  assert.match(page_text(), /Effect of a choice .* median over scenes and targets/);
+  assert.match(page_text(), /Effect of a choice, .* median over scenes and targets/);
 });
 
 // Ticks of a figure as text.

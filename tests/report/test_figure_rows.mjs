@@ -46,9 +46,9 @@ test('ControlFindings_CountTheRunsWithinTheBoundsAndNameTheWorst', () => {
     by_tolerance('esdirk43', 1e-3, null, { status: 'solver_error' }),
   ];
   assert.deepEqual(control_findings({ work_precision }), [
-    'tr_bdf2: error over tolerance 0.04 to 2, between 0.05 and 1 in 1 of 3 runs; above the ' +
-      'tolerance in 1, most on super helix (swing, 1e-4: 2).',
-    'esdirk43: error over tolerance 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
+    '`tr_bdf2`: error over tolerance 0.04 to 2, between 0.05 and 1 in 1 of 3 runs. It is above the ' +
+      'tolerance in 1 run, with the largest value on `super_helix` (swing, 1e-4: 2).',
+    '`esdirk43`: error over tolerance 0.1 to 0.1, between 0.05 and 1 in 1 of 1 runs.',
   ]);
   assert.deepEqual(control_findings({}), []);
 });
@@ -257,7 +257,7 @@ test('Cheapest_NamesItsField', () => {
   const row = { scene: 'beam', error_kind: 'time', status: 'ok', wall_s_per_sim_s: 1, error_rel: 1e-3 };
   const say = (...integrators) =>
     work_findings({ work_precision: integrators.map((integrator) => ({ ...row, integrator })) })[0];
-  assert.match(say('rk4'), /\(the only integrator run\): error 0.01 with rk4/);
+  assert.match(say('rk4'), /\(the only integrator run\): error 0.01 with `rk4`/);
   assert.match(say('rk4', 'bdf2'), /\(of 2 integrators\)/);
 });
 

@@ -36,6 +36,13 @@ class Values(unittest.TestCase):
     def test_a_table_is_markdown(self):
         self.assertEqual(markdown(table(["a", ""], [["x|y", 3.0], [None, "z"]])), "| a |  |\n|---|---|\n| x\\|y | 3 |\n|  | z |")
 
+    def test_ids_in_tables_are_code(self):
+        self.assertEqual(words.coded("super_helix over der, family.csv and t_s.csv"),
+                         "`super_helix` over `der`, family.csv and `t_s.csv`")
+        for text in ("van der Heijden & Thompson 2000", "`a_b` and [c](d_e.md)", "models/a_b.cpp", '{"a_b": 1}'):
+            self.assertEqual(words.coded(text), text)
+        self.assertEqual(markdown(table(["rk4"], [["a_b, der"]])), "| `rk4` |\n|---|\n| `a_b`, `der` |")
+
     def test_a_sentence_whose_condition_failed_is_not_printed(self):
         self.assertEqual(must(True, "A wins"), "A wins")
         with self.assertRaisesRegex(InputError, '"A wins everywhere"'):
@@ -155,7 +162,7 @@ class Queries(Made):
             self.say("newest.total_table", validation=[], block_descent=[
                 {**swing, "integrator": "vbd", "model": "mass_spring", "dt_s": 1e-3, "sweeps": 4, "error_rel": 0.04,
                  "wall_s_per_sim_s": 0.5}]),
-            r"\| vbd \| 500 ms \| 500 ms \| never \| 4 % in 500 ms")
+            r"\| `vbd` \| 500 ms \| 500 ms \| never \| 4 % in 500 ms")
         self.assertIn("is missing", self.say("newest.other_simulators_table"))
         other_simulators = [
             {"simulator": "MuJoCo", "method": "ball", "status": "ok", "dt_s": 1e-3, "wall_s": 0.2, "total_error_rel": 0.009},
@@ -198,9 +205,9 @@ class Queries(Made):
             grazing("cone", model="corde"),
             grazing("cone_exact", model="corde", outcome="refused", why="motion = 'free' is unknown: use one of: fixed")]),
             "1 of 1")
-        self.assertRegex(self.say("hard.rising_table"), r"`grazing_contact` \| rk4 \| 1 ms \| \*\*survives\*\* \| der \|\n"
-                         r".*\| not available with bdf2, but with tr_bdf2, esdirk43, rk4 \| der \|\n"
-                         r".*\| refused: motion = 'free' is unknown \| corde \|")
+        self.assertRegex(self.say("hard.rising_table"), r"`grazing_contact` \| `rk4` \| 1 ms \| \*\*survives\*\* \| `der` \|\n"
+                         r".*\| not available with `bdf2`, but with `tr_bdf2`, `esdirk43`, `rk4` \| `der` \|\n"
+                         r".*\| refused: motion = 'free' is unknown \| `corde` \|")
         compared = [run(1e-2, "stable"), run(1e-2, "stable and accurate", case="a"), run(1e-2, "stable", case="b", error_rel="")]
         self.assertRegex(self.say("newest.survived_table", hard_cases=compared, validation=[{"model": "der"}]),
                          r"\| `rk4` \| 10 ms \| 3 \| 2 \| 1 \| 50 % \|")
@@ -231,7 +238,7 @@ class Queries(Made):
             {**runner_up, "scene": "b", "tied": "false", "cost_factor": 2}]), "`esdirk43` on 1 of 2 scenes (and tied on 1)")
         self.assertEqual(self.say("cost.winning_models"), "`der` on 2 of 2 scenes",
                          "a tie between methods of one model is its win")
-        self.assertRegex(self.say("cost.nominal"), r"1 of 2 winners exceed 1 %; the largest of their errors is 1\.3 %")
+        self.assertRegex(self.say("cost.nominal"), r"1 of 2 winners exceed 1 %. The largest of their errors is 1\.3 %")
         self.assertRegex(self.say("cost.step_rule"), "2 of these 2 winners adapt")
         self.assertRegex(self.say("cost.winners_table"), r"adaptive \(tolerance 1, mean step 2 ms\) \| 0\.9 %, 0\.95 %")
 
@@ -250,7 +257,7 @@ class Queries(Made):
         self.assertRegex(self.say("validation.matrix", validation=[cell]), r"\| 1e-4 \| 2e-14 \|")
         self.assertRegex(self.say("validation.matrix", validation=[cell, {**cell, "status": "refused", "error_rel": ""}]),
                          r"2e-14 \(in part\)")
-        self.assertRegex(self.say("validation.scores_table"), r"\| der \| 1 \| 1 \| impact \|")
+        self.assertRegex(self.say("validation.scores_table"), r"\| `der` \| 1 \| 1 \| impact \|")
         self.assertRegex(self.say("friction.fits_table", calibrate=[
             {"data": "a_b", "signal": "s", "fit": "gamma", "integrator": "bdf2", "status": "ok",
              "internal_friction_kg_m3_s": 1e-10, "internal_friction_low_kg_m3_s": 9e-11,
@@ -301,11 +308,23 @@ class Queries(Made):
                "threshold": 887, "share_below": 0.88, "share_above": 0.094}
         rods = {**row, "family": "rods", "hairs": 15, "holds_share": 0.4}
         said = self.say("family.model_steps", family_summary=[row, rods])
-        self.assertIn("for 88 % of 48 hairs (ratio of the largest steps: median 1, deciles 0.5 and 4; 2 inconclusive)", said)
+        self.assertIn("for 88 % of 48 hairs (2 inconclusive). The ratio of the largest steps has a median of 1 and deciles of 0.5 and 4", said)
         self.assertIn("is true for 88 % of the hairs below 887 and for 9.4 % above. The statement is true for 40 % of 15 rods", said)
         by_drive = self.say("family.model_steps", family_summary=[{**row, "decided_by": "drive is gust_of_wind"}, rods])
         self.assertIn("the drive: the statement is true for 9.4 % of the hairs with gust of wind and for 88 % of the others",
                       by_drive)
+
+    def test_claims_about_hairs_are_counted_by_curl(self):
+        def hair(kind, curvature, holds, status="ok"):
+            return {"family": "hair", "claim": "super_helix_step_longer", "kind": kind, "natural_curvature_per_m": curvature,
+                    "holds": holds, "status": status}
+
+        hairs = [hair("wavy", 60, "false"), hair("straight", 10, "true"), hair("straight", 20, "false"),
+                 hair("wavy", 50, "", "unresolved")]
+        statement = {"family": "hair", "range": "all", "study": "stable_steps", "claim": "super_helix_step_longer"}
+        self.assertEqual(self.say("family.by_curl", "super_helix_step_longer", family=hairs), "50 % (straight), 0 % (wavy)")
+        self.assertRegex(self.say("family.curls", family=hairs, family_summary=[statement]),
+                         r"straight: 10 to 20 1/m \| wavy: 50 to 60 1/m \|\n.*\n.*\| 50 % of 2 \| 0 % of 1; 1 inconclusive \|")
 
     def test_counts_of_a_study_are_those_that_its_program_stored(self):
         counts = {"hairs": 40, "hairs_at_rest": 29, "hairs_half": 31, "elements": 18, "elements_remeshed": 2,
@@ -319,7 +338,7 @@ class Queries(Made):
                 {"part": "pilot", "status": "ok", "tolerance_rel": 0.005, "elements": 4, "work_rel": 3}]
         self.assertIn("in 3 of 28 cases, limits included. Numbers of elements that follow the motion gain it in 3 of 18 measured "
                       "cases by the rms error over a run, and in 1 where", self.say("adaptive_mesh.verdict", adaptive_mesh=rows))
-        self.assertIn("29 of 40 hairs keep a tolerance of 0.5 % of their length. Meshed for a tolerance of 0.25 %, 31 of 40",
+        self.assertIn("29 of 40 hairs keep a tolerance of 0.5 % of their length. Meshed for a tolerance of 0.25 %, 31 of 40 keep 0.5 %",
                       self.say("adaptive_mesh.in_motion", adaptive_mesh=rows))
         self.assertIn("Of 40 hairs, 39 keep 0.5 % of their length by the same measure, and 38 at every",
                       self.say("adaptive_mesh.pilot", adaptive_mesh=rows))
@@ -334,8 +353,8 @@ class Queries(Made):
                 row("mass_spring", gradient_error_rel=9, linearizations_1_percent="")]
         others = "the 2 models other than `mass_spring` and `inextensible_strand`"
         self.assertEqual(self.say("cost_of_gradient.smooth_models", cost_of_gradient=rows), others)
-        self.assertIn("the fewest on each of these 2 models", self.say("cost_of_gradient.advice_1_percent", cost_of_gradient=rows))
-        self.assertIn(f"On {others} it is 20 to 20 times", self.say("cost_of_gradient.over_tip", cost_of_gradient=rows))
+        self.assertIn("On each of these 2 models, no other method needs fewer", self.say("cost_of_gradient.advice_1_percent", cost_of_gradient=rows))
+        self.assertIn(f"On {others}, the relative error of the gradient is 20 to 20 times", self.say("cost_of_gradient.over_tip", cost_of_gradient=rows))
 
     def test_percentiles_are_interpolated_between_hairs(self):
         hairs = [{"family": "hair", "claim": "exact_step_100ms", "hair": k, "gravito_bending": 10 * k} for k in (4, 1, 3, 2)]
@@ -353,12 +372,12 @@ class Queries(Made):
         self.assertEqual(self.say("machine.one_run"), "The 2 tables of `./tress run` come from commit aaaaaaa")
         self.assertEqual(machine.run_minutes(Tables(self.root)), 2)
         self.assertEqual(machine.provenance(Tables(self.root), ["a", "b", "c"]),
-                         "Tables behind this page, from `a`, `b` at commit aaaaaaa.")
+                         "Tables of this page by commit: aaaaaaa: `a`, `b`.")
         manifest("b", "bbbbbbbbbb", 2.8)
         self.assertIn("come from 2 commits, not from one run (1 from aaaaaaa, 1 from bbbbbbb)", self.say("machine.one_run"))
         self.assertRegex(self.say("machine.made_table"), r"`b` \| bbbbbbb .* 2\.80, 1\.00 \| 1 \| uncertain \|")
         self.assertRegex(machine.provenance(Tables(self.root), ["a", "b"]),
-                         r"from 2 commits, not one run: .*`b` \(times uncertain: other programs were running\) at commit bbbbbbb")
+                         r"aaaaaaa: `a`; bbbbbbb: `b`\. Times of `b` are uncertain: other programs ran\.$")
 
 
 if __name__ == "__main__":

@@ -110,7 +110,7 @@ function cost_finding(rows) {
   const [nodes, whole] = [of(1), of(0)];
   if (!is_positive(nodes?.wall_s_per_sim_s) || !is_positive(whole?.wall_s_per_sim_s)) return [];
   const time = (row) => format_time((row.wall_s_per_sim_s * row.dt_s) / row.sweeps);
-  return [`A sweep of vbd takes ${time(nodes)} node by node, ${time(whole)} over the whole strand.`];
+  return [`A sweep of \`vbd\` takes ${time(nodes)} node by node, ${time(whole)} over the whole strand.`];
 }
 
 export function descent_findings(tables) {
@@ -121,12 +121,12 @@ export function descent_findings(tables) {
     .map((row) => `${row.way} ${format_number(row.direct_distance_rel)}`)
     .join('; ');
   return [
-    `Distance of the tip from the direct step's at ${sweeps} sweeps of ` +
-      `${format_time(rows[0].dt_s)}, over the length: ${listed}.`,
+    `Distance of the tip from that of the direct step over the length, after ${sweeps} sweeps per step of ` +
+      `${format_time(rows[0].dt_s)}: ${listed}.`,
     ...cost_finding(rows),
     ...penalty_windows(tables).map(({ dt_s, tried, good }) =>
       good.length === 0
-        ? `Steps of ${format_time(dt_s)}: no penalty of ${tried} comes within 1 %.`
+        ? `Steps of ${format_time(dt_s)}: none of the ${tried} tried penalties comes within 1 %.`
         : `Steps of ${format_time(dt_s)}: penalties within 1 % of the direct step from ` +
           `${power(Math.min(...good))} to ${power(Math.max(...good))} 1/s².`,
     ),

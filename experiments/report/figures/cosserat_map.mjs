@@ -40,9 +40,9 @@ export function map_findings(tables) {
     ...[...group_by(all.filter(measured), (row) => row.rod)].map(([rod, rows]) => {
       const best = rows.reduce((a, b) => (b.error_rel < a.error_rel ? b : a));
       return (
-        `${rod}: least error ${format_number(100 * best.error_rel)} %, at ` +
-        `${best.rate} steps per second and ${best.sweeps} sweeps; the same step solved ` +
-        `whole ${format_number(100 * best.direct_error_rel)} %.`
+        `${rod}: smallest error ${format_number(100 * best.error_rel)} %, with ` +
+        `${best.rate} steps per second and ${best.sweeps} sweeps. A direct solution of the same step has an ` +
+        `error of ${format_number(100 * best.direct_error_rel)} %.`
       );
     }),
   ];

@@ -1,7 +1,7 @@
 // The cost of every strand model at the same error, and its change of angular momentum.
 import { distinct, group_by, is_positive, succeeded } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
-import { spaced, variant_name } from '../src/strand.mjs';
+import { code, spaced, variant_name } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
@@ -46,7 +46,7 @@ export function cost_by_model_findings(tables) {
       ranked(members)
         .map(
           (row) =>
-            `${row.name} ${format_time(row.wall_s_per_sim_s)} (${spaced(row.integrator)}, ` +
+            `${code(row.model)} ${format_time(row.wall_s_per_sim_s)} (${code(row.integrator)}, ` +
             `${row.elements} elements, steps of ${format_time(row.dt_s)}, lengths off by ` +
             `${format_number(row.length_error_rel)})`,
         )

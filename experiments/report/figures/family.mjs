@@ -16,15 +16,15 @@ import { row_channel, row_text, row_width } from './rows.mjs';
 const statements = {
   exact_step_100ms: 'backward Euler, exact Jacobian: stable at 100 ms',
   exact_step_100ms_bend: 'backward Euler, exact Jacobian, no twist: stable at 100 ms',
-  super_helix_step_longer: 'super helix: largest step at least that of der',
+  super_helix_step_longer: 'super_helix: largest step at least that of der',
   twist_straight_negligible: 'straight hair: twist moves the tip by less than 1 %',
   twist_curly_matters: 'hair with its curl: twist moves the tip by 1 % or more',
-  'bdf_order2_at_1e-2': 'BDF at 1e-2: order 2 is no more expensive than order 5',
-  'bdf_order2_at_1e-3': 'BDF at 1e-3: order 2 is no more expensive than order 5',
-  'bdf_order2_at_1e-4': 'BDF at 1e-4: order 2 is no more expensive than order 5',
-  'esdirk_steps_at_1e-3': 'at 1e-3, ESDIRK takes no more steps than BDF',
-  'esdirk_work_at_1e-3': 'at 1e-3, ESDIRK is no more expensive than BDF',
-  reduced_cheaper: 'at 1 %, super helix is no slower than der',
+  'bdf_order2_at_1e-2': 'tip error 1e-2: BDF 2 needs no more work than BDF 5',
+  'bdf_order2_at_1e-3': 'tip error 1e-3: BDF 2 needs no more work than BDF 5',
+  'bdf_order2_at_1e-4': 'tip error 1e-4: BDF 2 needs no more work than BDF 5',
+  'esdirk_steps_at_1e-3': 'tip error 1e-3: ESDIRK takes no more steps than BDF',
+  'esdirk_work_at_1e-3': 'tip error 1e-3: ESDIRK needs no more work than BDF',
+  reduced_cheaper: 'at 1 %, super_helix needs less time than der',
 };
 
 const verdicts = ['true', 'not true'];
@@ -55,11 +55,11 @@ export function family_findings({ family_summary = [], family_tolerance_summary 
         `${row.family === 'hair' ? 'hairs' : 'rods of other materials'}; ` +
         `median ${format_number(row.median)}, a tenth below ${format_number(row.decile_1)}, ` +
         `a tenth above ${format_number(row.decile_9)}` +
-        `${row.no_answer > 0 ? `; ${row.no_answer} gave no answer` : ''}.`,
+        `${row.no_answer > 0 ? `; ${row.no_answer} inconclusive` : ''}.`,
     );
 }
 
-// By statement: how many hairs gave an answer, and for how many it is true.
+// By statement: how many hairs are conclusive, and for how many it is true.
 const shares_of = (rows) =>
   [...group_by(rows, (row) => row.statement)]
     .map(([statement, members]) => {
@@ -91,7 +91,7 @@ export const family = {
   headline,
   reading: `A mark is a hair, drawn from measured distributions of human hair; left is stiff or short, right is limp or long.
     On the right: the share of hairs for which the statement is true.`,
-  caption: `For every hair that gave an answer, whether a statement is true, against its gravito-bending number. The values
+  caption: `For every conclusive hair, whether a statement is true, against its gravito-bending number. The values
     behind the answers are in the table. Made from family.csv.`,
 
   rows: rows_of,

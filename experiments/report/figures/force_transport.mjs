@@ -71,27 +71,27 @@ export function transport_findings({ force_transport: rows = [] }) {
         (row) => row.t_s === shown_time,
       ),
       (members) =>
-        `Straight strand, ${shown_time} s after its release, off the rod's tip by these ` +
-        `parts of the length: ${listed(members, 'rod_difference_rel')} elements.`,
+        `Distance of the tip from that of the rod over the length, for a straight strand ${shown_time} s after ` +
+        `its release: ${listed(members, 'rod_difference_rel')} elements.`,
     ),
     ...sentence(
       of('modes', 'weightless', 'slowest_ratio'),
       (members) =>
-        'Slowest oscillation without gravity over that of the articulated chain: ' +
+        'Frequency of the slowest oscillation without gravity over that of `articulated_chain`: ' +
         `${listed(members, 'slowest_ratio')} elements.`,
     ),
     ...sentence(
       of('transient', 'weightless', 'energy_growth'),
       (members) =>
-        'Without gravity small random motions gain energy within 0.1 s, by these factors: ' +
+        'Growth of the energy of small random motions without gravity within 0.1 s, as a factor: ' +
         `${listed(members, 'energy_growth')} elements.`,
     ),
     ...[...group_by(of('modes', 'hanging', 'growth_per_s'), (row) => row.youngs_modulus_pa)]
       .sort(([a], [b]) => a - b)
       .map(
         ([modulus, members]) =>
-          `Hanging at rest, ${format_number(modulus / 1e6)} MPa: small oscillations grow, ` +
-          `at this rate (1/s): ${listed(members, 'growth_per_s')} elements.`,
+          `Growth rate of small oscillations around the hanging shape at ${format_number(modulus / 1e6)} MPa ` +
+          `(1/s): ${listed(members, 'growth_per_s')} elements.`,
       ),
   ];
 }

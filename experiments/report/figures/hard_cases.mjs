@@ -2,7 +2,7 @@
 import { distinct, group_by, is_number } from '../src/tables.mjs';
 import { format_time } from '../src/format.mjs';
 import { by_pace, by_tolerance, pace } from '../src/pace.mjs';
-import { spaced } from '../src/strand.mjs';
+import { code, spaced } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
 import { best_at_longest } from './hard_cases_summary.mjs';
 import { row_channel } from './rows.mjs';
@@ -32,15 +32,14 @@ const rows_of = (tables) => drawn(best_variants(hard_rows(tables)));
 
 // What a tolerance survives, over all models.
 const tolerance_findings = (rows, admitted) =>
-  [...group_by(rows, (row) => `${spaced(row.integrator)}, ${row.step}`)].map(
+  [...group_by(rows, (row) => `With ${code(row.integrator)} and ${row.step}`)].map(
     ([name, members]) => {
       const all = admitted(members);
       const of = (outcome) => all.filter((row) => row.outcome === outcome).length;
       return (
-        `${name}: of the ${all.length} pairs of case and model that it can run, ` +
-        `${of('stable and accurate')} are stable and accurate, ${of('stable')} stable and inaccurate, ` +
-        `${of(not_compared)} stable without a reference, ${of('unstable')} unstable and ` +
-        `${of('not finished')} not finished.`
+        `${name}, ${of('stable and accurate')} of the ${all.length} pairs of case and model are stable and accurate. ` +
+        `${of('stable')} are stable and inaccurate, ${of(not_compared)} stable without a reference, ` +
+        `${of('unstable')} unstable and ${of('not finished')} not finished.`
       );
     },
   );
@@ -52,7 +51,7 @@ export function hard_findings(tables) {
   const longest = Math.max(...fixed.map((row) => row.dt_s));
   const at = fixed.filter((row) => row.dt_s === longest);
   const admitted = (members) => members.filter((row) => row.outcome !== 'refused');
-  const scores = [...group_by(at, (row) => `${row.name}, ${spaced(row.integrator)}`)]
+  const scores = [...group_by(at, (row) => `${code(row.model)} with ${code(row.integrator)}`)]
     .map(([name, members]) => ({
       name,
       all: admitted(members).length,
@@ -64,14 +63,14 @@ export function hard_findings(tables) {
     .sort((a, b) => b.stable - a.stable || b.accurate - a.accurate || a.all - b.all);
   const said = scores.slice(0, 6).map(
     ({ name, all, stable, accurate, compared }) =>
-      `${name}, steps of ${format_time(longest)}: survives ${stable} of the ${all} cases that it can ` +
-      `run, and is accurate in ${accurate} of the ${compared} of these that have a reference.`,
+      `${name} survives ${stable} of the ${all} cases that it can run at steps of ${format_time(longest)}. ` +
+      `Of the ${compared} survivors with a reference, ${accurate} are accurate.`,
   );
-  const nobody = [...group_by(at, (row) => row.situation)]
+  const nobody = [...group_by(at, (row) => row.case)]
     .filter(([, members]) => admitted(members).length > 0 && !members.some(survives))
-    .map(([situation]) => situation);
+    .map(([name, [{ cut }]]) => code(name) + (cut > 0 ? ` (its first ${cut} steps)` : ''));
   if (nobody.length > 0)
-    said.push(`Nothing tried survives at ${format_time(longest)}: ${nobody.join(', ')}.`);
+    said.push(`No model and method survive at steps of ${format_time(longest)}: ${nobody.join(', ')}.`);
   return [...said, ...tolerance_findings(rows.filter(by_tolerance), admitted)];
 }
 

@@ -1,7 +1,7 @@
 // Figure 9: largest stable time step against the number of elements, model by model.
 import { distinct, group_by, study_rows } from '../src/tables.mjs';
 import { format_time } from '../src/format.mjs';
-import { has_limit, is_capped, is_reduced, spaced } from '../src/strand.mjs';
+import { code, has_limit, is_capped, is_reduced, spaced } from '../src/strand.mjs';
 import { is_drawn, limit_reading, limit_spec } from './stability_limit.mjs';
 
 // One linear solve a step, and Newton's iteration to its end.
@@ -44,10 +44,10 @@ export function model_step_findings(tables) {
   const at_20 = rows_of(tables).filter((row) => row.elements === 20);
   return [...group_by(at_20, (row) => `${row.scene}|${row.integrator}`).values()].map(
     (members) =>
-      `${spaced(members[0].scene)}, 20 elements, ${spaced(members[0].integrator)}: ` +
+      `${spaced(members[0].scene)}, 20 elements, ${code(members[0].integrator)}: ` +
       [...members]
         .sort((a, b) => (b.dt_max_s ?? 0) - (a.dt_max_s ?? 0))
-        .map((row) => `${spaced(row.model)} ${limit(row)}`)
+        .map((row) => `${code(row.model)} ${limit(row)}`)
         .join(', ') +
       '.',
   );

@@ -1,7 +1,7 @@
 // Error against time on the swinging strand: tress, other simulators, position-based methods.
 import { distinct, group_by, is_positive, minimum_by, succeeded, swing_rows } from '../src/tables.mjs';
 import { format_number, format_time } from '../src/format.mjs';
-import { spaced, swing_levels, swing_runs } from '../src/strand.mjs';
+import { code, spaced, swing_levels, swing_runs } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
@@ -94,7 +94,7 @@ export function newest_findings(tables) {
     return best === undefined
       ? []
       : [
-          `${name}: least total error ${format_number(100 * best.error)} %, in ` +
+          `${code(name)}: smallest total error ${format_number(100 * best.error)} %, in ` +
             `${format_time(best.wall_s)} a simulated second (${best.how}).`,
         ];
   });

@@ -1,7 +1,7 @@
 // Figure 11: the step that nodal finite differences of a rod need.
 import { distinct, is_positive, study_rows } from '../src/tables.mjs';
 import { format_time } from '../src/format.mjs';
-import { is_capped, spaced } from '../src/strand.mjs';
+import { code, is_capped, spaced } from '../src/strand.mjs';
 import {
   dimmed_unless,
   layout,
@@ -19,8 +19,8 @@ import { series_style } from './palette.mjs';
 const claimed_s = 1e-5;
 const claimed_nodes = 200;
 
-const method_of = (row) =>
-  row.integrator +
+const method_of = (row, name = row.integrator) =>
+  name +
   (row.jacobian === 'elastic' ? ', split' : '') +
   (row.start === 'plane' ? ', in a plane' : '');
 
@@ -42,12 +42,12 @@ export function nodal_step_findings(tables) {
     const outcome =
       row.at_claim === 'nothing'
         ? 'stable'
-        : `breaks (${row.at_claim}) after ${format_time(row.t_claim_s)}`;
+        : `unstable (${row.at_claim}) after ${format_time(row.t_claim_s)}`;
     const limit = is_positive(row.dt_max_s)
       ? `; largest stable step found ${format_time(row.dt_max_s)}`
       : '';
     return (
-      `${spaced(method_of(row))}, ${claimed_nodes} nodes at ${format_time(claimed_s)}: ` +
+      `${method_of(row, code(row.integrator))}, ${claimed_nodes} nodes at ${format_time(claimed_s)}: ` +
       `${outcome}${limit}.`
     );
   });

@@ -1,7 +1,7 @@
 // Every strand model against every published test: a matrix of errors.
 import { distinct, group_by, is_number, is_set, minimum_by } from '../src/tables.mjs';
 import { format_number } from '../src/format.mjs';
-import { spaced, variant_name } from '../src/strand.mjs';
+import { code, spaced, variant_name } from '../src/strand.mjs';
 import { tooltips } from './common.mjs';
 import { row_channel } from './rows.mjs';
 import { cell_fills } from './palette.mjs';
@@ -11,26 +11,32 @@ export const answered = (row) => is_number(row.error_rel);
 // One cell of the matrix: the worst error over the parameters that were judged, or why
 // there is none.
 function cell(members) {
-  const [{ test, name }] = members;
+  const [{ test, name, model, variant }] = members;
   const finest = Math.max(...members.map((row) => row.elements));
   const judged = members.filter((row) => answered(row) && is_set(row.judged));
   const told = members.filter((row) => answered(row) && row.elements === finest);
   const counted = judged.length > 0 ? judged : told;
   const missing = members.filter((row) => !['ok', 'refused'].includes(row.status));
   const reason = (missing[0] ?? members.find((row) => row.reason))?.reason ?? '';
-  const shared = { test: spaced(test), name, reason };
+  const shared = {
+    test: spaced(test),
+    name,
+    model,
+    variant: variant ? String(variant).split('=').at(-1) : '',
+    reason,
+  };
   if (counted.length === 0)
     return {
       ...shared,
-      outcome: missing.length > 0 ? 'no answer' : 'does not apply',
+      outcome: missing.length > 0 ? 'no solution' : 'does not apply',
       label: missing.length > 0 ? '–' : '',
     };
   const worst = counted.reduce((a, b) => (b.error_rel > a.error_rel ? b : a));
   const within = counted.every((row) => is_set(row.passed));
-  const lost = missing.some((row) => is_set(row.judged) || row.elements === finest);
+  const failed = missing.some((row) => is_set(row.judged) || row.elements === finest);
   return {
     ...shared,
-    outcome: within && !lost ? 'within' : judged.length > 0 ? 'outside' : 'not judged',
+    outcome: within && !failed ? 'within' : judged.length > 0 ? 'outside' : 'not judged',
     error_pct: 100 * worst.error_rel,
     tolerance_pct: 100 * worst.accepted_error_rel,
     at: `${format_number(worst.parameter)}, ${worst.elements} elements`,
@@ -38,9 +44,9 @@ function cell(members) {
       worst.error_rel < 1e-4
         ? '<.01'
         : format_number(100 * worst.error_rel, 2).replace(/^0\./, '.'),
-    lost: within && lost,
+    failed: within && failed,
     partly: members.some((row) => row.status === 'refused'),
-    reason: lost ? reason : '',
+    reason: failed ? reason : '',
   };
 }
 
@@ -58,7 +64,7 @@ const outcomes = {
   within: ['within the accepted error', cell_fills.dark],
   outside: ['outside the accepted error', cell_fills.strong],
   'not judged': ['outside, with fewer elements than it is judged at', cell_fills.light],
-  'no answer': ['\u2013: no solution, or a run that failed', cell_fills.middle],
+  'no solution': ['\u2013: no solution, or a run that failed', cell_fills.middle],
   'does not apply': ['empty: does not apply to this model', undefined],
 };
 
@@ -75,7 +81,9 @@ const scores_of = (tables) =>
 
 // Cells as they are drawn: a failed run among others within the error is no error.
 export const drawn_cells = (tables) =>
-  validation_cells(tables).map((row) => (row.lost ? { ...row, outcome: 'no answer' } : row));
+  validation_cells(tables).map((row) => (row.failed ? { ...row, outcome: 'no solution' } : row));
+
+const coded_name = ({ model, variant }) => code(model) + (variant ? `, ${variant}` : '');
 
 // "456 of 499 pairs of model and test are within the accepted error; best: ..., worst: ..."
 function headline(tables) {
@@ -98,18 +106,18 @@ function headline(tables) {
 
 export function validation_findings(tables) {
   const by_model = scores_of(tables);
-  const sentence = ({ name, told, within }) => {
+  const sentence = ({ told, within }) => {
     const wrong = told.filter((row) => row.outcome !== 'within');
     const list = wrong
       .map((row) =>
-        row.outcome === 'no answer' || row.lost
-          ? `${row.test} (${row.lost ? 'a run without an answer' : 'no answer'})`
-          : `${row.test} (${format_number(row.error_pct)} % off)`,
+        row.outcome === 'no solution' || row.failed
+          ? `${row.test} (${row.failed ? 'a run failed' : 'no solution'})`
+          : `${row.test} (${format_number(row.error_pct)} %)`,
       )
       .join(', ');
     return (
-      `${name}: ${within.length} of ${told.length} tests within the accepted error` +
-      `${wrong.length > 0 ? `; not: ${list}` : ''}.`
+      `${coded_name(told[0])} meets ${within.length} of ${told.length} tests` +
+      `${wrong.length > 0 ? `. Not met: ${list}` : ''}.`
     );
   };
   return by_model
@@ -210,7 +218,7 @@ export const validation = {
     const count = (id) => rows.filter((row) => row.outcome === id).length;
     return `Matrix of ${distinct(rows.map((row) => row.name)).length} models and
       ${distinct(rows.map((row) => row.test)).length} tests: ${count('within')} within the accepted
-      error, ${count('outside')} outside, ${count('no answer')} without an answer,
+      error, ${count('outside')} outside, ${count('no solution')} without a solution,
       ${count('does not apply')} that do not apply.`;
   },
 };

@@ -10,7 +10,7 @@ const least = 1e-4; // smaller ratios are drawn here
 const verdicts = [
   ['within', 'within the accepted error', blue, 'circle'],
   ['outside', 'outside', orange, 'triangle-up'],
-  ['no answer', 'no solution, or a run that failed', gold, 'diamond'],
+  ['no solution', 'no solution, or a run that failed', gold, 'diamond'],
 ];
 
 const judged = (tables) =>
@@ -31,7 +31,7 @@ const exceptions = (tables) =>
     test,
     text: [
       ['outside', ''],
-      ['no answer', 'no solution: '],
+      ['no solution', 'no solution: '],
     ]
       .map(([outcome, word]) => [
         word,

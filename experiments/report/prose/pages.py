@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jinja2
 import pandas as pd
-from result_numbers import machine
+from result_numbers import machine, report
 from result_numbers.tables import InputError, Tables
 from result_numbers.words import markdown, plain
 
@@ -182,6 +182,8 @@ def written_pages(root):
         problems += untraced(f"{TEMPLATES}/{name}", source)
         tables.read = set()
         filled = without_marks(fill(templates, name, tables)).rstrip()
+        for figure in re.findall(r"results/(\w+)\.svg\)", filled):
+            tables.read.update(report.figure_tables(tables, figure))
         made = machine.provenance(tables, tables.read)
         head = f"<!-- Made by ./tress report from {TEMPLATES}/{name} and results/: edit those. -->\n"
         pages[page] = (f"{head}{filled}\n" + (f"\n{made}\n" if made else ""), sorted(tables.read))

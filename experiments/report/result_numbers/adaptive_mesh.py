@@ -73,8 +73,8 @@ def in_motion(tables):
     half = rows[rows["tolerance_rel"] < asked]
     hairs = _count(tables, "hairs")
     return (f"{_count(tables, 'hairs_at_rest')} of {hairs} hairs keep a tolerance of {percent(asked)} of their length. Meshed "
-            f"for a tolerance of {percent(half.iloc[0]['tolerance_rel'])}, {_count(tables, 'hairs_half')} of {hairs} keep the "
-            f"former, and the worst is off by {percent(half['tip_error_rel'].max())}.")
+            f"for a tolerance of {percent(half.iloc[0]['tolerance_rel'])}, {_count(tables, 'hairs_half')} of {hairs} keep "
+            f"{percent(asked)}, and the largest error is {percent(half['tip_error_rel'].max())}.")
 
 
 def pilot(tables):
@@ -106,7 +106,7 @@ def points_verdict(tables):
     rows = _with_points(tables)
     share = rows["points_error_rel"] / rows["tip_error_rel"]
     touching = rows["scene"].isin(_TOUCHING)
-    return (f"Where nothing touches, more points change at most {percent(share[~touching].max())} of the error of the elements, so "
-            "points that follow the motion are not implemented. Contact acts at the points: there more of them change up to "
-            f"{percent(share[touching].max())}, because they find a small body sooner, not because an element winds. The option "
-            "`quadrature` sets them.")
+    return (f"Where nothing touches, more points change the tip by at most {percent(share[~touching].max())} of the error of the elements. "
+            "Points that follow the motion are therefore not implemented. Contact acts at the points: with contact, more points change "
+            f"the tip by up to {percent(share[touching].max())} of that error, because they find a small body sooner. The option "
+            "`quadrature` sets the number of points.")

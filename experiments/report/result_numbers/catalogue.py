@@ -13,6 +13,12 @@ def integrators(tables):
     return len(re.findall(r"^  \w", re.split(r"^[A-Z]", after, flags=re.M)[0], re.M))
 
 
+def models(tables):
+    """Returns the ids of all models."""
+    listed = re.split(r"^[A-Z]", re.split(r"^MODELS.*$", _text(tables), flags=re.M)[1], flags=re.M)[0]
+    return re.findall(r"^  (\w+)", listed, re.M)
+
+
 def strand_models(tables):
     return tables["validation"]["model"].nunique()
 

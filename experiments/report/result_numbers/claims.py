@@ -6,16 +6,16 @@ from .tables import first, records
 from .words import duration, must, number, percent
 
 
-def _outcome(tables, test, name):
+def _outcome(tables, test, model):
     cells = validation.cells(tables)
-    cell = first(cells[(cells["test"] == test) & (cells["name"] == name)])
+    cell = first(cells[(cells["test"] == test) & (cells["model"] == model)])
     return None if cell is None else cell["outcome"]
 
 
 def transport_hangs(tables):
     return must(
-        _outcome(tables, "cantilever", "force transport") == "within"
-        and _outcome(tables, "beam modes", "force transport") == "outside",
+        _outcome(tables, "cantilever", "force_transport") == "within"
+        and _outcome(tables, "beam modes", "force_transport") == "outside",
         "`force_transport` has the right equilibrium and wrong frequencies")
 
 
@@ -35,7 +35,7 @@ def stable_not_accurate(tables):
     longest = rows["dt_s"].max()
     compared = rows[(rows["dt_s"] == longest) & rows["compared"]]
     accurate = (compared["outcome"] == "stable and accurate").sum()
-    damped = ": the method damps what it cannot follow" if accurate < len(compared) / 2 else ""
+    damped = ". Numerical damping keeps inaccurate runs stable" if accurate < len(compared) / 2 else ""
     return (f"At {duration(longest)}, {accurate} of the {len(compared)} stable runs of backward Euler that have a reference are "
             f"accurate ({percent(accurate / len(compared))}){damped}")
 
@@ -94,17 +94,17 @@ def multipliers_free(tables):
     return must(
         _held(tables, "block_descent", "multipliers_free") and has_window(1 / 300) and has_window(1e-3)
         and (_penalties(tables, 1 / 60)[1] > 0.01).all(),
-        "Multipliers that carry the stress from step to step remove the locking, if the penalty is within its window. Below "
-        "it multipliers converge too slowly, above it nodes lock again. The window follows the square of the step, and "
-        "closes at the longest step tried")
+        "Multipliers that carry the stress from step to step remove the locking, if the penalty is within its window. With "
+        "a smaller penalty, multipliers converge too slowly. With a larger one, nodes lock again. The window is inversely "
+        "proportional to the square of the step, and closes at the longest step tried")
 
 
 def map_unreached(tables):
     rows = tables.rows("block_descent", {"part": "rods", "scene": "swing"})
     return must(
         len(rows) >= 40 and ((rows["status"] == "ok") & (rows["error_rel"] > 0.01)).all(),
-        "On the hair no point of the map reaches the target error. With its real stiffness the hair locks at every tested "
-        "number of sweeps; softened until sweeps converge it is another rod. All tested points are stable")
+        "On the hair, no point of the map reaches the target error. With its real stiffness, the hair locks at every tested "
+        "number of sweeps. A hair that is softened until sweeps converge is another rod. All tested points are stable")
 
 
 def transport_wrong(tables):
@@ -120,8 +120,8 @@ def midpoint_keeps(tables):
     worst = rows.groupby("model")["angular_error_rel"].max()
     return must(
         worst["mass_spring"] < 1e-9 and worst["der"] < 1e-5 and worst["super_helix"] > 1e-9,
-        "The midpoint rule keeps the angular momentum of particles to rounding, because it is bilinear in q and v; in the "
-        "curvatures of a super-helix it keeps it to second order. Models whose sections turn by an angle of their own "
+        "The midpoint rule keeps the angular momentum of particles to rounding, because it is bilinear in q and v. For the "
+        "curvatures of a super-helix, it keeps angular momentum to second order. Models whose sections turn by an angle of their own "
         "(`der`, `dynamic_spline`) drift by the spin that their kinetic energy leaves out, whatever the step")
 
 
@@ -144,10 +144,9 @@ def springs_and_correction(tables):
     must(
         springs["length_error_rel"] > 0.01 and alone["status"] != "ok" and both["length_error_rel"] < 1e-6,
         "springs and a correction together hold lengths where neither does alone")
-    return (f"At {duration(longest)}, springs inside an implicit solve with a correction of lengths after it "
-            "(`inextensible_strand` with stretch springs, `predictor_corrector`) hold lengths to "
-            f"{number(both['length_error_rel'])}; springs alone stretch by {percent(springs['length_error_rel'])}, and "
-            "the correction alone finds no solution")
+    return ("`inextensible_strand` with stretch springs and `predictor_corrector` solves implicitly with springs, then corrects the "
+            f"lengths. At {duration(longest)}, this pair keeps lengths to {number(both['length_error_rel'])}. Springs alone stretch by "
+            f"{percent(springs['length_error_rel'])}, and the correction alone finds no solution")
 
 
 def springs_ring(tables):
@@ -155,6 +154,5 @@ def springs_ring(tables):
     errors = {row["integrator"]: row["length_error_rel"] for row in reversed(records(rows))}
     midpoint, damped = errors["implicit_midpoint"], errors["generalized_alpha"]
     must(midpoint > 10 * damped, "stretch springs ring on under the midpoint rule")
-    return ("With the midpoint rule stretch springs oscillate undamped, which the tip does not show: lengths of the falling "
-            f"`mass_spring` are off by {number(midpoint)}. With `generalized_alpha`, which damps, they are off by "
-            f"{number(damped)}")
+    return ("With the midpoint rule, stretch springs oscillate undamped, which the tip does not show. The lengths of the falling "
+            f"`mass_spring` have a relative error of {number(midpoint)}. With `generalized_alpha`, which damps, it is {number(damped)}")

@@ -72,6 +72,7 @@ _BY_HAND = {
         "options": "options of the program",
         "processor_s": "processor time of one run",
         "wall_s": "wall time of one run",
+        "answer": "part of a line that the program printed",
     },
     "player": {
         "draw": "renderer: the canvas alone, or WebGL computed by a processor",

@@ -5,12 +5,13 @@ from .tables import first, groups, known, positive, records
 from .words import duration, is_number, is_set, must, number, percent, span, spaced, step, table
 
 _TARGET = 0.01
+_NAMED = 3  # winners in a sentence
 _LOOSEST = 0.1  # tolerance that the search tries
 
 
 def _way(row):
     options = ", ".join(filter(None, [row["modes"], row["jacobian"]]))
-    return f"{row['model']}{f' ({options})' if options else ''}, {row['integrator']}"
+    return f"`{row['model']}`{f' ({options})' if options else ''}, `{row['integrator']}`"
 
 
 def _elements(row):
@@ -134,8 +135,9 @@ def _tally(tables, column):
         counts.append((name, len(members), sum(other is not None and other[column] != name for other in others)))
     counts.sort(key=lambda count: count[2] - count[1])
     words = [f"`{name}` on {count - ties}" + (f" of {len(rows)} scenes" if k == 0 else "") + (f" (and tied on {ties})" if ties > 0 else "")
-             for k, (name, count, ties) in enumerate(counts)]
-    return ", ".join(words)
+             for k, (name, count, ties) in enumerate(counts[:_NAMED])]
+    others = sum(count for _, count, _ in counts[_NAMED:])
+    return ", ".join([*words, *([f"others on {others}"] if others > 0 else [])])
 
 
 def winning_integrators(tables):
@@ -158,8 +160,8 @@ def nominal(tables):
     """Returns how many winners at 1 % miss the target when their data change."""
     rows = winners(tables, _TARGET)
     errors = rows["error_neighbours_rel"][known(rows["error_neighbours_rel"])]
-    return ("These errors are nominal. With elements added, other steps, or length and modulus changed by 2 %, "
-            f"{(errors > _TARGET).sum()} of {len(errors)} winners exceed 1 %; the largest of their errors is {percent(errors.max())}")
+    return ("These errors are nominal. With more elements, other steps, or length and modulus changed by 2 %, "
+            f"{(errors > _TARGET).sum()} of {len(errors)} winners exceed 1 %. The largest of their errors is {percent(errors.max())}")
 
 
 def step_rule(tables):
@@ -180,21 +182,21 @@ _CHOICES = {
     "dt_s": "time step",
     "position_tol_rel": "step control",
     "extrapolated": "extrapolation",
-    "mesh": "cuts of elements",
+    "mesh": "mesh",
     "refresh": "refresh of the matrix",
     "radau5": "`radau5`",
     "rodas5p": "`rodas5p`",
 }
 
 
-def choices(tables):
+def choices_table(tables):
     """Returns the cost of replacing each choice by the next best: the median over scenes and errors, and the
     number of replacements."""
     rows = tables.rows("cost_of_accuracy", {"kind": "without"})
     factors = groups(rows[positive(rows["cost_factor"])], "choice")["cost_factor"]
     found = factors.agg(["median", "size"]).sort_values("median", ascending=False, kind="stable")
-    return ", ".join(f"{_CHOICES.get(choice, spaced(choice))} {number(factor)} ({count:.0f})"
-                     for choice, factor, count in found.itertuples())
+    return table(["choice", "time over the winner's", "replacements"],
+                 [[_CHOICES.get(choice, spaced(choice)), number(factor), f"{count:.0f}"] for choice, factor, count in found.itertuples()])
 
 
 _FEWEST = 10

@@ -56,8 +56,9 @@ def _advice(tables, column):
     over = work.div(tried.min(axis=1), axis=0).max()
     best = over.idxmin()
     population = f"of these {len(tried)} models"
-    compared = f"the fewest on each {population}" if over[best] == 1 else f"at most {number(over[best], 3)} times the fewest on any {population}"
-    return f"take `{best}`: it needs {span(work[best], lambda x: number(x, 3))} linearizations of the run and its derivatives, {compared}"
+    compared = (f"On each {population}, no other method needs fewer" if over[best] == 1 else
+                f"On each {population}, that is at most {number(over[best], 3)} times the number of the best method")
+    return f"take `{best}`. It needs {span(work[best], lambda x: number(x, 3))} linearizations of the run and its derivatives. {compared}"
 
 
 def tight_target(tables):
@@ -81,8 +82,8 @@ def backward_euler(tables):
     rows = _smooth(tables)
     rows = _finest(rows[rows["integrator"] == "backward_euler"])
     tip = rows["tip_error_rel"]
-    return (f"with {rows['steps'].iloc[0]} steps its gradient is {span(rows['gradient_error_rel'], percent)} wrong on these "
-            f"{rows['model'].nunique()} models, where its tip is {span(tip, percent)} of the length off")
+    return (f"with {rows['steps'].iloc[0]} steps, the error of its gradient is {span(rows['gradient_error_rel'], percent)} on these "
+            f"{rows['model'].nunique()} models. The error of its tip is {span(tip, percent)} of the length")
 
 
 def _space(tables):
@@ -107,9 +108,9 @@ def space_first(tables):
     time = _smooth(tables)
     time = time[(time["integrator"] == "tr_bdf2") & (time["steps"] == _OTHER_STEPS) & time["model"].isin(rows["model"])]
     must(time["gradient_error_rel"].max() < rows["gradient_error_rel"].min(), "space limits the gradient")
-    return (f"with {_COARSE} elements the error in space is {span(rows['gradient_error_rel'], percent)} for the {len(rows)} models that "
-            f"converge to the rod, `super_clothoid` apart, which needs fewer elements. Their error in time with `tr_bdf2` and "
-            f"{_OTHER_STEPS} steps is {span(time['gradient_error_rel'], percent)}")
+    return (f"with {_COARSE} elements, the error in space is {span(rows['gradient_error_rel'], percent)} for {len(rows)} models that "
+            f"converge to the rod. `super_clothoid` is left out, because it needs fewer elements. The error in time of these models, "
+            f"with `tr_bdf2` and {_OTHER_STEPS} steps, is {span(time['gradient_error_rel'], percent)}")
 
 
 def reference_gap(tables):
@@ -120,16 +121,15 @@ def kinked(tables):
     rows = _measured(tables, _DEFAULT)
     rows = _finest(rows[rows["model"].isin(_KINKED)])
     must(rows["linearizations_1_percent"].isna().all(), "kinked models do not reach 1 %")
-    return (f"{_kinked_names()} reach neither: their best gradient with "
-            f"{rows['steps'].iloc[0]} steps is {percent(rows['gradient_error_rel'].min())} wrong. Every statement about errors in time "
-            "leaves them out, unless it names them.")
+    return (f"{_kinked_names()} reach neither target: with {rows['steps'].iloc[0]} steps, the smallest error of their gradients is "
+            f"{percent(rows['gradient_error_rel'].min())}. Every statement about errors in time leaves them out, unless it names them.")
 
 
 def over_tip(tables):
     rows = _smooth(tables)
     ratio = rows["gradient_error_rel"] / rows["tip_error_rel"]
-    return (f"On {smooth_models(tables)} it is {number(ratio.min())} to {number(ratio.max())} times as wrong as the tip over the "
-            f"length; the median over their methods and steps is {number(ratio.median())}.")
+    return (f"On {smooth_models(tables)}, the relative error of the gradient is {number(ratio.min())} to {number(ratio.max())} times "
+            f"the error of the tip over the length. The median over their methods and steps is {number(ratio.median())}.")
 
 
 def by_steps(tables):
@@ -176,7 +176,7 @@ def starts(tables):
         with_start = damped[damped["integrator"] == method]["gradient_error_rel"]
         worst = members.loc[members["gradient_error_rel"].idxmax()]
         lines.append([f"`{method}`", percent(with_start.max()), percent(worst["gradient_error_rel"]), f"`{worst['model']}`"])
-    return table(["method", "with the damped start, worst of these models", "without it, worst of these models", "that model"], lines)
+    return table(["method", "with the damped start, worst of these models", "without it, worst of these models", "worst model without it"], lines)
 
 
 def elastic(tables):
@@ -185,8 +185,9 @@ def elastic(tables):
     ratio = {key: row / exact[key] for key, row in rows.set_index(["model", "integrator", "steps"])["gradient_error_rel"].items()}
     worst = max(ratio, key=ratio.get)
     models = list(dict.fromkeys(key[0] for key in ratio))
-    return (f"the error with {_OTHER_STEPS} steps is {number(min(ratio.values()))} to {number(max(ratio.values()))} times that with the exact one; "
-            f"the worst of {', '.join(f'`{model}`' for model in models)} is `{worst[0]}` with `{worst[1]}`")
+    return (f"the error with {_OTHER_STEPS} steps is {number(min(ratio.values()))} to {number(max(ratio.values()))} times that with the "
+            f"exact one. The largest ratio is that of `{worst[0]}` with `{worst[1]}`. The compared models are "
+            f"{', '.join(f'`{model}`' for model in models)}")
 
 
 def _contact(tables):
@@ -212,14 +213,14 @@ def _exact(rows):
     exact = euler[euler.index.str.startswith("exact")]
     if exact.empty:
         return ""
-    return (f" With `backward_euler`, the gradient through exact contact is {span(exact, percent)} wrong, those through regularised contact "
-            f"{span(euler[euler.index.str.startswith('regularised')], percent)}.")
+    return (f" With `backward_euler`, the error of the gradient is {span(exact, percent)} through exact contact and "
+            f"{span(euler[euler.index.str.startswith('regularised')], percent)} through regularised contact.")
 
 
 def contact_verdict(tables):
     rows = _finest(_contact(tables))
     fine = rows[(rows["integrator"] != "backward_euler") & rows["law"].str.startswith("regularised")]
     ratio = fine["gradient_error_rel"] / fine["tip_error_rel"]
-    return (f"A regularised gradient is exact for its run, but the contacts open and close at other steps than in a finer run: with "
-            f"{rows['steps'].iloc[0]} steps and methods of higher order it is {span(ratio, lambda x: number(x, 2))} times as wrong as the tip. "
-            f"The error depends irregularly on the step: compare runs with different steps.{_exact(rows)}")
+    return (f"The gradient through regularised contact is exact for its run. But in a finer run, contacts open and close at other steps. "
+            f"With {rows['steps'].iloc[0]} steps and methods of higher order, its relative error is {span(ratio, lambda x: number(x, 2))} times "
+            f"that of the tip. The error depends irregularly on the step: compare runs with different steps.{_exact(rows)}")

@@ -1,11 +1,11 @@
 """Cost of one per cent with every strand model."""
 from .tables import groups, least, positive
-from .words import duration, number, spaced, table
+from .words import duration, number, table
 
 
 def variant_name(model, options):
-    """Returns the model with its option: "der, inextensible"."""
-    return spaced(model) + (f", {options.split('=')[-1]}" if options else "")
+    """Returns the model with its option: "`der`, inextensible"."""
+    return f"`{model}`" + (f", {options.split('=')[-1]}" if options else "")
 
 
 def _scene_table(tables, scene):

@@ -1,27 +1,23 @@
 """Statements about one hair, tested on a family of hairs."""
 
+from .family_words import PARAMETERS, STATEMENTS
 from .tables import first, groups, records
-from .words import is_number, number, percent, plain, spaced, table
+from .words import coded, is_number, number, percent, plain, spaced, span, table
 
-_PARAMETERS = {
-    "gravito_bending": "the gravito-bending number ρ A g L³/(E I)",
-    "winding_rad": "the winding of the natural shape (rad)",
-    "damping_time_s": "the damping time (s)",
-    "drag_kg_m_s": "the drag of air (kg/(m s))",
-    "ellipticity": "the ellipticity of the section",
-    "length_m": "the length (m)",
-    "radius_m": "the radius (m)",
-    "youngs_modulus_pa": "Young's modulus (Pa)",
-    "drive_level": "the strength of the drive",
-    "frequency_hz": "the frequency of the drive (Hz)",
-    "natural_curvature_per_m": "natural curvature (1/m)",
-}
 _RANGES = ["below 10", "10 to 100", "100 to 1000", "above 1000"]
 _MEMBERS = {"hair": "hairs", "rods": "rods"}
 
 
 def _named(parameter):
-    return _PARAMETERS.get(parameter, spaced(parameter))
+    return PARAMETERS.get(parameter, (spaced(parameter), ""))[0]
+
+
+def _threshold(row):
+    return f"{number(row['threshold'])} {PARAMETERS.get(row['decided_by'], ('', ''))[1]}".rstrip()
+
+
+def _statement(row):
+    return STATEMENTS.get(row["claim"], row["statement"])
 
 
 def claim(tables, name, family="hair", range_="all"):
@@ -47,9 +43,12 @@ def _change(x):
     return "less than 0.001 %" if x < 1e-5 else percent(x)
 
 
+def _silent(row):
+    return f" ({row['no_answer']} inconclusive)" if row["no_answer"] > 0 else ""
+
+
 def _spread(row, text=number):
-    silent = f"; {row['no_answer']} inconclusive" if row["no_answer"] > 0 else ""
-    return f"median {text(row['median'])}, deciles {text(row['decile_1'])} and {text(row['decile_9'])}{silent}"
+    return f"a median of {text(row['median'])} and deciles of {text(row['decile_1'])} and {text(row['decile_9'])}"
 
 
 def _deciles(row):
@@ -66,7 +65,7 @@ def _rule(row):
         return f"the drive: the statement is true for {high} of the {of} with {drive} and for {low} of the others"
     sides = [(low, "below"), (high, "above")]
     (more, here), (less, there) = reversed(sides) if row["share_above"] > row["share_below"] else sides
-    return (f"{_named(row['decided_by'])}: the statement is true for {more} of the {of} {here} {number(row['threshold'])} "
+    return (f"{_named(row['decided_by'])}: the statement is true for {more} of the {of} {here} {_threshold(row)} "
             f"and for {less} {there}")
 
 
@@ -86,23 +85,50 @@ def summary(tables, family="hair"):
     """Returns one row per claim."""
     return table(
         ["statement", "true for", "decile, median, decile", "value", "strongest rank correlation"],
-        [[row["statement"], f"{_held(row)}{f'; inconclusive: ' + row['reasons'] if row['no_answer'] > 0 else ''}",
-          _deciles(row) if row["hairs"] > 0 else "", row["value"],
+        [[_statement(row), f"{_held(row)}{f'; inconclusive: ' + coded(row['reasons']) if row['no_answer'] > 0 else ''}",
+          _deciles(row) if row["hairs"] > 0 else "", coded(row["value"]),
           f"{_named(row['correlated_with'])} ({number(row['rank_correlation'])})" if is_number(row["rank_correlation"]) else ""]
          for row in _statements(tables, family)])
+
+
+def _cell(held, all_of, silent):
+    if all_of == 0:
+        return f"{silent} inconclusive" if silent > 0 else ""
+    return f"{percent(held / all_of)} of {all_of}{f'; {silent} inconclusive' if silent > 0 else ''}"
 
 
 def ranges(tables, family="hair"):
     """Returns one row per claim, one column per range of the gravito-bending number."""
     def cell(row):
-        if row["hairs"] == 0:
-            return f"{row['no_answer']} inconclusive" if row["no_answer"] > 0 else ""
-        missing = f"; {row['no_answer']} inconclusive" if row["no_answer"] > 0 else ""
-        return f"{_share(row)} of {row['hairs']}{missing}"
+        return _cell(row["holds_share"] * row["hairs"], row["hairs"], row["no_answer"])
 
     return table(["statement", *_RANGES],
-                 [[row["statement"], *(cell(claim(tables, row["claim"], family, of)) for of in _RANGES)]
+                 [[_statement(row), *(cell(claim(tables, row["claim"], family, of)) for of in _RANGES)]
                   for row in _statements(tables, family)])
+
+
+def curls(tables):
+    """Returns one row per claim about hair, one column per group of natural curvature."""
+    rows = tables.rows("family", {"family": "hair"})
+    kinds = rows.groupby("kind")["natural_curvature_per_m"].agg(["min", "max"]).sort_values("min")
+
+    def cell(members):
+        clear = members[members["status"] == "ok"]
+        return _cell((clear["holds"] == "true").sum(), len(clear), len(members) - len(clear))
+
+    def line(row):
+        of = rows[rows["claim"] == row["claim"]]
+        return [_statement(row), *(cell(of[of["kind"] == kind]) for kind in kinds.index)]
+
+    return table(["statement", *(f"{kind}: {span(ends)} 1/m" for kind, ends in zip(kinds.index, kinds.values))],
+                 [line(row) for row in _statements(tables, "hair")])
+
+
+def population(tables):
+    """Returns the ranges of the gravito-bending number and of the curvature that the hairs cover."""
+    rows = tables.rows("family", {"family": "hair"})
+    return (f"{hairs(tables)} hairs, Γ = {span(rows['gravito_bending'])}, natural curvature "
+            f"{span(rows['natural_curvature_per_m'])} 1/m")
 
 
 def exact_step(tables):
@@ -112,45 +138,63 @@ def exact_step(tables):
         return f"{number(1e3 * x)} ms"
 
     return _sentence(
-        tables, f"stable at every step tried up to 100 ms for {_held(twisted)}, and without twist for {_share(bent)} (largest "
-        f"stable step: {_spread(twisted, ms)}; without twist: median {ms(bent['median'])})", twisted)
+        tables, f"stable at every step tried up to 100 ms for {_held(twisted)}{_silent(twisted)}, and without twist for "
+        f"{_share(bent)}. Of its largest stable steps, the median is {ms(twisted['median'])} and the lowest decile "
+        f"{ms(twisted['decile_1'])}", twisted)
 
 
 def model_steps(tables):
     row = claim(tables, "super_helix_step_longer")
-    return _sentence(tables, f"`super_helix` is stable at steps at least as long as `der` for {_held(row)} (ratio of the "
-                     f"largest steps: {_spread(row)})", row)
+    return _sentence(tables, f"`super_helix` is stable at steps at least as long as `der` for {_held(row)}{_silent(row)}. The ratio "
+                     f"of the largest steps has {_spread(row)}", row)
+
+
+def twist_straight_share(tables):
+    row = claim(tables, "twist_straight_negligible")
+    return ("Leaving out twist displaces the tip of a hair straightened at rest by less than 1 % of its length for "
+            f"{_held(row)}{_silent(row)}")
 
 
 def twist_straight(tables):
     row = claim(tables, "twist_straight_negligible")
-    return _sentence(tables, f"Leaving out twist displaces the tip of a hair straightened at rest by less than 1 % of its length for {_held(row)} "
-                     f"({_spread(row, _change)})", row)
+    return _sentence(tables, f"{twist_straight_share(tables)}. The displacement has {_spread(row, _change)}", row)
+
+
+def by_range(tables, name):
+    """Returns the share of hairs for which a claim is true, by range of the gravito-bending number."""
+    return ", ".join(f"{_share(claim(tables, name, 'hair', of))} ({of})" for of in _RANGES)
+
+
+def by_curl(tables, name):
+    """Returns the share of hairs for which a claim is true, by group of natural curvature."""
+    rows = tables.ok_rows("family", {"family": "hair", "claim": name}).sort_values("natural_curvature_per_m")
+    return ", ".join(f"{percent((members['holds'] == 'true').mean())} ({kind})" for kind, members in groups(rows, "kind"))
 
 
 def twist_curly(tables):
     row = claim(tables, "twist_curly_matters")
-    return (f"Leaving out twist displaces the tip of a hair with its own curls by more than 1 % of its length for {_held(row)} "
-            f"({_spread(row, _change)})")
+    return ("Leaving out twist displaces the tip of a hair with its own curls by more than 1 % of its length for "
+            f"{_held(row)}{_silent(row)}. The displacement has {_spread(row, _change)}")
 
 
 def bdf(tables):
     rows = [claim(tables, name) for name in ("bdf_order2_at_1e-2", "bdf_order2_at_1e-3", "bdf_order2_at_1e-4")]
-    two, three, four = map(_share, rows)
-    return (f"order 2 at most needs no more work than order 5 for {two}, {three} and {four} of {hairs(tables)} hairs at tip "
-            "errors of 1e-2, 1e-3 and 1e-4 of the length (work of order 5 over that of order 2: median "
-            f"{', '.join(number(row['median']) for row in rows)})")
+    two, three, four = (percent(1 - row["holds_share"]) for row in rows)
+    return (f"For a tip error of 1e-2 of the length, BDF needs fewer evaluations with order 5 than with order 2 on {two} of "
+            f"{hairs(tables)} hairs. For 1e-3 it is {three} of them, and for 1e-4 {four}. The evaluations with order 5 over those with "
+            f"order 2 have medians of {', '.join(number(row['median']) for row in rows)}")
 
 
 def esdirk(tables):
-    return (f"ESDIRK takes no more steps than BDF for {_share(claim(tables, 'esdirk_steps_at_1e-3'))} of the hairs at 1e-3, and "
-            f"no more calls of the model for {_share(claim(tables, 'esdirk_work_at_1e-3'))}")
+    return (f"For 1e-3, ESDIRK takes no more steps than BDF on {_share(claim(tables, 'esdirk_steps_at_1e-3'))} of the hairs, and no "
+            f"more evaluations on {_share(claim(tables, 'esdirk_work_at_1e-3'))}")
 
 
 def equal(tables):
     row = claim(tables, "reduced_cheaper")
-    return _sentence(tables, f"`super_helix` needs less time for 1 % than `der` for {_held(row)} (ratio of `der` to `super_helix`: "
-                     f"{_spread(row)}; 100 and 0.01 where one model never reaches this error)", row)
+    return _sentence(tables, f"`super_helix` needs less time than `der` for a tip error of 1 % on {_held(row)}{_silent(row)}. The time "
+                     f"of `der` over that of `super_helix` has {_spread(row)}. If one of the models never reaches this error, the "
+                     "ratio counts as 100 or 0.01", row)
 
 
 def equal_curly_wind(tables):
@@ -169,9 +213,9 @@ def gravito_bending(tables):
     return f"{at(0.05)} (5 %), {at(0.5)} (50 %) and {at(0.95)} (95 %)"
 
 
-# Claims about runs by tolerance are made of every model and integrator; the whole family
+# Claims about adaptive runs are made of every model and integrator; the whole family
 # has tables of its own, which --quick does not make.
-_NOT_STORED = "The stored tables hold no runs by tolerance yet"
+_NOT_STORED = "The stored tables hold no adaptive runs yet"
 
 
 def _met(tables):
@@ -210,13 +254,13 @@ def tolerance_table(tables):
     for row in records(met):
         count = solved(tables, row["model"], row["integrator"])
         lines.append([
-            f"{row['model']}, {row['integrator']}",
+            f"`{row['model']}`, `{row['integrator']}`",
             f"{count['within']} of {count['all']}{f', {count_of} sensitive' if (count_of := count['sensitive']) > 0 else ''}"
-            f"{f', {count_of} unknown' if (count_of := count['silent']) > 0 else ''}",
+            f"{f', {count_of} inconclusive' if (count_of := count['silent']) > 0 else ''}",
             f"{count['unsolved']} of {count['all']}", _deciles(row), spread_of("tolerance_cheaper_at_error", row),
             spread_of("tolerance_cheaper_as_asked", row), _rule(row)])
-    return table(["model, method", "within the tolerance", "no solution", "error: decile, median, decile", "work, as accurate",
-                  "work, as asked", "best predictor"], lines)
+    return table(["model, method", "within the tolerance", "no solution", "error: decile, median, decile",
+                  "work ratio, same error", "work ratio, same tolerance", "best predictor"], lines)
 
 
 def tolerances(tables):
@@ -236,7 +280,7 @@ def sensitive(tables):
     rows = tables.rows("family_tolerance", {"claim": "tolerance_met", "status": "sensitive"})
     if rows.empty:
         return "None is among the stored hairs."
-    named = (f"hair {row['hair']} by `{row['model']}`, `{row['integrator']}` (growth {number(row['growth'])}, error "
+    named = (f"hair {row['hair']} with `{row['model']}`, `{row['integrator']}` (growth {number(row['growth'])}, error "
              f"{number(row['value'] / row['position_tol_rel'])} of the tolerance)" for row in records(rows))
     return f"Sensitive: {'; '.join(named)}."
 
@@ -260,11 +304,9 @@ def tolerance(tables):
     met = met[met["integrator"] == "tr_bdf2"]
     if met.empty:
         return _NOT_STORED
-    asked = tables.rows("family_tolerance", {"claim": "tolerance_met"})["position_tol_rel"].unique()
-    words = []
-    for row in records(met):
-        count = solved(tables, row["model"], row["integrator"])
-        words.append(f"{count['within']} of {count['all']} hairs with `{row['model']}` ({count['unsolved']} without a solution, "
-                     f"{count['silent']} inconclusive)")
-    return (f"With a tolerance of {', '.join(map(percent, asked))} of the length, the error of `tr_bdf2` stays within the tolerance for "
-            f"{', '.join(words)}")
+    tolerances_of = tables.rows("family_tolerance", {"claim": "tolerance_met"})["position_tol_rel"].unique()
+    counts = [solved(tables, row["model"], row["integrator"]) for row in records(met)]
+    return (f"With a tolerance of {', '.join(map(percent, tolerances_of))} of the length, `tr_bdf2` keeps the error within the "
+            f"tolerance on {span([one['within'] for one in counts])} of {span([one['all'] for one in counts])} hairs with each of "
+            f"{len(counts)} models. Runs without a solution: {sum(one['unsolved'] for one in counts)}; inconclusive runs: "
+            f"{sum(one['silent'] for one in counts)}")

@@ -1,6 +1,6 @@
 """Momentum and energy of a hair thrown in space, by integrator."""
 from .tables import groups, known
-from .words import duration, number, percent, signed_percent, span, table
+from .words import code, duration, number, percent, signed_percent, span, table
 
 
 def _whole(tables):
@@ -14,9 +14,14 @@ def seconds(tables):
 
 
 def _changes(members):
-    rows = [(model, own.iloc[0]) for model, own in groups(members, "model")]
-    return "; ".join(f"{model} {signed_percent(row['angular_change_rel'])}, {percent(row['angular_error_rel'])}, "
-                     f"{signed_percent(row['energy_change_rel'])}" for model, row in rows)
+    """Returns a line for all models of the same printed changes."""
+    models = {}
+    for model, own in groups(members, "model"):
+        row = own.iloc[0]
+        changes = (f"{signed_percent(row['angular_change_rel'])}, {percent(row['angular_error_rel'])}, "
+                   f"{signed_percent(row['energy_change_rel'])}")
+        models.setdefault(changes, []).append(model)
+    return "<br>".join(f"{code(names)}: {changes}" for changes, names in models.items())
 
 
 def change_table(tables):

@@ -3,7 +3,7 @@ import re
 
 from . import report
 from .tables import groups, records
-from .words import duration, percent, span, table
+from .words import code, duration, percent, span, table
 
 
 def judged(tables):
@@ -36,7 +36,7 @@ def outcomes_table(tables):
     lines = []
     for _, members in groups(rows, ["pace", "integrator"]):
         count = members["outcome"].value_counts()
-        lines.append([pace(members.iloc[0]), members.iloc[0]["integrator"], len(members) - count.get("refused", 0),
+        lines.append([pace(members.iloc[0]), f"`{members.iloc[0]['integrator']}`", len(members) - count.get("refused", 0),
                       *(count.get(outcome, 0) for outcome in
                         ("stable and accurate", "stable", "stable, not compared", "unstable", "not finished"))])
     return table(["step or tolerance", "integrator", "pairs that can run", "stable and accurate", "stable, inaccurate",
@@ -63,9 +63,9 @@ def super_helix(tables):
     words = []
     for dt, members in sorted(groups(rows, "dt_s"), reverse=True):
         lost = [f"`{case}`" for case in members["case"][~members["survives"]]]
-        words.append(f"{len(members) - len(lost)} of {len(members)} cases at steps of {duration(dt)}"
-                     + (f" (not: {', '.join(lost)})" if lost else ""))
-    return "; ".join(words)
+        words.append(f"At steps of {duration(dt)}, it survives {len(members) - len(lost)} of {len(members)} cases"
+                     + (f". It fails in {', '.join(lost)}" if lost else ""))
+    return ". ".join(words)
 
 
 def survivors(tables):
@@ -86,15 +86,14 @@ def _at_longest_step(tables, integrator):
     rows = judged(tables)
     rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
     rows = rows[(rows["integrator"] == integrator) & (rows["dt_s"] == rows["dt_s"].max())]
-    return (f"survives {rows['survives'].sum()} of {len(rows)} pairs of case and model and is accurate in "
-            f"{(rows['outcome'] == 'stable and accurate').sum()} of them")
+    return f"`{integrator}` survives {rows['survives'].sum()} of {len(rows)} and is accurate in {(rows['outcome'] == 'stable and accurate').sum()}"
 
 
 def guarded(tables):
     """Returns what `guarded` and `backward_euler` survive at the longest step, over all models."""
     longest = duration(judged(tables)["dt_s"].max())
-    return (f"At steps of {longest}, `guarded` {_at_longest_step(tables, 'guarded')}. "
-            f"`backward_euler` {_at_longest_step(tables, 'backward_euler')}")
+    return (f"Of the pairs of case and model that each method can run at steps of {longest}, {_at_longest_step(tables, 'guarded')}. "
+            f"{_at_longest_step(tables, 'backward_euler')}")
 
 
 def longest_step(tables):
@@ -132,6 +131,9 @@ _CONTACT = {"grazing_contact": ["grazing_exact", "grazing_impulse"],
             "coil_contact": ["coil_impulse"]}
 
 
+_OUTCOMES = {"stable": "stable, inaccurate", "stable, not compared": "stable, no reference"}
+
+
 def friction_table(tables):
     """Returns outcomes of `backward_euler` at its longest step, with the number of Newton iterations."""
     rows = judged(tables)
@@ -141,9 +143,9 @@ def friction_table(tables):
     rows = rows[rows["case"].isin(names)]
     models = rows["model"].unique()
     rows = rows[(rows["dt_s"] == longest) & (rows["outcome"] != "refused")]
-    shown = {(row["model"], row["case"]): f"{row['outcome']} ({row['newton_iterations']:.0f})" if row["survives"] else row["outcome"]
-             for row in reversed(records(rows))}
-    lines = [[model, *(shown.get((model, name), "") for name in names)] for model in models]
+    shown = {(row["model"], row["case"]): f"{_OUTCOMES.get(row['outcome'], row['outcome'])} ({row['newton_iterations']:.0f})"
+             if row["survives"] else row["outcome"] for row in reversed(records(rows))}
+    lines = [[f"`{model}`", *(shown.get((model, name), "") for name in names)] for model in models]
     return table(["model", *(f"`{name}`" for name in names)], [line for line in lines if any(line[1:])])
 
 
@@ -173,11 +175,11 @@ def rising_count(tables):
 
 
 _WHY_NOT = {
-    "its work was done": "not finished within its work",
-    "speed": "faster than its root can make it",
-    "reach": "farther from its root than it is long",
+    "its work was done": "not finished within the work limit",
+    "speed": "faster than the root can drive it",
+    "reach": "tip farther from the root than the strand is long",
     "energy": "gains energy at the impact",
-    "penetration_over_bound": "deeper than allowed",
+    "penetration_over_bound": "penetrates deeper than allowed",
     "overlap_over_radius": "parts pass through each other",
 }
 
@@ -191,7 +193,7 @@ def _unavailable(row, exact):
         if "=" in problem:  # an option of the model
             return f"refused: {problem}"
         methods |= dict.fromkeys(re.findall(r"\w+", remedy.replace(" or ", ", ")))
-    return f"not available with {row['integrator']}, but with {', '.join(methods)}"
+    return f"not available with `{row['integrator']}`, but with {code(methods)}"
 
 
 def _ending(row, exact):
@@ -202,7 +204,7 @@ def _ending(row, exact):
         return _unavailable(row, exact)
     best = min(_tried(exact), key=lambda one: one["rank"])
     what = re.split(r" at t = |: | = ", best["why"])[0]
-    return f"{best['case']}: {_WHY_NOT.get(what, what)}"
+    return f"`{best['case']}`: {_WHY_NOT.get(what, what)}"
 
 
 def rising_table(tables):
@@ -210,10 +212,10 @@ def rising_table(tables):
     step."""
     models = {}
     for row, exact in _fallen(tables):
-        line = (f"`{row['case']}`", row["integrator"], pace(row), _ending(row, exact))
+        line = (f"`{row['case']}`", f"`{row['integrator']}`", pace(row), _ending(row, exact))
         models.setdefault(line, {})[row["model"]] = None
     return table(["fails by a regularised law", "integrator", "step or tolerance", "by the exact law", "models"],
-                 [[*line, ", ".join(names)] for line, names in models.items()])
+                 [[*line, code(names)] for line, names in models.items()])
 
 
 def _broken_at_shorter(tables):

@@ -1,6 +1,6 @@
 """Share of a groom that must be simulated."""
 from .tables import first, groups, known, records
-from .words import must, number, percent, span, spaced, table
+from .words import must, number, percent, span, table
 
 _PRECISIONS = {32: "single", 64: "double"}
 
@@ -30,11 +30,11 @@ def answer(tables):
     rows = _met(tables)
     row = first(rows[rows["scene"] == "full_head"].sort_values("target_error_rel", kind="stable"))
     must(row is not None, "the shipped head has an answer")
-    following = (f"; hairs that follow {row['best_guides']:.0f} guides are off by {percent(row['best_interpolation_rel'])}."
-                 if _every(row) and row["best_guides"] > 0 else ".")
-    return (f"> {spaced(row['scene'])}, {percent(row['target_error_rel'])}: take {_words(row)}: of {row['looked_at']} sampled "
-            f"hairs, 95 % are within {percent(row['error_p95_rel'])} of their length (mean {percent(row['error_mean_rel'])}, "
-            f"largest {percent(row['error_max_rel'])}) in {number(row['ms_per_frame'])} ms a frame{following}")
+    following = (f" Hairs that follow {row['best_guides']:.0f} guides have an error of {percent(row['best_interpolation_rel'])}."
+                 if _every(row) and row["best_guides"] > 0 else "")
+    return (f"For {percent(row['target_error_rel'])} on `{row['scene']}`, take {_words(row)}. Of {row['looked_at']} sampled "
+            f"hairs, 95 % have an error below {percent(row['error_p95_rel'])} of their length (mean {percent(row['error_mean_rel'])}, "
+            f"largest {percent(row['error_max_rel'])}). A frame takes {number(row['ms_per_frame'])} ms.{following}")
 
 
 def over(tables):
@@ -47,7 +47,7 @@ def over(tables):
 
 def answers_table(tables):
     def line(row):
-        head = [spaced(row["scene"]), percent(row["target_error_rel"]), row["looked_at"]]
+        head = [f"`{row['scene']}`", percent(row["target_error_rel"]), row["looked_at"]]
         if row["status"] != "ok":
             return [*head, row["reason"], "", "", "", "", ""]
         return [
@@ -60,7 +60,7 @@ def answers_table(tables):
 
     return table(
         ["groom", "target", "sampled hairs", "simulated", "elements, step, bits", "error: mean, 95 %, largest",
-         "of interpolation", "of elements and step", "ms a frame: simulated, following"],
+         "error of interpolation", "error of elements and step", "ms per frame: simulated, following"],
         map(line, records(answers(tables))))
 
 
@@ -91,5 +91,4 @@ def findings(tables):
     off = varied["best_interpolation_rel"]
     return (f"In {len(few)} of {len(alike)} answers for grooms of equal hairs, {span(few['guides'] / few['strands'], percent)} of "
             "the hairs are enough as guides. Hairs that differ in length, curl and phase must all be simulated "
-            f"({len(varied)} of {len(varied)} answers): hairs that follow the best guides are off by "
-            f"{span(off[known(off)], percent)}. Grooms: {', '.join(map(spaced, answers(tables)['scene'].unique()))}.")
+            f"({len(varied)} of {len(varied)} answers): hairs that follow the best guides have errors of {span(off[known(off)], percent)}.")

@@ -82,10 +82,10 @@ def provenance(tables, names):
     all_of = {name: one for name, one in tables.manifests.items() if name in names}
     commits = {}
     for name, one in all_of.items():
-        words = f"`{name}`{' (times uncertain: other programs were running)' if _times_uncertain(one) else ''}"
-        commits.setdefault(_commit(one), []).append(words)
+        commits.setdefault(_commit(one), []).append(f"`{name}`")
     if not commits:
         return ""
-    mixed = f"{len(commits)} commits, not one run: " if len(commits) > 1 else ""
-    each = (f"{', '.join(words)} at commit {commit}" for commit, words in commits.items())
-    return f"Tables behind this page, from {mixed}{'; '.join(each)}."
+    each = "; ".join(f"{commit}: {', '.join(of)}" for commit, of in commits.items())
+    loaded = [f"`{name}`" for name, one in all_of.items() if _times_uncertain(one)]
+    uncertain = f" Times of {', '.join(loaded)} are uncertain: other programs ran." if loaded else ""
+    return f"Tables of this page by commit: {each}.{uncertain}"

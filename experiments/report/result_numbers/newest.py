@@ -69,9 +69,9 @@ def other_simulators_confirm(tables):
     errors = [row["total_error_rel"] for row in finest]
     must(max(errors) < _FLOOR, "the finest runs of all engines are above the least target")
     mujoco = [row["total_error_rel"] for row in finest if row["simulator"] == "mujoco_3"]
-    return (f"At their shortest steps all {len(finest)} methods in double precision, with {_LINKS} links, are "
-            f"{span(errors, percent)} off the continuous rod. This is the error of their links, so that a target below "
-            f"{percent(_FLOOR)} compares meshes and not methods{f'; MuJoCo 3 {span(mujoco, percent)}.' if mujoco else '.'}")
+    return (f"At their shortest steps, all {len(finest)} methods in double precision have an error of {span(errors, percent)} against the "
+            f"continuous rod, with {_LINKS} links{f' (MuJoCo 3: {span(mujoco, percent)})' if mujoco else ''}. This is the error of the "
+            f"links: a target below {percent(_FLOOR)} compares meshes, not methods.")
 
 
 def order_two(tables):
@@ -82,11 +82,11 @@ def order_two(tables):
     if pairs.empty:
         return "The table does not compare `xpbd_bdf2` with `xpbd` yet"
     must((pairs["error_rel_2"] < pairs["error_rel"]).all(), "order 2 is the less wrong at every step and number of sweeps")
-    words = (f"{percent(row['error_rel'])} and {percent(row['error_rel_2'])} off the rod at steps of {duration(row['dt_s'])} and "
-             f"{row['sweeps']} sweeps (in {number(row['wall_s_per_sim_s_2'] / row['wall_s_per_sim_s'])} times the time)"
-             for row in records(pairs))
-    return ("Position-based dynamics of order 2 (`xpbd_bdf2`) are more accurate than those of order 1 (`xpbd`) at every step and "
-            "number of sweeps tested. Errors of order 1 and order 2: " + "; ".join(words))
+    words = (f"With steps of {duration(row['dt_s'])} and {row['sweeps']} sweeps, the tip error is {percent(row['error_rel'])} with `xpbd` "
+             f"and {percent(row['error_rel_2'])} with `xpbd_bdf2`, in {number(row['wall_s_per_sim_s_2'] / row['wall_s_per_sim_s'])} times "
+             "the time" for row in records(pairs))
+    return ("Position-based dynamics with steps of second order (`xpbd_bdf2`) are more accurate than those of first order (`xpbd`) at "
+            "every step and number of sweeps tested. " + ". ".join(words))
 
 
 def chain_beside_helix(tables):
@@ -105,10 +105,10 @@ def step_is_the_limit(tables):
     near = near[near["direct_distance_rel"] <= 1e-3]
     must(len(near) > 0 and ((near["error_rel"] / near["direct_error_rel"] - 1).abs() < 0.05).all(),
          "what sweeps converge to is as far off the rod as the direct step")
-    ends = ", ".join(f"{percent(members.iloc[0]['direct_error_rel'])} at steps of {duration(dt)}"
-                     for dt, members in groups(near, "dt_s"))
-    return ("More sweeps converge to the step of backward Euler, not to the exact rod: where `vbd_augmented` has reached that "
-            f"step, both are off by {ends}")
+    ends = " and ".join(f"{percent(members.iloc[0]['direct_error_rel'])} with steps of {duration(dt)}"
+                        for dt, members in groups(near, "dt_s"))
+    return ("More sweeps converge to the step of backward Euler, not to the exact rod. Where `vbd_augmented` has converged to that "
+            f"step, both have a tip error of {ends}")
 
 
 _BESIDE = ["backward_euler", "bdf2", "implicit_midpoint"]
@@ -173,8 +173,8 @@ def map_counts(tables):
     stiffest = found["stretch_over_bending"].max()
     hair = finished["error_rel"][finished["stretch_over_bending"] == stiffest]
     return (f"{len(finished)} of the {len(found)} runs of `stable_cosserat_rods` on the hair finish, "
-            f"{(finished['error_rel'] <= 0.01).sum()} of these within 1 % of the rod. The runs with the stretch stiffness of a hair "
-            f"({(found['stretch_over_bending'] == stiffest).sum()}, of which {len(hair)} finish) are off by {span(hair, percent)}")
+            f"{(finished['error_rel'] <= 0.01).sum()} of these within 1 % of the rod. With the stretch stiffness of a hair, "
+            f"{len(hair)} of {(found['stretch_over_bending'] == stiffest).sum()} runs finish, with errors of {span(hair, percent)}")
 
 
 def survived_table(tables):
@@ -207,8 +207,8 @@ def energy_cases(tables):
 def published_table(tables):
     return table(
         ["code", "simulated", "hardware", "figure", "measured", "not measured", "source", "found there"],
-        [[row["name"], row["simulated"], row["hardware"] or "not said",
-          " ".join(filter(None, [row["figure"], row["unit"]])) or "none there", row["measured"], row["not_measured"],
+        [[row["name"], row["simulated"], row["hardware"] or "not stated",
+          " ".join(filter(None, [row["figure"], row["unit"]])) or "none", row["measured"], row["not_measured"],
           f"[{row['source']}]({row['address']}){'; ' + row['cited_as'] if row['cited_as'] else ''}", row["checked"]]
          for row in records(tables["other_simulators_published"])])
 
@@ -218,4 +218,4 @@ def published_errors(tables):
     found = tables["other_simulators_published"]
     measured = found["measured"][found["figure"] != ""]
     must(not measured.str.contains("error").any(), "no published figure gives the error of the motion")
-    return f"None of these {len(measured)} figures gives the error of the motion"
+    return f"{len(found)} entries have {len(measured)} published figures; none of the figures is the error of the motion"

@@ -21,8 +21,8 @@ def apart(tables):
     rows = tables.rows("other_simulators", {"precision": "double"})
     rows = rows[known(rows["apart_mm"])]
     universal = rows["method"].str.contains("universal")
-    return (f"{span(rows['apart_mm'][universal])} mm with universal joints, {span(rows['apart_mm'][~universal])} mm with other "
-            f"joints ({len(rows)} methods in double precision)")
+    return (f"{span(rows['apart_mm'][universal])} mm with universal joints and {span(rows['apart_mm'][~universal])} mm with other "
+            f"joints, over {len(rows)} methods in double precision")
 
 
 def published(tables):

@@ -12,7 +12,6 @@ def pictures(tables):
         return number(1000 / row["picture_ms"])
 
     enough = "at least" if canvas["picture_ms"] <= 1000 / _SMOOTH else "not"
-    return (f"With software rendering, {number(canvas['hairs'])} hairs of {number(canvas['points'])} points at "
-            f"{number(canvas['width'])} x {number(canvas['height'])} are drawn {rate(canvas)} times a second on the canvas "
-            f"({enough} the {_SMOOTH} that look smooth), {rate(webgl)} times with WebGL, and {rate(hair)} times as hair in "
-            "light, in headless Chromium.")
+    return (f"Headless Chromium with software rendering draws {number(canvas['hairs'])} hairs of {number(canvas['points'])} points at "
+            f"{number(canvas['width'])} x {number(canvas['height'])}. The canvas draws {rate(canvas)} pictures per second, {enough} the "
+            f"{_SMOOTH} that look smooth. WebGL draws {rate(webgl)}, and {rate(hair)} with hair in light.")

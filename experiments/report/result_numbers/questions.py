@@ -7,6 +7,11 @@ def time(tables, question):
     return duration(tables.row("question_times", {"question": question})["processor_s"], 1)
 
 
+def answer(tables, question):
+    """Returns a part of a line that the program printed."""
+    return f"`{tables.row('question_times', {'question': question})['answer']}`"
+
+
 def all_four(tables):
     """Returns the processor time of the programs of `./tress ask`."""
     asked = ["stability_limit", "hard_cases", "effect_audit", "cost_of_accuracy"]

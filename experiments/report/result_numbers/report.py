@@ -38,5 +38,10 @@ def told(tables, name):
     return found
 
 
+def figure_tables(tables, name):
+    """Returns the tables that a figure of results/ is drawn from; none for a picture of a scene."""
+    return tables.once(_answers)["figures"]["value"].get(name, [])
+
+
 def rows(tables, name):
     return pd.DataFrame(told(tables, name))

@@ -20,7 +20,7 @@ def _step(row):
 _HELIX = {"study": "grid", "model": "super_helix", "solver": "recursive", "modes": "bend_twist"}
 _WAYS = [("linearly_implicit_euler", "elastic"), ("linearly_implicit_euler", "elastic_local"), ("linearly_implicit_euler", "exact"),
          ("backward_euler", "exact")]
-_DAMPED = [("none", "none"), ("light", "light"), ("published", "the published")]
+_DAMPED = [("none", "none"), ("light", "light"), ("published", "published")]
 
 
 def super_helix_table(tables):
@@ -34,7 +34,7 @@ def super_helix_table(tables):
                 found = (first(here[(here["integrator"] == integrator) & (here["jacobian"] == jacobian)])
                          for integrator, jacobian in _WAYS)
                 lines.append([scene, words, *map(_step, found)])
-    return table(["scene", "friction", *(f"{integrator}, {jacobian}" for integrator, jacobian in _WAYS)], lines)
+    return table(["scene", "friction", *(f"`{integrator}`, {jacobian} Jacobian" for integrator, jacobian in _WAYS)], lines)
 
 
 def shaken_stiff(tables):

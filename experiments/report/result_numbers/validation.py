@@ -20,54 +20,68 @@ def tests(tables):
 def _shown(cell):
     if cell is None or cell["outcome"] == "does not apply":
         return ""
-    if cell["outcome"] == "no answer":
-        return "**no answer**"
+    if cell["outcome"] == "no solution":
+        return "**no solution**"
     error, accepted = cell["error_pct"], cell["tolerance_pct"]
     small = error < _LEAST_PCT and is_number(accepted) and accepted >= 10 * _LEAST_PCT
     text = f"< {_LEAST_PCT}" if small else number(error)
     text += " (in part)" if cell["partly"] is True else ""
-    if cell["lost"] is True:
-        return f"**{text}, a run lost**"
+    if cell["failed"] is True:
+        return f"**{text}, a run failed**"
     return f"**{text}**" if cell["outcome"] == "outside" else text
+
+
+def _coded(cell):
+    """Returns a model and its variant: "`der`" or "`der`, inextensible"."""
+    return f"`{cell['model']}`" + (f", {cell['variant']}" if cell["variant"] else "")
 
 
 def matrix(tables):
     """Returns tests as rows, models as columns: the largest error of the judged runs in per cent."""
     all_cells = cells(tables)
-    names = all_cells["name"].unique()
+    names = {cell["name"]: _coded(cell) for cell in records(all_cells)}
     lines = []
     for test, members in groups(all_cells, "test"):
         by_name = {cell["name"]: cell for cell in records(members)}
         tolerances = members["tolerance_pct"][known(members["tolerance_pct"])]
         lines.append([test, number(next(iter(tolerances), None)), *(_shown(by_name.get(name)) for name in names)])
-    return table(["test", "accepted", *names], lines)
+    return table(["test", "accepted", *names.values()], lines)
+
+
+def _missed(cell):
+    if cell["outcome"] == "no solution":
+        return f"{cell['test']} (no solution)"
+    why = "a run failed" if cell["failed"] is True else f"{number(cell['error_pct'])} %"
+    return f"{cell['test']} ({why})"
 
 
 def _scored(tables):
     """Returns, for each model, the tests that it can run and how many of these it meets, the best model
     first."""
     all_cells = cells(tables)
-    told = all_cells[~all_cells["outcome"].isin(["does not apply", "not judged"])]
+    judged = all_cells[~all_cells["outcome"].isin(["does not apply", "not judged"])]
     scored = []
-    for name, members in groups(told, "name"):
+    for _, members in groups(judged, "name"):
         met = members[members["outcome"] == "within"]
         partly = [cell["test"] for cell in records(met) if cell["partly"] is True]
-        scored.append({"name": name, "all": len(members), "met": len(met), "partly": partly})
+        missed = [_missed(cell) for cell in records(members[members["outcome"] != "within"])]
+        scored.append({"name": _coded(members.iloc[0]), "all": len(members), "met": len(met), "partly": partly, "missed": missed})
     return sorted(scored, key=lambda one: -one["met"] / one["all"])
 
 
 def scores_table(tables):
-    return table(["model", "tests that it can run", "met", "of these, with some parameters refused"],
-                 [[one["name"], one["all"], one["met"], ", ".join(one["partly"])] for one in _scored(tables)])
+    return table(["model", "tests that it can run", "met", "of these, with some parameters refused", "not met, with the error"],
+                 [[one["name"], one["all"], one["met"], "<br>".join(one["partly"]), "<br>".join(one["missed"])]
+                  for one in _scored(tables)])
 
 
 def scores(tables):
-    """Returns the best and the last of all models: "super clothoid meets 37 of the 37 tests"."""
+    """Returns the best and the last of all models."""
     scored = _scored(tables)
     best, last = scored[0], scored[-1]
     models = tables["validation"]["model"].nunique()
-    return (f"Of the {counted(models, 'model')} and {counted(len(scored) - models, 'variant')}, the best is {best['name']}. It meets "
-            f"{best['met']} of the {best['all']} tests that it can run. The last, {last['name']}, meets {last['met']} of {last['all']}")
+    return (f"Of the {counted(models, 'model')} and {counted(len(scored) - models, 'variant')}, {best['name']} is the best: it meets "
+            f"{best['met']} of the {best['all']} tests that it can run. {last['name']} is last and meets {last['met']} of {last['all']}")
 
 
 def order_points(tables):

@@ -1,6 +1,7 @@
 """Text of values on pages: numbers of few digits, shares, times, ranges, tables."""
 import math
 import numbers
+import re
 from decimal import ROUND_HALF_UP, Decimal
 
 import pandas as pd
@@ -94,6 +95,16 @@ def code(names):
     return ", ".join(f"`{name}`" for name in names)
 
 
+# Code and targets of links stay; "der" before a capital is German: "van der Heijden".
+_IDS = re.compile(r'`[^`]*`|\]\([^)]*\)|(?<![\w./"])([a-z]\w*_\w+(?:\.csv)?|der(?! [A-Z])|corde|xpbd|vbd|rk4|bdf2|radau5|rodas5p|esdirk43|'
+                  r"newmark)(?![\w/])", re.ASCII)
+
+
+def coded(text):
+    """Returns a text of a table with the ids of models, integrators and columns as code."""
+    return _IDS.sub(lambda found: f"`{found[1]}`" if found[1] else found[0], text)
+
+
 def is_set(flag):
     return str(flag).lower() in ("1", "true", "yes")
 
@@ -117,7 +128,7 @@ def bullets(sentences):
 def _cell(value):
     if value is None:
         return ""
-    text = plain(value) if isinstance(value, numbers.Real) else str(value)
+    text = plain(value) if isinstance(value, numbers.Real) else coded(str(value))
     return text.replace("|", "\\|")
 
 

@@ -151,12 +151,14 @@ const questions = [
   },
 ];
 
-// A number and its unit stay on one line.
+// A number and its unit stay on one line; ids stand in backticks.
 const prose_html = (text) =>
-  escape_html(text).replace(
-    /(?<![\w.#])\d[\d.]*(?:e-?\d+)?(?![\w])(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g,
-    '<span class="number">$&</span>',
-  );
+  escape_html(text)
+    .replace(
+      /(?<![\w.#`])\d[\d.]*(?:e-?\d+)?(?![\w])(?: (?:ms|µs|m|s|%|1\/s²)(?![\w/]))?/g,
+      '<span class="number">$&</span>',
+    )
+    .replace(/`([^`]+)`/g, '<code>$1</code>');
 
 const one_line = (text) => text.replace(/\s+/g, ' ').trim();
 

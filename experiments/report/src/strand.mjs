@@ -9,6 +9,8 @@ export const scan_end_s = 0.1;
 export const spaced = (name) => String(name ?? '').replaceAll('_', ' ');
 
 // "der, inextensible": the model and the word of its choice.
+// An id as prose has it.
+export const code = (name) => `\`${name}\``;
 export const variant_name = ({ model, variant }) =>
   variant ? `${spaced(model)}, ${String(variant).split('=').at(-1)}` : spaced(model);
 

@@ -7,7 +7,7 @@ import {
   format_steps,
   format_time,
 } from '../format.mjs';
-import { spaced } from '../strand.mjs';
+import { code, spaced } from '../strand.mjs';
 
 export const cost_rows = (tables) =>
   (tables.cost_of_accuracy ?? [])
@@ -27,8 +27,8 @@ export const cost_rows = (tables) =>
 
 export const percent = (value) => `${format_number(100 * value)} %`;
 
-export const run_text = (row) =>
-  `${row.name}, ${row.method}, ${format_elements(row)} elements, ` +
+export const run_text = (row, named = spaced) =>
+  `${named(row.model)}, ${named(row.integrator)}, ${format_elements(row)} elements, ` +
   format_steps(row, (dt) => `steps of ${format_time(dt)}`);
 
 export const of_kind = (rows, kind) => rows.filter((row) => row.kind === kind);
@@ -46,10 +46,10 @@ function winner_sentences(rows, target) {
       (row) => row.target_error_rel === target,
     );
     return [
-      `${spaced(scene)}, ${percent(target)}: ${run_text(winner)}, ` +
+      `${spaced(scene)}, ${percent(target)}: ${run_text(winner, code)}, ` +
         `${format_time(winner.wall_s_per_sim_s)} per simulated second` +
         (second
-          ? `; next ${run_text(second)}, ` +
+          ? `. Next: ${run_text(second, code)}, ` +
             `${format_ratio(second.wall_ms / winner.wall_ms)} the time.`
           : '.'),
     ];
@@ -94,8 +94,8 @@ export function cost_findings(tables) {
   const said = winner_sentences(rows, wanted);
   if (medians.length > 0)
     said.push(
-      `Effect of a choice (time after it is replaced by the next best that keeps the error, over the winner's, median over ` +
-        `scenes and targets): ${medians
+      `Effect of a choice, as the time with the next best choice over the winner's, median over ` +
+        `scenes and targets: ${medians
           .map(({ choice, factor }) => `${choice_name(choice)} ${format_ratio(factor)}`)
           .join(', ')}.`,
     );

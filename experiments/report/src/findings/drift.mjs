@@ -10,11 +10,11 @@ import {
   succeeded,
 } from '../tables.mjs';
 import { format_number, format_ratio } from '../format.mjs';
+import { code, spaced } from '../strand.mjs';
 import { damping_ratio } from '../../figures/drift_recovery.mjs';
 
 const metres = (value) => (value === 0 ? 'exactly zero' : `${format_number(value)} m`);
 const is_given = (value) => value !== null && value !== undefined && value !== '';
-const spaced = (name) => name.replaceAll('_', ' ');
 
 // How near the measured boundary must be to the predicted one.
 const boundary_within = 0.05;
@@ -59,7 +59,7 @@ export function feedback_gains(rows) {
 // "<system>, <integrator>: of the gains tried, ... drift least" with the direction read off
 // the ratio, and how little such gains damp.
 function feedback_sentence({ system, integrator, without, best, gain, cost }) {
-  const pair = `alpha = ${format_number(best.alpha)}, beta = ${format_number(best.beta)}`;
+  const pair = `alpha = ${format_number(best.alpha)} and beta = ${format_number(best.beta)}`;
   const same = Math.abs(gain - 1) < indifferent;
   const change = same
     ? 'about the same as'
@@ -67,10 +67,10 @@ function feedback_sentence({ system, integrator, without, best, gain, cost }) {
       ? `${format_ratio(gain)} smaller than`
       : `${format_ratio(1 / gain)} larger than`;
   return (
-    `${spaced(system)}, ${integrator}: of the Baumgarte gains tried, ${pair} (beta²/(4 alpha) = ` +
-    `${format_number(damping_ratio(best), 2)}) drift least: they leave ` +
-    `${metres(best.g_max)}, ${change} acceleration level (${metres(without.g_max)}), for ` +
-    `${format_ratio(cost)} the time${gain < 1 && !same ? ': feedback hurts here' : ''}.`
+    `${spaced(system)}, ${code(integrator)}: of the Baumgarte gains tried, ${pair} leave the smallest drift, ` +
+    `${metres(best.g_max)}. That is ${change} at acceleration level (${metres(without.g_max)}), for ` +
+    `${format_ratio(cost)} the time${gain < 1 && !same ? ': feedback hurts here' : ''}. ` +
+    `Their damping ratio beta²/(4 alpha) is ${format_number(damping_ratio(best), 2)}.`
   );
 }
 
@@ -105,9 +105,9 @@ function index2_sentences(rows) {
     );
     if (!out || !kept) return [];
     return [
-      `${spaced(out.system)}, ${out.integrator} on the stabilised index 2 form: ` +
-        `${metres(out.g_max)} in ${out.steps} steps with the algebraic variables out of the ` +
-        `error test; ${kept.steps} steps (${format_ratio(kept.steps / out.steps)}) with them in.`,
+      `${spaced(out.system)}, ${code(out.integrator)} on the stabilised index 2 form: without the algebraic ` +
+        `variables in the error test, the drift is ${metres(out.g_max)} in ${out.steps} steps. With them, the run ` +
+        `takes ${kept.steps} steps (${format_ratio(kept.steps / out.steps)}).`,
     ];
   });
 }
@@ -121,7 +121,7 @@ export function boundary_sentences(tables) {
   ].map(([integrator, members]) => {
     const worst = Math.max(...members.map((row) => Math.abs(row.rel_gap)));
     return (
-      `${integrator}: the measured stability boundary is within ` +
+      `${code(integrator)}: the measured stability boundary is within ` +
       `${format_number(100 * worst, 2)} % of the predicted one at ${members.length} damping ` +
       `ratio${members.length === 1 ? '' : 's'}${worst > boundary_within ? `, outside the target of ${format_number(100 * boundary_within)} %` : ''}.`
     );
@@ -144,7 +144,7 @@ export function recovery_sentences(rows) {
     .map((members) => minimum_by(members, (row) => row.recovery_time_s))
     .map(
       (best) =>
-        `${spaced(best.system)}, ${best.integrator}, ` +
+        `${spaced(best.system)}, ${code(best.integrator)}, ` +
         `alpha = ${format_number(best.alpha)} 1/s²: fastest recovery at ` +
         `beta²/(4 alpha) = ${format_number(damping_ratio(best))}, in ` +
         `${format_number(best.recovery_time_s)} s.`,
@@ -203,7 +203,7 @@ export function drift_answer({ constraint_drift: rows = [] }) {
     : '';
   return (
     `Left alone at acceleration level, constraints drift by up to ` +
-    `${metres(worst.without.g_max)} (${spaced(worst.system)}, ${worst.integrator}). Of the gains tried, the ` +
+    `${metres(worst.without.g_max)} (${spaced(worst.system)}, ${code(worst.integrator)}). Of the gains tried, the ` +
     `one that drifts least brings that run to ${metres(worst.best.g_max)} for ${format_ratio(worst.cost)} ` +
     `the time.${projected} Feedback helps in ${helped} of the ${gains.length} combinations of ` +
     `${distinct(gains.map((g) => g.system)).length} systems and ` +

@@ -1,8 +1,8 @@
 // Findings of the adaptive runs in work_precision.csv, as sentences.
 import { format_number } from '../format.mjs';
+import { code } from '../strand.mjs';
 import { group_by, is_positive, is_set, minimum_by, problem_name, succeeded } from '../tables.mjs';
 
-const spaced = (name) => name.replaceAll('_', ' ');
 export const bounds = { least: 0.05, most: 1 };
 const inside = ({ error_over_tolerance: ratio }) =>
   ratio >= bounds.least && ratio <= bounds.most;
@@ -23,16 +23,19 @@ const range = (rows) => {
 };
 
 const place = (row) =>
-  `${spaced(row.model)} (${problem_name(row)}, ${format_number(row.position_tol_rel)}: ` +
+  `${code(row.model)} (${problem_name(row)}, ${format_number(row.position_tol_rel)}: ` +
   `${format_number(row.error_over_tolerance)})`;
 
 function method_sentence([method, rows]) {
   const kept = rows.filter(inside).length;
   const most = minimum_by(rows, (row) => -row.error_over_tolerance);
   const above = rows.filter((row) => row.error_over_tolerance > bounds.most);
-  const worst = above.length > 0 ? `; above the tolerance in ${above.length}, most on ${place(most)}` : '';
+  const worst =
+    above.length > 0
+      ? `. It is above the tolerance in ${above.length} run${above.length === 1 ? '' : 's'}, with the largest value on ${place(most)}`
+      : '';
   return (
-    `${method}: error over tolerance ${range(rows)}, between ${format_number(bounds.least)} and ` +
+    `${code(method)}: error over tolerance ${range(rows)}, between ${format_number(bounds.least)} and ` +
     `${format_number(bounds.most)} in ${kept} of ${rows.length} runs${worst}.`
   );
 }

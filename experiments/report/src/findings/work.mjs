@@ -12,11 +12,11 @@ import {
   succeeded,
 } from '../tables.mjs';
 import { format_number, format_ratio, format_time } from '../format.mjs';
+import { code, spaced } from '../strand.mjs';
 import { failure_sentence } from './drift.mjs';
 
-const levels = [1e-2, 1e-4, 1e-6];
+export const levels = [1e-2, 1e-4, 1e-6];
 const answered = 1e-4;
-const spaced = (name) => name.replaceAll('_', ' ');
 
 const usable = (rows) =>
   rows.filter(
@@ -39,7 +39,7 @@ function cheapest_sentences(rows) {
       const best = cheapest(members, level);
       return best
         ? [
-            `error ${format_number(level)} with ${best.integrator} ` +
+            `error ${format_number(level)} with ${code(best.integrator)} ` +
               `(${format_time(best.wall_s_per_sim_s)})`,
           ]
         : [];
@@ -52,6 +52,17 @@ function cheapest_sentences(rows) {
   });
 }
 
+// Rows of problem, integrators tried, and the cheapest of these at each level of error.
+export const cheapest_table = (tables) =>
+  [...group_by(usable(problem_rows(tables)), problem_name)].map(([problem, members]) => [
+    problem,
+    distinct(members.map((row) => row.integrator)).length,
+    ...levels.map((level) => {
+      const best = cheapest(members, level);
+      return best ? `${code(best.integrator)}, ${format_time(best.wall_s_per_sim_s)}` : 'none';
+    }),
+  ]);
+
 // Who was put to each problem: rows of problem, kind of error, integrators, runs.
 export function field_table(tables) {
   const rows = problem_rows(tables).filter((row) => row.error_kind);
@@ -60,7 +71,7 @@ export function field_table(tables) {
     return [
       spaced(members[0].scene),
       members[0].error_kind,
-      names.length > 3 ? names.length : `${names.length}: ${names.join(', ')}`,
+      names.length > 3 ? names.length : `${names.length}: ${names.map(code).join(', ')}`,
       members.length,
     ];
   });
@@ -93,22 +104,18 @@ export const order_table = (tables) =>
     ...[orders[0], orders.at(-1)].map(({ order, problem }) => `${order.toFixed(2)} (${problem})`),
   ]);
 
-const order_sentences = (rows) => {
-  const all = fitted_orders(rows);
-  return all.length === 0
-    ? []
-    : [
-        `Fitted orders, median over problems: ${all
-          .map(({ integrator, orders }) => `${integrator} ${middle(orders)} (${orders.length})`)
-          .join(', ')}.`,
-      ];
-};
+const order_sentences = (rows) =>
+  fitted_orders(rows).map(
+    ({ integrator, orders }) =>
+      `${code(integrator)}: fitted order ${middle(orders)}, the median of ${orders.length} ` +
+      `problem${orders.length === 1 ? '' : 's'}.`,
+  );
 
 function digits_sentences(rows) {
   const scored = rows.filter((row) => succeeded(row) && is_positive(row.scd));
   const parts = [...group_by(scored, (row) => row.scene)].map(([scene, members]) => {
     const best = minimum_by(members, (row) => -row.scd);
-    return `${spaced(scene)} ${best.scd.toFixed(1)} (${best.integrator})`;
+    return `${spaced(scene)} ${best.scd.toFixed(1)} (${code(best.integrator)})`;
   });
   return parts.length > 0 ? [`Most correct digits: ${parts.join(', ')}.`] : [];
 }
@@ -119,7 +126,7 @@ function reference_sentence(rows) {
     ? []
     : [
         `${below.length} of ${rows.filter(succeeded).length} runs agree with the reference better than ` +
-          'the references agree with each other; they are drawn hollow and left out of these findings.',
+          'the references agree with each other. They are drawn hollow and left out of these findings.',
       ];
 }
 
@@ -127,10 +134,10 @@ export function work_findings(tables) {
   const rows = problem_rows(tables);
   return [
     ...cheapest_sentences(rows),
-    ...order_sentences(rows),
     ...digits_sentences(rows),
     ...reference_sentence(rows),
     ...failure_sentence(rows),
+    ...order_sentences(rows),
   ];
 }
 
@@ -139,7 +146,7 @@ export function work_answer(tables) {
   const winners = problems.flatMap(([problem, members]) => {
     const best = cheapest(members, answered);
     return best
-      ? [`${best.integrator} on ${problem} ` + `(${format_time(best.wall_s_per_sim_s)})`]
+      ? [`${code(best.integrator)} on ${problem} ` + `(${format_time(best.wall_s_per_sim_s)})`]
       : [];
   });
   if (winners.length === 0) return undefined;
@@ -148,6 +155,21 @@ export function work_answer(tables) {
     `For a relative error of ${format_number(answered)} the cheapest integrator per simulated second is ` +
     `${winners.join(', ')}${problems.length > 1 && !same ? ': no single method wins everywhere' : ''}.`
   );
+}
+
+const compared_orders = [3, 4, 5];
+
+// Rows of tolerance, steps at order 2, and steps at each higher order with the ratio.
+export function bdf_table(tables) {
+  const all = compared_orders.map((order) => bdf_comparison(order_rows(tables), 2, order));
+  return distinct(all.flat().map(({ rtol }) => rtol)).map((rtol) => {
+    const pairs = all.map((of) => of.find((pair) => pair.rtol === rtol));
+    return [
+      format_number(rtol),
+      pairs.find(Boolean).low,
+      ...pairs.map((pair) => (pair ? `${pair.high} (${format_ratio(pair.high / pair.low)})` : '')),
+    ];
+  });
 }
 
 // Steps of one maximum BDF order against another, at every tolerance both finished.
@@ -171,7 +193,7 @@ export function bdf_comparison(rows, low, high) {
 
 export function bdf_findings(tables) {
   const rows = order_rows(tables);
-  const comparisons = [3, 4, 5].flatMap((order) => {
+  const comparisons = compared_orders.flatMap((order) => {
     const pairs = bdf_comparison(rows, 2, order);
     if (pairs.length === 0) return [];
     const parts = pairs.map(
