@@ -127,6 +127,15 @@ std::string suggestion(std::string_view word,
   for (const std::string_view now : candidates) {
     if (renamed(word, now)) return "it is called '" + std::string(now) + "' now";
   }
+  std::string present;
+  for (const auto& [before, now] : renamed_names) {
+    if (before != word) continue;
+    present += (present.empty() ? "" : "' or '") + std::string(now);
+  }
+  if (!present.empty()) {
+    return "it is called '" + present + "' now, which is not known here" +
+           (otherwise.empty() ? "" : "; " + otherwise);
+  }
   const std::string_view near = nearest(word, candidates);
   return near.empty() ? otherwise : "did you mean '" + std::string(near) + "'?";
 }

@@ -86,7 +86,8 @@ std::vector<std::string_view> words_of(std::string_view choices);
 std::string_view nearest(std::string_view word,
                          std::span<const std::string_view> candidates);
 
-/// Remedy for an unknown name: its new name, or the nearest candidate, or `otherwise`.
+/// Remedy for an unknown name: its present name, or the nearest candidate, or
+/// `otherwise`. A present name that is no candidate stands before `otherwise`.
 std::string suggestion(std::string_view word,
                        std::span<const std::string_view> candidates,
                        const std::string& otherwise);

@@ -176,7 +176,7 @@ std::vector<Case> cases(const CommandLine& line) {
   std::vector<Case> all;
   if (settings.experiment().word("scenes") == shipped) add_in_motion(all);
   for (const simulation::Scene& scene : simulation::read_scenes(
-           split(settings.experiment().word("scenes"), ',', "scenes"))) {
+           listed_files(settings.experiment().word("scenes"), "scenes"))) {
     if (scene.strands.size() != 1) {
       throw InputError("not one strand but " + std::to_string(scene.strands.size()),
                        "scene " + scene.name, "give scenes of one strand");
@@ -213,6 +213,7 @@ int main(int argc, char** argv) {
       .question =
           "would elements that are divided anew while a strand moves need fewer of them?",
       .example = "--set scenes=scenes/accuracy/whip.toml --quick",
+      .sizes = {"134 rows, fewer elements, 1.4 min", "134 rows, up to 48 elements"},
       .timed = false,
       .columns = columns,
       .settings = own_settings,

@@ -197,7 +197,7 @@ class Cases {
   void add_scenes() {
     leave_strands_to_the_scene(line_);
     settings_.leave_models_to_the_scene();
-    const auto files = split(own_.word("scenes"), ',', line_.place("set:scenes"));
+    const auto files = listed_files(own_.word("scenes"), line_.place("set:scenes"));
     const bool measured = !own_.word("data").empty();
     if (measured && files.size() > 1) {
       throw InputError("several scenes, but data is of one strand",

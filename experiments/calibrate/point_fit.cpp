@@ -80,7 +80,7 @@ PointFit point_fit(const CommandLine& line, const Settings& settings) {
   refuse_if(line.integrators.size() > 1, "several methods for one fit",
             line.place("integrators"), "give one");
   PointFit all;
-  all.scenes = read_scenes(split(own.word("scenes"), ',', line.place("set:scenes")));
+  all.scenes = read_scenes(listed_files(own.word("scenes"), line.place("set:scenes")));
   for (Scene& scene : all.scenes) {
     if (!line.integrators.empty()) {
       scene.integrator = find_integrator(line.integrators.front()).id;

@@ -181,6 +181,7 @@ int main(int argc, char** argv) {
       .name = "constraint_drift",
       .question = "how far do constraints drift, and what does stopping the drift cost?",
       .example = "--integrators rk4,rattle --set step=5e-4",
+      .sizes = {"1374 rows, 1.4 min", "4057 rows, more steps and tolerances"},
       .timed = false,
       .columns = columns,
       .unused = unused,

@@ -223,7 +223,7 @@ StudyPlan plan_of(const CommandLine& line, const Settings& settings) {
 
 std::vector<std::string> scenes_of(const Parameters& own) {
   if (!own.word("advise").empty()) return {std::string(own.word("advise"))};
-  return split(own.word("scenes"), ',', "scenes");
+  return listed_files(own.word("scenes"), "scenes");
 }
 
 std::vector<std::string> method_scenes_of(const Settings& settings) {
@@ -300,6 +300,8 @@ int main(int argc, char** argv) {
           "for this scene and this target error: what is the cheapest "
           "configuration?",
       .example = "--advise scenes/cantilever.toml --set accuracy=0.01",
+      .sizes = {"99 rows, 3 targets, 7 min",
+                "132 rows, 5 targets and longer searches, hours"},
       .quick_timeout_s = 600,
       .columns = study_columns(),
       .settings = own_settings,

@@ -43,6 +43,16 @@ std::span<const ContactLaw> contact_laws();
 /// Rows of hair that falls on a plane, by steps. Errors are those in time.
 std::vector<Row> contact_rows(const Row& own, const Sweep& sweep, const ContactLaw& law);
 
+/// Rows of fits on the curl, by steps: of the four parameters to the tip of a run that is
+/// much finer in time, from other values. Errors are those of the
+/// fitted values over the true ones.
+std::vector<Row> fit_rows(const Row& own, const Sweep& sweep);
+
+/// Returns the methods that have gradients of a scene and are among those chosen. Empty
+/// `chosen`: all.
+std::vector<std::string_view> gradient_methods(const simulation::Scene& scene,
+                                               const std::vector<std::string>& chosen);
+
 /// Errors of a gradient to which the work is compared, and the columns with it.
 struct Target {
   double error;

@@ -144,6 +144,23 @@ void judge(const std::vector<Row>& rows, Verdicts& verdicts) {
                measured(row);
       },
       [](const Row& row) { return error(row) / row.number("tip_error_rel"); });
+  const auto fitted = [](std::string_view method, int steps) -> Selection {
+    return [=](const Row& row) {
+      return row.text("part") == "fit" && row.text("integrator") == method &&
+             row.number("steps") == steps && measured(row);
+    };
+  };
+  judge.at_least(
+      "super_helix: a fit by backward_euler with 80 steps is at least 10 % wrong", 0.1,
+      fitted("backward_euler", 80));
+  judge.at_most("super_helix: it leaves at most 0.1 % of the length of the tip's record",
+                1e-3, fitted("backward_euler", 80),
+                [](const Row& row) { return row.number("tip_error_rel"); });
+  for (const std::string_view method : {"tr_bdf2", "esdirk43"}) {
+    judge.at_most(
+        fmt::format("super_helix: a fit by {} with 40 steps is within 2 %", method), 0.02,
+        fitted(method, 40));
+  }
 }
 
 }  // namespace tress::experiments::cost_of_gradient

@@ -80,23 +80,21 @@ bool has_elastic(const Scene& scene) {
          system_of(scene)->sparse_form() == nullptr;
 }
 
-bool has_gradient(const Scene& scene, std::string_view integrator) {
-  const auto system = system_of(scene);
-  return refusal(find_integrator(integrator), *system, scene.options.formulation)
-             .empty() &&
-         !integrators::no_gradient(integrator, *system, scene.options);
-}
+}  // namespace
 
-/// Methods that have gradients and are among those chosen.
-std::vector<std::string_view> methods(const std::vector<std::string>& chosen) {
+std::vector<std::string_view> gradient_methods(const Scene& scene,
+                                               const std::vector<std::string>& chosen) {
+  const auto system = system_of(scene);
   std::vector<std::string_view> all;
   for (const IntegratorEntry& entry : integrator_catalogue()) {
-    if (entry.stages > 0 && wanted(chosen, entry.id)) all.push_back(entry.id);
+    if (entry.stages > 0 && wanted(chosen, entry.id) &&
+        refusal(entry, *system, scene.options.formulation).empty() &&
+        !integrators::no_gradient(entry.id, *system, scene.options)) {
+      all.push_back(entry.id);
+    }
   }
   return all;
 }
-
-}  // namespace
 
 Sweep Sweep::quick() { return {{20, 40, 80, 160, 320}, {40}, {5, 10, 20}, {}, 640}; }
 Sweep Sweep::full() {
@@ -111,9 +109,9 @@ std::vector<Row> time_rows(const Row& own, const Sweep& sweep) {
   const Reference reference =
       reference_in_time(with(given, model, finest_method, count), sweep.reference_steps);
   std::vector<Row> rows;
-  for (const std::string_view method : methods(sweep.integrators)) {
+  for (const std::string_view method :
+       gradient_methods(with(given, model, finest_method, count), sweep.integrators)) {
     const Scene scene = with(given, model, method, count);
-    if (!has_gradient(scene, method)) continue;
     const auto add = [&](const std::vector<int>& all, const Way& way) {
       for (const int steps : all) {
         rows.push_back(row_of(own, model, method, count, steps, way));
@@ -232,7 +230,8 @@ void compare(std::vector<Row>& rows) {
   }
   for (const auto& [name_of_series, series] : all) {
     add_orders(series);
-    if (series.front()->text("part") == "space") continue;
+    const std::string_view part = series.front()->text("part");
+    if (part == "space" || part == "fit") continue;
     for (const Target& target : targets) {
       const auto work = needed(series, target.error);
       for (Row* row : series) {

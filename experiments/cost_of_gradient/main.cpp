@@ -10,7 +10,8 @@ namespace {
 constexpr Column columns[] = {
     {"part",
      "time: a curl that swings, errors by steps; space: the same by elements; contact: "
-     "straight hair that falls on a plane, errors by steps"},
+     "straight hair that falls on a plane, errors by steps; fit: parameters of the curl "
+     "fitted to the tip of a much finer run"},
     {"law", "part = contact: law of contact"},
     {"model", "catalogue id"},
     {"integrator", "method"},
@@ -21,11 +22,14 @@ constexpr Column columns[] = {
      "damped: two short steps of backward Euler, the default of gradients; as_run: none"},
     {"elements", "number of elements"},
     {"steps", "number of steps in 0.25 s"},
-    {"tip_error_rel", "root mean square error of the tip at ten frames, over the length"},
+    {"tip_error_rel",
+     "root mean square error of the tip at ten frames, over the length; part = fit: of "
+     "the fitted run"},
     {"gradient_error_rel",
      "error of the derivative of the tip at ten frames over its size, root mean squares; "
-     "the largest of the four parameters"},
-    {"modulus_error_rel", "error of the derivative by Young's modulus"},
+     "part = fit: error of the fitted value over the true one; the largest of the four "
+     "parameters"},
+    {"modulus_error_rel", "error of the derivative by Young's modulus, or of its fit"},
     {"friction_error_rel", "error of the derivative by the internal friction"},
     {"drag_error_rel", "error of the derivative by the drag"},
     {"curvature_error_rel", "error of the derivative by the natural curvature"},
@@ -37,6 +41,7 @@ constexpr Column columns[] = {
      "the same method; empty: no row is as accurate"},
     {"linearizations_001_percent", "linearizations for a gradient_error_rel of 0.01 %"},
     {"linearizations", "linearizations of the run and of its derivatives"},
+    {"evaluations", "part = fit: runs with their derivatives"},
     {"time_s", "processor time of the run with four derivatives, s", true},
 };
 
@@ -65,6 +70,9 @@ std::vector<Case> cases(const CommandLine& line) {
         [sweep, chosen](const Row& own) { return space_rows(own, sweep, chosen); });
   }
   if (!wanted(line.models, "super_helix")) return all;
+  Row fitted;
+  fitted.set("part", "fit").set("model", "super_helix");
+  add(fitted, [sweep](const Row& own) { return fit_rows(own, sweep); });
   for (const ContactLaw& law : contact_laws()) {
     Row identity;
     identity.set("part", "contact").set("law", law.name).set("model", "super_helix");
@@ -95,6 +103,7 @@ int main(int argc, char** argv) {
       {.name = "cost_of_gradient",
        .question = "how wrong is a gradient, and which method gives 1 % cheapest?",
        .example = "--models super_helix,der --integrators tr_bdf2,esdirk43 --quick",
+       .sizes = {"18 rows, 1 min", "18 rows, more steps and elements"},
        .quick_timeout_s = 600,
        .columns = columns,
        .unused = unused,

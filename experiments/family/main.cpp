@@ -208,6 +208,8 @@ int main(int argc, char** argv) {
       .name = "family",
       .question = "for which hairs and rods are the statements about one hair true?",
       .example = "--set hairs=96 --set study=twist",
+      .sizes = {"347 rows, 30 strands of each family, 1.6 min",
+                "3627 rows, 135 strands and more, hours"},
       .timed = false,
       .quick_timeout_s = 600,  // against hangs only: steps bound the work
       .columns = columns,

@@ -25,7 +25,7 @@ constexpr Known limits[] = {
       "what sticks below 1 mm/s turns round within one of Newton's steps at 0.3 m/s: no "
       "solution of the first step"}},
     {"measure",
-     {"cone_impulse", 2.4, 2.5,
+     {"cone_impulse", 2.4, 2.6,
       "impulses follow the response of the strand's own step, which is linear: at 1/30 s "
       "ends that hit head-on bend it farther than that; cone_exact, which solves for all "
       "at once, passes"}},

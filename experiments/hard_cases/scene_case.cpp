@@ -163,7 +163,7 @@ std::vector<Case> scene_cells(const CommandLine& line, const Settings& settings)
                                own.number("most_energy_gain_j")};
   const auto strands = static_cast<std::size_t>(own.whole("strands"));
   std::vector<Case> all;
-  for (const Scene& given : read_scenes(split(own.word("scenes"), ',', "scenes"))) {
+  for (const Scene& given : read_scenes(listed_files(own.word("scenes"), "scenes"))) {
     const Scene scene = thinned(given, strands);
     for (const ModelEntry* model : models_of(line, scene)) {
       for (const std::string_view integrator : tried_integrators(line)) {

@@ -125,7 +125,7 @@ std::vector<std::string> scenes_of(const Settings& settings) {
   const std::string files(settings.experiment().word("scenes"));
   const bool others = settings.chosen("grooms") && !settings.chosen("scenes");
   if (files.empty() || others) return {};
-  return split(files, ',', "scenes");
+  return listed_files(files, "scenes");
 }
 
 std::vector<std::string> grooms_of(const Settings& settings) {
@@ -216,6 +216,7 @@ int main(int argc, char** argv) {
           "of "
           "all hairs?",
       .example = "--scene scenes/full_head.toml --set accuracy=0.01 --budget 16",
+      .sizes = {"13 rows, fewer hairs, 20 s", "13 rows, 5000 hairs"},
       .quick_timeout_s = 600,
       .columns = head_columns(),
       .settings = own_settings,

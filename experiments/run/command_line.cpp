@@ -34,8 +34,10 @@ bool takes_place(std::span<const OwnOption> own, std::string_view name) {
   return std::ranges::find(own, name, &OwnOption::name) != own.end();
 }
 
-void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOption> own) {
-  app.add_flag("--list", line.list, "print models, integrators and what drives what");
+void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOption> own,
+             const Sizes& sizes) {
+  app.add_flag("--list", line.list,
+               "print models, integrators and which integrator drives which model");
   app.add_option("--models", raw.models, "models to run, as in a,b");
   app.add_option("--integrators", raw.integrators, "integrators to run, as in a,b");
   app.add_option("--elements", raw.elements, "element counts, as in 1,2,5,10:40:10");
@@ -47,16 +49,16 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
   app.add_option(
          "--plugin", raw.plugins,
          "shared library of further models, integrators, effects (docs/plugins.md); "
-         "again for another")
+         "repeatable")
       ->allow_extra_args(false);
   app.add_option("--options", raw.options, "TOML file with any of these options");
   app.add_option("--set", raw.set,
-                 "key=value for the experiment, integrators or models; again for another")
+                 "key=value for the experiment, integrators or models; repeatable")
       ->allow_extra_args(false);
   app.add_option("--out", raw.out,
                  "result table (default results/<experiment>.csv), or -");
-  app.add_flag("--quick", line.quick, "fewest rows, those of ./tress run: minutes");
-  app.add_flag("--full", line.full, "most rows: hours for some experiments");
+  app.add_flag("--quick", line.quick, fmt::format("as ./tress run: {}", sizes.quick));
+  app.add_flag("--full", line.full, std::string(sizes.full));
   app.add_option(
       "--jobs", raw.jobs,
       "rows run at the same time (default: the number of processors, or 1 where "
@@ -67,7 +69,7 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
                  "time limit per row, as in 30s, 10m, 2h (default 10m; with --quick 1m "
-                 "or more): only against hangs, as max_work bounds a row");
+                 "or more). It ends rows that hang; max_work bounds their work");
   app.add_option("--repeat", raw.repeat, "repeats of every timing (default 3)");
   app.add_flag("--resume", line.resume, "keep the rows that an earlier run finished");
   app.add_flag("--retry-failed", line.retry_failed, "redo failed rows, with --resume");
@@ -280,12 +282,12 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
                                std::string_view example, int argc,
                                const char* const* argv, std::span<const OwnOption> own,
                                std::span<const Unused> unused,
-                               std::span<const Parameter> keys) {
+                               std::span<const Parameter> keys, const Sizes& sizes) {
   CommandLine line;
   Raw raw;
   CLI::App app{fmt::format("{}: {}", name, question), std::string(name)};
   app.set_version_flag("--version", build_facts().described(name));
-  declare(app, line, raw, own);
+  declare(app, line, raw, own, sizes);
   hide(app, unused);
   try {
     app.parse(argc, argv);

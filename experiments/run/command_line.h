@@ -65,6 +65,12 @@ inline constexpr Unused not_repeated{"repeat", "no row is timed more than once"}
 /// Whether a choice such as --models includes `id`; an empty choice includes everything.
 bool wanted(const std::vector<std::string>& chosen, std::string_view id);
 
+/// Numbers of rows that --quick and --full run, with what differs otherwise. With --quick
+/// also the wall time of ./tress run on two idle cores.
+struct Sizes {
+  std::string_view quick = "fewest rows", full = "most rows";
+};
+
 /// The user asked for help or the version: print `what()` and leave with 0.
 class Answer : public std::runtime_error {
  public:
@@ -79,7 +85,8 @@ CommandLine parse_command_line(std::string_view name, std::string_view question,
                                const char* const* argv,
                                std::span<const OwnOption> own = {},
                                std::span<const Unused> unused = {},
-                               std::span<const Parameter> keys = {});
+                               std::span<const Parameter> keys = {},
+                               const Sizes& sizes = {});
 
 /// Throws an InputError for a command line that `app` cannot parse. The message names the
 /// offending argument; the remedy is its present name, the nearest option or --help.

@@ -314,7 +314,7 @@ int dry_run(const Experiment& experiment, const CommandLine& line) {
 int answer(const Experiment& experiment, int argc, char** argv) {
   CommandLine line = parse_command_line(
       experiment.name, experiment.question, experiment.example, argc, argv,
-      experiment.options, experiment.unused, experiment.settings);
+      experiment.options, experiment.unused, experiment.settings, experiment.sizes);
   for (const std::string& plugin : line.plugins) load_plugin(plugin);
   if (!experiment.timed && line.places.count("jobs") == 0) {
     line.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -52,6 +52,7 @@ struct Gloss {
 struct Experiment {
   std::string_view name, question;
   std::string_view example;  // arguments only: "--models bead_on_wire --quick"
+  Sizes sizes = {};          // for the help text
   /// False: no time in the table is a primary result, and one row per processor runs at
   /// once unless --jobs sets another number. True: one row at a time, and the table gets
   /// the column others_load.

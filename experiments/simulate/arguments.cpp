@@ -47,7 +47,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--out", a.out, "folder for the results (default results/scenes)");
   app.add_option("--plugin", a.plugins,
                  "shared library of further models, integrators, effects "
-                 "(docs/plugins.md); again for another")
+                 "(docs/plugins.md); repeatable")
       ->allow_extra_args(false);
   app.add_option("--threads", a.threads, "threads that share the strands (default 1)")
       ->check(CLI::Range(1, 1024));

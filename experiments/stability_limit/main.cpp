@@ -120,7 +120,7 @@ std::vector<Case> cases(const CommandLine& line) {
   };
   const double row_work = most(3e6, 2e7, 1e8), ladder_work = most(3e7, 1e8, 3e8);
   if (!rows.word("scenes").empty()) {
-    const auto files = split(rows.word("scenes"), ',', "scenes");
+    const auto files = listed_files(rows.word("scenes"), "scenes");
     SceneLimits how{search, row_work, set_or(rows, "horizon_s", 0.5),
                     static_cast<std::size_t>(rows.whole("strands")), line.repeat};
     std::vector<Case> all = scene_cases(line, files, how);
@@ -176,6 +176,7 @@ int main(int argc, char** argv) {
       .name = "stability_limit",
       .question = "what is the largest stable step against the number of elements?",
       .example = "--elements 5,20 --integrators backward_euler --set scene=shake",
+      .sizes = {"456 rows, 2.5 min", "7864 rows, hours"},
       .timed = false,
       .columns = columns,
       .settings = stability_settings(),

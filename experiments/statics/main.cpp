@@ -200,7 +200,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const bool ours = !settings.chosen("scenes") && !settings.chosen("over");
   const std::string over(ours ? shipped_range : own.word("over"));
   std::vector<Case> all;
-  const auto files = simulation::split(own.word("scenes"), ',', "scenes");
+  const auto files = simulation::listed_files(own.word("scenes"), "scenes");
   for (const Scene& scene : simulation::read_scenes(files)) {
     check_strand(scene, work, place_of_setting(line, "strand"));
     for (const ModelEntry* model : models_of(scene, line)) {
@@ -243,6 +243,7 @@ int main(int argc, char** argv) {
           "which equilibria does a strand have along one parameter, and where do "
           "they lose stability?",
       .example = "--scene scenes/cantilever.toml --over gravity=0..2",
+      .sizes = {"2 rows, 1 s", "the same rows"},
       .timed = false,
       .columns = path_columns(),
       .settings = own_settings,

@@ -207,6 +207,38 @@ inline double next_breakpoint(const Effects& effects, double t) {
   return next;
 }
 
+/// Returns the sum of their uniform accelerations, m/s^2.
+inline Vec uniform_acceleration(const Effects& effects) {
+  Vec sum;
+  for (const auto& effect : effects) {
+    sum = sum + effect->uniform_acceleration().value_or(Vec{});
+  }
+  return sum;
+}
+
+/// Returns the sum of their viscosities.
+inline Viscosity viscosity(const Effects& effects) {
+  Viscosity sum;
+  for (const auto& effect : effects) {
+    const Viscosity own = effect->viscosity().value_or(Viscosity{});
+    sum.per_length += own.per_length;
+    sum.per_mass += own.per_mass;
+  }
+  return sum;
+}
+
+/// Returns true if the load is neither a uniform acceleration nor a viscosity: it then
+/// depends on the place of a point.
+inline bool depends_on_place(const Effect& effect) {
+  return !effect.uniform_acceleration() && !effect.viscosity();
+}
+
+/// Returns true if the load of some effect depends on the place of a point.
+inline bool depend_on_place(const Effects& effects) {
+  return std::ranges::any_of(
+      effects, [](const auto& effect) { return depends_on_place(*effect); });
+}
+
 /// Returns the union of the effects' needs.
 inline Needs needs(const Effects& effects) {
   Needs all;

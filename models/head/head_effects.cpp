@@ -16,17 +16,12 @@ std::optional<HeadRefusal> refused_by_heads(const Effect& effect) {
 }
 
 void take_uniform_effects(LaneOptions& options) {
-  std::erase_if(options.effects, [&](const auto& effect) {
-    if (const auto acceleration = effect->uniform_acceleration()) {
-      options.gravity = options.gravity + *acceleration;
-      return true;
-    }
-    const auto viscosity = effect->viscosity();
-    if (!viscosity) return false;
-    options.drag += viscosity->per_length;
-    options.mass_damping += viscosity->per_mass;
-    return true;
-  });
+  const Viscosity air = viscosity(options.effects);
+  options.gravity = options.gravity + uniform_acceleration(options.effects);
+  options.drag += air.per_length;
+  options.mass_damping += air.per_mass;
+  std::erase_if(options.effects,
+                [](const auto& effect) { return !depends_on_place(*effect); });
 }
 
 }  // namespace tress::models

@@ -65,10 +65,7 @@ void MaximalSystem::place_transposed(double t, In q, In v, In a, In mu) noexcept
 
 /// Uniform accelerations load masses.
 void MaximalSystem::add_by_constants(InOut by) noexcept {
-  Vec uniform;
-  for (const auto& effect : strand_.effects) {
-    if (const auto field = effect->uniform_acceleration()) uniform = uniform + *field;
-  }
+  const Vec uniform = uniform_acceleration(strand_.effects);
   for (std::size_t point = 1; point < mass_.size(); ++point) {
     const std::size_t k = 3 * point - held();
     by[point] += dot(load3(&a_transposed_[k]) - uniform, load3(&mu_[k]));

@@ -27,16 +27,11 @@ class InverseDynamics {
   /// all others load the points. `kinematics` must outlive it.
   InverseDynamics(K& kinematics, Effects effects)
       : kinematics_(kinematics), effects_(std::move(effects)), needs_(needs(effects_)) {
-    Vec uniform;
     for (const auto& effect : effects_) {
-      if (const auto acceleration = effect->uniform_acceleration()) {
-        uniform = uniform + *acceleration;
-      } else {
-        loading_.push_back(effect.get());
-        if (!effect->viscosity()) placed_.push_back(effect.get());
-      }
+      if (!effect->uniform_acceleration()) loading_.push_back(effect.get());
+      if (depends_on_place(*effect)) placed_.push_back(effect.get());
     }
-    kinematics.fall(uniform);
+    kinematics.fall(uniform_acceleration(effects_));
     const std::size_t blocks = kinematics.blocks().size(), all = kinematics.points();
     load_.resize(3 * all);
     mass_.resize(all);
@@ -131,14 +126,10 @@ class InverseDynamics {
   /// Subtracts vel times the drag per velocity of viscous effects from blocks (9 per
   /// point) of -vel df/dv.
   void subtract_viscous(double vel, InOut blocks) const {
-    for (const auto& effect : effects_) {
-      const auto viscosity = effect->viscosity();
-      if (!viscosity) continue;
-      for (std::size_t i = 0; i < mass_.size(); ++i) {
-        const double rate =
-            viscosity->per_length * length_[i] + viscosity->per_mass * mass_[i];
-        for (const std::size_t k : {0, 4, 8}) blocks[9 * i + k] -= vel * rate;
-      }
+    const Viscosity air = viscosity(effects_);
+    for (std::size_t i = 0; i < mass_.size(); ++i) {
+      const double rate = air.per_length * length_[i] + air.per_mass * mass_[i];
+      for (const std::size_t k : {0, 4, 8}) blocks[9 * i + k] -= vel * rate;
     }
   }
   /// Writes derivatives() of the effects that couple no points.

@@ -629,10 +629,7 @@ class ReducedSystem : public System,
   }
   /// Kinematics measure accelerations relative to a frame that falls.
   void accelerations(double t, In q, In v, In a, Out x) override {
-    Vec fall;
-    for (const auto& effect : dynamics_.effects()) {
-      fall = fall + effect->uniform_acceleration().value_or(Vec{});
-    }
+    const Vec fall = uniform_acceleration(dynamics_.effects());
     kinematics_.move(t, q, v, a);
     const auto put = [&](std::size_t point, const FrameMotion& m) {
       store3(m.frame * m.a + fall, &x[3 * point]);

@@ -123,9 +123,9 @@ COMMAND = Command(
          "7000 short runs, --advice 20 minutes and more, --mutants half an hour and more.",
     options=(
         ("--sanitize", "build with sanitizers (preset debug)"),
-        ("--fuzz [-- SECONDS SEED [READER...]]", "corrupted files for the reader of scenes and each "
-         "reader of grooms (hair, data, bin, ply, usda, vtp), under sanitizers (default: 60 s "
-         "each, seed 1)"),
+        ("--fuzz [-- SECONDS SEED [READER...]]", "corrupted files for the reader of scenes, each "
+         "reader of grooms (hair, data, bin, ply, usda, vtp) and of meshes (mesh.obj, mesh.ply, "
+         "mesh.stl), under sanitizers (default: 60 s of processor time each, seed 1)"),
         ("--corpus [-- --seed N]", "7000 bad inputs of all kinds through every program: is each "
          "refused in one line, with exit code 2?"),
         ("--extremes [-- COUNT SEED]", "random legal scenes of extreme numbers: does one crash, "

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "contract/input_error.h"
 
@@ -53,6 +55,12 @@ std::vector<std::string> split(std::string_view text, char separator,
     at = end + 1;
   }
   return parts;
+}
+
+std::vector<std::string> listed_files(std::string_view text, const std::string& where) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(text, error)) return {std::string(text)};
+  return split(text, ',', where);
 }
 
 std::vector<int> parse_counts(std::string_view text, const std::string& where) {

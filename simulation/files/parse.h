@@ -31,4 +31,8 @@ std::uint64_t parse_whole(std::string_view text, const std::string& where,
 std::vector<std::string> split(std::string_view text, char separator,
                                const std::string& where);
 
+/// Returns the files that a list such as "a,b" names. A text that is the name of a file
+/// is that file, with its commas. Throws InputError for an empty entry.
+std::vector<std::string> listed_files(std::string_view text, const std::string& where);
+
 }  // namespace tress::simulation

@@ -248,11 +248,7 @@ LaneGuard::LaneGuard(const Scene& scene, const HeadOptions& options, bool at_res
       works_(moves_ || !at_rest),
       at_rest_(at_rest),
       stretches_(steps_edges(scene)),
-      acts_somewhere_(std::ranges::any_of(effects_,
-                                          [](const auto& effect) {
-                                            return !effect->uniform_acceleration() &&
-                                                   !effect->viscosity();
-                                          })),
+      acts_somewhere_(models::depend_on_place(effects_)),
       helices_(!stretches_ && !steps_chains(scene) && !steps_clothoids(scene)),
       clothoids_(steps_clothoids(scene)),
       elements_(static_cast<std::size_t>(options.elements)) {

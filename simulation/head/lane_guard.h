@@ -78,10 +78,11 @@ class LaneGuard final : public HeadGuard {
   RootMotion motion_;
   models::Effects effects_;
   std::vector<const models::Effect*> placed_;  // of these, those with potentials here
-  bool moves_, works_;   // the head; whether anything can do work in its frame
-  bool at_rest_;         // as LaneGuard()
-  bool stretches_;       // springs
-  bool acts_somewhere_;  // whether some effect is neither uniform nor drag
+  bool moves_, works_;  // the head; whether anything can do work in its frame
+  bool at_rest_;        // as LaneGuard()
+  bool stretches_;      // springs
+  bool
+      acts_somewhere_;  // whether the load of some effect depends on the place of a point
   std::vector<double> at_, weight_;  // of points, of an element's length; none: nodes
   bool helices_, clothoids_;         // elements of constant, of linear curvature
   std::size_t elements_;

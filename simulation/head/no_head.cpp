@@ -176,7 +176,7 @@ std::optional<NoHead> no_effects(const Scene& scene) {
         return NoHead{fmt::format("[effects.{}], as {}", choice.entry->id, no->reason),
                       "leave it out"};
       }
-      if (!bodies.empty() && !effect->uniform_acceleration() && !effect->viscosity() &&
+      if (!bodies.empty() && models::depends_on_place(*effect) &&
           effect->rigid_contact() == nullptr) {
         return NoHead{fmt::format("[effects.{}] with {}", choice.entry->id, bodies),
                       with_others(scene)};

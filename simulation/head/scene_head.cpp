@@ -28,7 +28,7 @@ constexpr std::size_t parts = 64;  // of strands that are made at the same time
 bool at_rest_in_head(const Scene& scene) {
   return std::ranges::all_of(scene.effects, [&](const EffectChoice& choice) {
     const auto effect = make_effect(scene, choice);
-    return effect != nullptr && (effect->uniform_acceleration() || effect->viscosity() ||
+    return effect != nullptr && (!models::depends_on_place(*effect) ||
                                  (effect->rigid_contact() != nullptr &&
                                   choice.parameters.word("moves") == "head"));
   });

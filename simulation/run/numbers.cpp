@@ -31,10 +31,7 @@ ScaleNumbers scale_numbers(const Scene& scene) {
   const Vec moduli = stiffness(strand, strand.segments.front());
   const double bending = std::min(moduli.y, moduli.z);
   const double scale = line_density(strand) * std::pow(strand.length(), 3) / bending;
-  Vec fall;
-  for (const auto& effect : make_effects(scene)) {
-    if (const auto g = effect->uniform_acceleration()) fall = fall + *g;
-  }
+  const Vec fall = models::uniform_acceleration(make_effects(scene));
   return {norm(fall) * scale, rms_root_acceleration(scene, strand.root) * scale,
           moduli.x / bending};
 }

@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "contract/input_error.h"
+#include "contract/parameters.h"
+#include "math/frame.h"
 #include "math/vec3.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/schema.h"
 
 namespace tress::test_field_cases {
 
@@ -221,6 +225,116 @@ double creep(const Scene& scene) {
 TEST(FieldCase, HairOnASlopeCreepsByTheRegularisedLawOnly) {
   EXPECT_NEAR(creep(slope("friction_law = \"regularised\"\n")), 0.3519e-3, 5e-7);
   EXPECT_LE(creep(slope("friction_law = \"exact\"\nnormal = \"rigid\"\n")), 1e-12);
+}
+
+/// A system of units: SI units per its units of length, mass and time.
+struct Units {
+  const char* name;
+  double metre, kilogram, second;
+};
+
+/// A curl that swings in air, in these units, all turned by `angle` about an axis that is
+/// none of the three.
+std::string swinging(const char* model, const char* method, const Units& of,
+                     double angle) {
+  const auto unit = [&of](double si, int length, int mass, int time) {
+    return number_text(si * std::pow(of.metre, length) * std::pow(of.kilogram, mass) *
+                       std::pow(of.second, time));
+  };
+  const Frame turned = rotation((1 / norm(Vec{1, 2, 3})) * Vec{1, 2, 3}, angle);
+  const auto direction = [&](const Vec& x) {
+    const Vec y = turned * x;
+    return "[" + number_text(y.x) + ", " + number_text(y.y) + ", " + number_text(y.z) +
+           "]";
+  };
+  const Vec down = turned * Vec{0, 0, -9.81};
+  return "duration_s = " + unit(0.1, 0, 0, 1) + "\nframes_per_s = " + unit(50, 0, 0, -1) +
+         "\n[model]\nid = \"" + model + "\"\n[integrator]\nid = \"" + method +
+         "\"\ndt_s = " + unit(0.002, 0, 0, 1) +
+         "\nnewton_tolerance = 1e-13\n[material]\nname = \"custom\"\npoisson_ratio = "
+         "0.3\n"
+         "radius_m = " +
+         unit(1e-4, 1, 0, 0) + "\nyoungs_modulus_pa = " + unit(1e8, -1, 1, -2) +
+         "\ndensity_kg_m3 = " + unit(1300, -3, 1, 0) +
+         "\ninternal_friction_kg_m3_s = " + unit(1e-11, 3, 1, -1) +
+         "\n[strand]\nlength_m = " + unit(0.1, 1, 0, 0) +
+         "\nelements = 8\nroot_tangent = " + direction({1, 0, 0}) +
+         "\nnormal = " + direction({0, 0, 1}) +
+         "\nshape = \"helix\"\ncurl_radius_m = " + unit(0.01, 1, 0, 0) +
+         "\ncurl_pitch_m = " + unit(0.03, 1, 0, 0) +
+         "\n[effects.gravity]\ngravity_m_s2 = [" + unit(down.x, 1, 0, -2) + ", " +
+         unit(down.y, 1, 0, -2) + ", " + unit(down.z, 1, 0, -2) +
+         "]\n[effects.linear_drag]\ndrag_kg_m_s = " + unit(1e-4, -1, 1, -1) + "\n";
+}
+
+std::vector<double> end_of(const std::string& text) {
+  const Scene scene = scene_of(text);
+  World world(scene);
+  EXPECT_EQ(ending(world, scene), "");
+  return world.positions();
+}
+
+class OfModel : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+/// The physics has no units of its own. Rounding of the scaled numbers, 1e-16 each, grows
+/// over 50 steps with the stiffest motion of the model, stretching with 1e6 times the
+/// stiffness of bending, to 1e-9 of the length at most.
+TEST_P(OfModel, UnitsDoNotMatter) {
+  const auto& [model, method] = GetParam();
+  const std::vector<double> si = end_of(swinging(model, method, {"SI", 1, 1, 1}, 0));
+  for (const Units& of : {Units{"cm g s", 100, 1000, 1}, Units{"mm g ms", 1e3, 1e3, 1e3},
+                          Units{"inch pound s", 1 / 0.0254, 1 / 0.45359237, 1},
+                          Units{"dm kg s/10", 10, 1, 10}}) {
+    const std::vector<double> x = end_of(swinging(model, method, of, 0));
+    ASSERT_EQ(x.size(), si.size());
+    double apart = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      apart = std::max(apart, std::abs(x[i] / of.metre - si[i]));
+    }
+    EXPECT_LT(apart, 1e-9 * 0.1) << of.name;
+  }
+}
+
+/// Nor has it directions.
+TEST_P(OfModel, DirectionsDoNotMatter) {
+  const auto& [model, method] = GetParam();
+  const std::vector<double> plain = end_of(swinging(model, method, {"SI", 1, 1, 1}, 0));
+  const double angle = 10 * std::numbers::pi / 180;
+  const Frame turned = rotation((1 / norm(Vec{1, 2, 3})) * Vec{1, 2, 3}, angle);
+  const std::vector<double> x = end_of(swinging(model, method, {"SI", 1, 1, 1}, angle));
+  double apart = 0, moved = 0;
+  for (std::size_t i = 0; i < x.size(); i += 3) {
+    apart = std::max(apart, norm(load3(&x[i]) - turned * load3(&plain[i])));
+    moved = std::max(moved, norm(load3(&x[i]) - load3(&plain[i])));
+  }
+  EXPECT_LT(apart, 1e-9 * 0.1);
+  EXPECT_GT(moved, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(FieldCase, OfModel,
+                         testing::Values(std::pair{"super_helix", "tr_bdf2"},
+                                         std::pair{"super_clothoid", "esdirk43"},
+                                         std::pair{"articulated_chain", "bdf2"},
+                                         std::pair{"der", "backward_euler"},
+                                         std::pair{"corde", "generalized_alpha"},
+                                         std::pair{"mass_spring",
+                                                   "linearly_implicit_euler"}),
+                         [](const auto& of) { return std::string(of.param.first); });
+
+/// The scene that `simulate --print-defaults` writes runs to its end and is damped. A
+/// hair of 0.1 m in air of 8e-5 kg/(m s) has the rate of damping drag/(2 rho A) = 6/s,
+/// and the friction of the material adds to it: after 1 s less than e^-6 of the height
+/// that it falls through is left as kinetic energy, and more than 1e-9 of it.
+TEST(FieldCase, DefaultsAreAStableDampedScene) {
+  const Scene scene = parse_scene(scene_defaults(), "defaults.toml");
+  World world(scene);
+  ASSERT_EQ(ending(world, scene), "");
+  EXPECT_DOUBLE_EQ(world.time(), 1);
+  double falls = 0;
+  for (const double of_effect : world.energies().effects) falls -= of_effect;
+  EXPECT_GT(falls, 0);
+  EXPECT_LT(world.energies().kinetic, std::exp(-6) * falls);
+  EXPECT_GT(world.energies().kinetic, 1e-9 * falls);
 }
 
 }  // namespace tress::test_field_cases

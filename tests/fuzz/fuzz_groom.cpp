@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -13,17 +12,20 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/mesh/read_mesh.h"
 #include "simulation/files/files.h"
 #include "simulation/groom/place_groom.h"
+#include "tests/models/mesh/mesh_files.h"
 #include "tests/simulation/mutations.h"
 #include "tests/support/groom_bytes.h"
 #include "tests/support/made_groom.h"
 
-// fuzz_groom SECONDS SEED READER...: spoils grooms of each reader (hair, data, bin, ply,
-// usda, vtp; all of them if none is named) for so long, and reads them. Ends with 1 on
-// anything but strands or an InputError of one line, on more than 2 s of processor time
-// for a MB and on more memory than 20 times the file; a crash or a hang (60 s for one
-// file) ends it by a signal. The file it failed on is left as fuzz_groom_last.READER.
+// fuzz_groom SECONDS SEED READER...: spoils files of each reader of grooms (hair, data,
+// bin, ply, usda, vtp) and of meshes (mesh.obj, mesh.ply, mesh.stl; all of them if none
+// is named) for so much processor time, and reads them. Ends with 1 on anything but what
+// the reader returns or an InputError of one line, on more than 2 s of processor time for
+// a MB and on more memory than 20 times the file; a crash or a hang (60 s for one file)
+// ends it by a signal. The file it failed on is left as fuzz_groom_last.READER.
 
 namespace {
 
@@ -59,7 +61,9 @@ constexpr double seconds_of_mb = 2, start = 0.5;  // s
 // The buffer of a file, and a little of everything.
 constexpr std::size_t memory_of_byte = 20, least_memory = 1 << 20;
 constexpr std::size_t longest = 1 << 20;
-constexpr const char* readers[] = {"hair", "data", "bin", "ply", "usda", "vtp"};
+constexpr const char* readers[] = {"hair", "data",     "bin",      "ply",     "usda",
+                                   "vtp",  "mesh.obj", "mesh.ply", "mesh.stl"};
+bool of_meshes(const std::string& reader) { return reader.starts_with("mesh."); }
 
 /// What the mutations of a USD file begin with: all that its reader knows.
 constexpr const char* usd_stage = R"(#usda 1.0
@@ -101,8 +105,22 @@ def Xform "head" (
 }
 )";
 
+std::vector<std::string> meshes(const std::string& reader) {
+  const models::TriangleMesh ball = testing_support::ball(0.1, 1);
+  if (reader == "mesh.obj") {
+    return {testing_support::as_obj(ball),
+            "# a quad, by corner, texture and normal\no a\ng b\nusemtl c\nv 0 0 0\nv 1 0 "
+            "0\nv 1 1 0\nv 0 1 0 1\nvt 0 0\nvn 0 0 1\ns off\nf 1/1/1 2//1 -2/1 -1\n"};
+  }
+  if (reader == "mesh.ply") return {testing_support::as_ply(ball)};
+  return {testing_support::as_stl(ball),
+          "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex "
+          "0 1 0\nendloop\nendfacet\nendsolid a\n"};
+}
+
 /// Sound files of a reader.
 std::vector<std::string> corpus(const std::string& reader) {
+  if (of_meshes(reader)) return meshes(reader);
   testing_support::MadeGroom groom = testing_support::ponytail();
   groom.locks = 2;
   groom.hairs = 2;
@@ -175,19 +193,15 @@ struct Worst {
 };
 
 /// Why the file is a finding; empty: it is none.
-std::string finding(const std::string& name, std::size_t size,
-                    const GroomReading& reading, Worst& worst, bool& refused) {
+template <class Read>
+std::string finding(std::size_t size, const Read& read, Worst& worst, bool& refused) {
   const double begun = processor_seconds();
   const std::size_t before = heap.now;
   heap.most = before;
   std::size_t taken = 0;
   std::string why;
   try {
-    GroomFile read = read_groom(name, reading);
-    taken = heap.most - before;
-    GroomPlacing placing;
-    placing.bad = reading.bad;
-    place_groom(std::move(read), name, placing);
+    read([&] { taken = heap.most - before; });
   } catch (const InputError& error) {
     refused = true;
     if (std::string_view(error.what()).find('\n') != std::string_view::npos) {
@@ -215,16 +229,31 @@ std::string finding(const std::string& name, std::size_t size,
   return {};
 }
 
+/// Reads a file and uses what it holds. `read`: to be called in between.
+template <class Read>
+void use_mesh(const std::string& name, const Read& read) {
+  const models::TriangleMesh mesh = models::read_mesh(name, 1);
+  read();
+  const models::ClosedSurface surface(mesh, name);
+}
+template <class Read>
+void use_groom(const std::string& name, const GroomReading& reading, const Read& read) {
+  GroomFile file = read_groom(name, reading);
+  read();
+  GroomPlacing placing;
+  placing.bad = reading.bad;
+  place_groom(std::move(file), name, placing);
+}
+
 /// Whether nothing was found.
 bool fuzz(const std::string& reader, int seconds, std::uint64_t seed) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::seconds(seconds);
+  const double end = processor_seconds() + seconds;
   Mutations mutations(seed);
   const std::vector<std::string> files = corpus(reader);
   const std::string last = "fuzz_groom_last." + reader;
   Worst worst;
   long read = 0, refusals = 0;
-  while (Clock::now() < end) {
+  while (processor_seconds() < end) {
     const std::string file = spoilt(files[mutations.pick(files.size())], mutations);
     std::FILE* const to = std::fopen(last.c_str(), "wb");
     if (to != nullptr) {
@@ -236,7 +265,13 @@ bool fuzz(const std::string& reader, int seconds, std::uint64_t seed) {
     if (reader == "usda") reading.hidden = mutations.pick(2) == 0;
     ::alarm(hang);
     bool refused = false;
-    const std::string why = finding(last, file.size(), reading, worst, refused);
+    const std::string why = finding(
+        file.size(),
+        [&](const auto& read_now) {
+          of_meshes(reader) ? use_mesh(last, read_now)
+                            : use_groom(last, reading, read_now);
+        },
+        worst, refused);
     ::alarm(0);
     if (!why.empty()) {
       std::fprintf(stderr, "%s (%s)\n", why.c_str(), last.c_str());
@@ -263,8 +298,10 @@ int main(int argc, char** argv) {
   if (chosen.empty()) chosen.assign(std::begin(readers), std::end(readers));
   for (const std::string& reader : chosen) {
     if (argc >= 3 && std::ranges::count(readers, reader) > 0) continue;
-    std::fputs("usage: fuzz_groom SECONDS SEED [hair|data|bin|ply|usda|vtp ...]\n",
-               stderr);
+    std::fputs(
+        "usage: fuzz_groom SECONDS SEED "
+        "[hair|data|bin|ply|usda|vtp|mesh.obj|mesh.ply|mesh.stl ...]\n",
+        stderr);
     return 2;
   }
   const std::uint64_t seed = std::strtoull(argv[2], nullptr, 10);

@@ -140,6 +140,20 @@ TEST_P(AdjointOf, TheRecordIsShort) {
   }
 }
 
+// 1e5 steps of 10 elements would take (3n + 8) 8e5 bytes, 78 MB with n = 30.
+TEST(AdjointRun, RecordsOfLongRunsAreWrittenInParts) {
+  StrandRun run = swing("super_helix", "backward_euler");
+  run.settings[0].second = "10";
+  constexpr int steps = 100'000;
+  run.options.step = 0.1 / steps;
+  const auto system = run.make();
+  AdjointRun adjoint(*system, run.make(), {}, {run.method, run.options});
+  ASSERT_EQ(adjoint.start(), Status::ok);
+  ASSERT_EQ(adjoint.advance(0.1), Status::ok);
+  EXPECT_GT(adjoint.parts(), 1u);
+  EXPECT_LT(adjoint.record_bytes(), 200e6);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, AdjointOf, testing::ValuesIn(stage_methods()),
                          [](const auto& c) { return c.param; });
 

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "contract/input_error.h"
@@ -86,6 +88,16 @@ TEST(Parse, CountsAreListsAndRangesWithoutRepeats) {
                           "1:9999999", "99999999999999999999"}) {
     EXPECT_THROW(parse_counts(bad, "x"), InputError) << bad;
   }
+}
+
+TEST(Parse, AFileMayHaveCommasInItsName) {
+  EXPECT_THAT(listed_files("a.toml, b.toml", "x"), ElementsAre("a.toml", "b.toml"));
+  const std::string name = testing::TempDir() + "a,b.toml";
+  std::ofstream(name) << "\n";
+  EXPECT_THAT(listed_files(name, "x"), ElementsAre(name));
+  std::filesystem::remove(name);
+  EXPECT_EQ(listed_files(name, "x").size(), 2U);
+  EXPECT_THROW(listed_files("a,,b", "x"), InputError);
 }
 
 TEST(Parse, DurationsHaveUnits) {

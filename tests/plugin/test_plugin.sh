@@ -50,6 +50,56 @@ grep -q '"file": "build/plugin/libexample.so"' results/stability_limit.meta.json
 node "$repository/experiments/report/dist/report.mjs" results --out results/report.html
 grep -q simo_reissner results/report.html || { echo "the page lacks the model"; exit 1; }
 
+# --- a batch of its model, by its method, and by mpirun --------------------------------------
+cat >batch.toml <<'TOML'
+title = "a groom of the plug-in's rod"
+duration_s = 0.02
+frames_per_s = 100
+[model]
+id = "simo_reissner"
+[integrator]
+id = "sdirk2"
+dt_s = 0.002
+[material]
+[groom]
+count = 6
+elements = 4
+length_m = 0.05
+[root]
+motion = "shake"
+[effects.gravity]
+[effects.linear_drag]
+TOML
+# run_as KIND OUT [COMMAND...]
+run_as() {
+  expect 0 . "${@:3}" build/release/experiments/simulate batch.toml --plugin "$library" \
+    --as "$1" --progress none --out "$2"
+}
+hash_of() { sed -n 's/.*"state_hash": *"\([0-9a-f]*\)".*/\1/p' "$1/batch.meta.json"; }
+run_as batch batch
+run_as strands strands
+[[ $(wc -l <batch/batch.csv) == 4 ]] || { echo "not three frames:"; cat batch/batch.csv; exit 1; }
+python3 - <<'PYTHON'
+import csv
+def last(folder):
+    return list(csv.DictReader(open(f"{folder}/batch.csv")))[-1]
+batch, strands = last("batch"), last("strands")
+both = [name for name in strands if name.endswith("_j") and name in batch]
+assert len(both) > 3, both
+scale = max(abs(float(strands[name])) for name in both)
+assert scale > 0
+for name in both:  # replicated systems take the steps of a single strand
+    assert abs(float(batch[name]) - float(strands[name])) <= 1e-9 * scale, name
+PYTHON
+if command -v mpirun >/dev/null; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+    OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none \
+    OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_btl=self,vader
+  run_as batch ranks mpirun -n 2
+  [[ -n $(hash_of batch) && $(hash_of ranks) == "$(hash_of batch)" ]] ||
+    { echo "two ranks end in another state"; exit 1; }
+fi
+
 # --- the contract suites -------------------------------------------------------------------
 mapfile -t checks <build/release/tests/checks.txt
 for check in "${checks[@]}"; do

@@ -110,7 +110,7 @@ def two_engines_table(tables):
                       f"`{before['model']}`, `{before['integrator']}`, {before['elements']:.0f}", number(before["cost_factor"]),
                       f"`{now['model']}`, `{now['integrator']}`, {now['elements']:.0f}",
                       "" if other is None else number(other["cost_factor"])])
-    return table(["scene", "two engines: cheapest, elements", "next best", "one engine: cheapest, elements", "next best"], lines)
+    return table(["scene", "before: cheapest, elements", "next best", "now: cheapest, elements", "next best"], lines)
 
 
 def commit_of_two_engines(tables):

@@ -128,12 +128,7 @@ class SweptElements final : public StrandSweepsOf<typename Kind::Real> {
   }
   void describe(const ReducedStrand& strand, int lane) {
     double before = strand.root_rotor;
-    Viscosity air;
-    for (const auto& effect : strand.effects) {
-      const Viscosity own = effect->viscosity().value_or(Viscosity{});
-      air.per_length += own.per_length;
-      air.per_mass += own.per_mass;
-    }
+    const Viscosity air = viscosity(strand.effects);
     for (std::size_t i = 0; i < elements_.size(); ++i) {
       const ReducedSegment& segment = strand.segments[i];
       const PointBlock& first = strand.blocks[segment.first_block];
