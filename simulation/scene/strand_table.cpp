@@ -23,6 +23,11 @@ constexpr double most = 1e6;
 constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
 
 constexpr Parameter own_parameters[] = {
+    {.name = "name", .help = "name of the strand in [joints]", .text = true},
+    {.name = "root",
+     .help = "common: the root moves as [root] prescribes; free: it moves freely, held "
+             "by supports and joints alone",
+     .choices = "common|free"},
     {.name = "position_m",
      .help = "position x, y, z of the root (m)",
      .min = -most,
@@ -161,6 +166,15 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
       needed_elements(table, material, length, natural, frame.e0, tolerance));
 }
 
+/// Those of all strands, unless the root of this one is free.
+RootMotions roots_of(const Table& table, const Common& common) {
+  static const std::optional<FreeRoot> at_rest{FreeRoot{}};
+  if (table.values().word("root") == "common" || common.roots.free_root) {
+    return common.roots;
+  }
+  return {common.roots.head, at_rest};
+}
+
 }  // namespace
 
 std::vector<Parameter> cut_parameters() {
@@ -199,6 +213,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
                     std::uint64_t stream) {
   const Parameters& p = table.values();
   table.refuse_unused("shape", shape_uses());
+  const RootMotions roots = roots_of(table, common);
   const StrandMaterial material = strand_material(common.material, own_material);
   if (!p.numbers("points").empty()) {
     refuse_beside_points(table);
@@ -215,7 +230,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
         cut_strand(table, material, curve.length, tied ? uniform_shape({}) : curve.shape,
                    tied ? curve.shape : Shape{});
     vary_along(table, strand);
-    set_root(strand, common.roots, curve.position, curve.frame);
+    set_root(strand, roots, curve.position, curve.frame);
     return strand;
   }
   if (p.word("natural") == "straight") {
@@ -227,9 +242,9 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
   Strand strand =
       cut_shape(table, material,
                 natural_shape(table, material, p.number("length_m"), common.seed, stream),
-                frame, !common.roots.free_root);
+                frame, !roots.free_root);
   vary_along(table, strand);
-  set_root(strand, common.roots, p.vec("position_m"), frame);
+  set_root(strand, roots, p.vec("position_m"), frame);
   return strand;
 }
 
