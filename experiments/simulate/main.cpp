@@ -279,9 +279,10 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
        run.reason, options.stem);
   if (!run.supports.empty()) {
     tell("simulate: {}: forces and moments of {} at {:.9g} s: {}\n", scene.name,
-         simulation::SceneJoints(scene).any()
+         !simulation::SceneJoints(scene).any() ? "supports on their strands"
+         : simulation::SceneSupports(scene).any()
              ? "supports on their strands and joints on their ends b"
-             : "supports on their strands",
+             : "joints on their ends b",
          run.simulated_s, supports_in_words(run));
   }
   for (const std::string& warning : warnings(scene, run)) {

@@ -81,6 +81,14 @@ void JoinedSystem::make_joints(const std::vector<Joint>& joints,
       ends_.push_back(at);
       return JointEnd(strand.strand(), first_of(at.strand), at.point, where[j]);
     };
+    for (std::size_t i = 0; i < j; ++i) {
+      const bool hold =
+          joints[i].kind != JointKind::spring && joints[j].kind != JointKind::spring;
+      const bool same = (joints[i].a == joints[j].a && joints[i].b == joints[j].b) ||
+                        (joints[i].a == joints[j].b && joints[i].b == joints[j].a);
+      refuse_if(hold && same, "a second joint of the same points", where[j],
+                "leave out one of them");
+    }
     JointEnd a = end(joints[j].a), b = end(joints[j].b);
     joints_.emplace_back(std::move(a), std::move(b), joints[j], q, where[j]);
   }

@@ -24,12 +24,12 @@ namespace tress::models {
 /// drive it in every formulation that they have for systems with constraints.
 ///
 /// The matrix is S = diag(S_1, ..., S_K) + U V^T. Block k is that of strand k under the
-/// constant loads of its joints: by LoadedTangent in O(n) where the strand takes loads,
-/// else the strand's sparse matrix with the second derivatives of its constraints. U and
-/// V have the derivatives of the joints' loads by the motion of both ends, three columns
-/// for each joint with a spring or a rotation (Sherman-Morrison-Woodbury). Constraints
-/// are eliminated by Bordered. With m constraints and c columns, a matrix costs (m + c)
-/// solves of all strands, and a dense factorisation of m and c.
+/// constant loads of its joints. Strands that take loads have it by LoadedTangent in
+/// O(n), others as a sparse matrix with the second derivatives of their constraints. U
+/// and V have the derivatives of the joints' loads by the motion of both ends, three
+/// columns for each joint with a spring or a rotation (Sherman-Morrison-Woodbury).
+/// Constraints are eliminated by Bordered. With m constraints and c columns, a matrix
+/// costs (m + c) solves of all strands, and a dense factorisation of m and c.
 class JoinedSystem final : public StrandBlock,
                            public BorderedForm,
                            public SupportForces,

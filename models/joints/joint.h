@@ -7,7 +7,7 @@
 
 namespace tress::models {
 
-/// What a joint holds together.
+/// Kind of a joint: the parts that it holds together.
 enum class JointKind {
   ball,   // places
   weld,   // places and rotations
@@ -19,6 +19,8 @@ enum class JointKind {
 struct StrandPoint {
   std::size_t strand = 0;  // number of the strand in its system
   int point = 0;           // of MaterialPoints
+
+  bool operator==(const StrandPoint&) const = default;
 };
 
 /// A joint of two points of strands, or of one strand.

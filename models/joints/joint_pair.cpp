@@ -237,9 +237,9 @@ double JointPair::energy_rate(double t, In q, In v) {
   return sum;
 }
 
-/// With D_k the turns of the ends by a motion, the moment M on b changes by B (D_b - D_a)
-/// + D_a x M, where B is its derivative by the turn of b: turns of both ends together
-/// turn M with them. The force of a spring changes by -K (x_b - x_a)' alone.
+/// A motion turns the ends by D_a and D_b. The moment M on b changes by B (D_b - D_a) +
+/// D_a x M, where B is its derivative by the turn of b. M turns with both ends if they
+/// turn together. The force of a spring changes by -K (x_b - x_a)' alone.
 void JointPair::write_couplings(double t, In q, In v, In lambda, Weights w,
                                 Eigen::Ref<Eigen::MatrixXd> u,
                                 Eigen::Ref<Eigen::MatrixXd> v_of) {

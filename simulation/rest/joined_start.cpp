@@ -41,7 +41,7 @@ void begin_on_joints(System& of, const std::vector<std::string>& places) {
               places[j],
               fmt::format("move the strand of b by [{:.9g}, {:.9g}, {:.9g}], or give "
                           "shapes that meet",
-                          -gap.x, -gap.y, -gap.z));
+                          0 - gap.x, 0 - gap.y, 0 - gap.z));
   }
   integrators::Dynamics dynamics(system, {.formulation = Formulation::index3, .own = {}});
   integrators::Projection projection(dynamics);

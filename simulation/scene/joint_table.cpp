@@ -23,9 +23,10 @@ namespace {
 
 constexpr Parameter joint_parameters[] = {
     {.name = "a",
-     .help = "first end: the name or the number of a strand, and a point of it. The "
-             "point is \"tip\", \"root\", or the arc length from the root over the "
-             "length, 0 to 1, of an element's end, as in [\"left\", 0.5]",
+     .help =
+         "first end: the name or the number of a strand, and a point, as in "
+         "[\"left\", 0.5]. Points are \"tip\", \"root\", or a number of 0 to 1: the arc "
+         "length over the length, at the end of an element",
      .rows = true,
      .text = true},
     {.name = "b",
@@ -33,7 +34,7 @@ constexpr Parameter joint_parameters[] = {
      .rows = true,
      .text = true},
     {.name = "kind",
-     .help = "what the joint holds together. `ball`: the points. `weld`: points and "
+     .help = "held parts. `ball`: the points. `weld`: points and "
              "sections, at the angle of the start. `hinge`: as `weld`, but free to turn "
              "about `axis`. `spring`: nothing; a spring and a damper connect the points",
      .choices = "ball|weld|hinge|spring"},

@@ -25,8 +25,10 @@ constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
 constexpr Parameter own_parameters[] = {
     {.name = "name", .help = "name of the strand in [joints]", .text = true},
     {.name = "root",
-     .help = "common: the root moves as [root] prescribes; free: it moves freely, held "
-             "by supports and joints alone",
+     .help =
+         "motion of the root. common: as [root] prescribes; free: held by supports and "
+         "joints alone. It begins with the velocity of a root that moves as [root] "
+         "prescribes",
      .choices = "common|free"},
     {.name = "position_m",
      .help = "position x, y, z of the root (m)",
@@ -172,7 +174,7 @@ RootMotions roots_of(const Table& table, const Common& common) {
   if (table.values().word("root") == "common" || common.roots.free_root) {
     return common.roots;
   }
-  return {common.roots.head, at_rest};
+  return {common.roots.head, at_rest, common.roots.skin, true};
 }
 
 }  // namespace

@@ -74,15 +74,17 @@ TEST(Welds, OfTwoHalvesAreTheWholeStrand) {
   }
 }
 
-/// The built-in tree `algae`, a stalk with three stems, and four welded strands have the
-/// same equations. Accelerations differ by rounding.
-TEST(Welds, OfBranchesAreTheBuiltInTree) {
+/// Largest difference of accelerations at the start between the built-in tree `algae`, a
+/// stalk with three stems, and four welded strands, over the largest acceleration.
+double off_the_tree(double thickness) {
   const ModelSettings settings{{"tree", "algae"}};
-  const Parameters parameters(find_model("super_helix_tree").parameters, "tree");
-  Parameters chosen = parameters;
+  Parameters chosen(find_model("super_helix_tree").parameters, "tree");
   for (const auto& [key, value] : settings) chosen.set(key, value);
-  const Strand tree = models::described_tree(chosen);
-  ASSERT_EQ(tree.segments.size(), 10U);
+  Strand tree = models::described_tree(chosen);
+  EXPECT_EQ(tree.segments.size(), 10U);
+  for (models::Segment& segment : tree.segments) {
+    segment.section = {thickness * segment.section.a1, thickness * segment.section.a2};
+  }
   const auto options = parameters_of("super_helix", {});
   const auto effects = models::strand_effects(chosen);
   const auto system = [&](const Strand& strand) {
@@ -97,14 +99,14 @@ TEST(Welds, OfBranchesAreTheBuiltInTree) {
   std::vector<Joint> welds;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t first = 1 + 3 * k;
-    ASSERT_EQ(tree.segments[first].parent, 0);
+    EXPECT_EQ(tree.segments[first].parent, 0);
     StrandPlace root = fork;
     root.frame = fork.frame * tree.segments[first].mount;
     strands.push_back(system(freed(chain_from(tree, first, 3, root), root)));
     welds.push_back(joint_of(JointKind::weld, {0, 1}, {k + 1, 0}));
   }
   const auto welded = joined(std::move(strands), welds);
-  const auto whole = make_model("super_helix_tree", settings);
+  const auto whole = models::super_helix(tree, models::reduced_options(options), effects);
   const std::vector<double> a = accelerations_at_start(*welded),
                             b = accelerations_at_start(*whole);
   // Points of the tree: the root, then the tips of the segments.
@@ -113,23 +115,34 @@ TEST(Welds, OfBranchesAreTheBuiltInTree) {
     most = std::max(most,
                     apart(In(a).subspan(6 + 12 * k + 3, 9), In(b).subspan(6 + 9 * k, 9)));
   }
-  std::printf("tree: %.1e apart\n", most);
-  EXPECT_LE(most, 1e-9);
+  return most;
+}
+
+/// The built-in tree and welded strands have the same equations but one term: the
+/// rotational inertia of the first half element of a stem turns about the tangent of the
+/// stalk in the tree, about that of the stem in the strand. It is a share r^2/L^2 of the
+/// inertia, 6e-4 here, so that sections of a hundredth of the radius leave 1e-4 of that.
+TEST(Welds, OfBranchesAreTheBuiltInTree) {
+  const double thick = off_the_tree(1), thin = off_the_tree(0.01);
+  std::printf("tree: %.1e, thin %.1e apart\n", thick, thin);
+  EXPECT_LE(thick, 2e-3);
+  EXPECT_LE(thin, 2e-7);
 }
 
 /// Small motions of two equal rigid bars that hang on ball joints: w^2 L/g = 3 -+ 6/sqrt
-/// 7, each in two planes. The bars bend by weight: EI/(m g L^2) = 2e5 changes w^2 by its
-/// inverse at most. The section's rotational inertia, r^2/(4 L^2) over 1/3, changes it by
-/// 1e-6. Bar: 1e-5.
+/// 7, each in two planes. The bars bend under their weight: m g L^2/EI = 6e-6 bounds the
+/// change of w^2. The section's rotational inertia, r^2/4 next to L^2/3, changes it by
+/// 3e-6. Bar: 1e-5.
 TEST(BallJoints, MakeTwoBarsADoublePendulum) {
   const ModelSettings settings{
-      {"elements", "1"},         {"length_m", "1"},
-      {"radius_m", "1e-3"},      {"youngs_modulus_pa", "1e16"},
+      {"elements", "1"},         {"length_m", "0.5"},
+      {"radius_m", "1e-3"},      {"youngs_modulus_pa", "1e15"},
       {"density_kg_m3", "1300"}, {"internal_friction_kg_m3_s", "0"},
       {"drag_kg_m_s", "0"},      {"motion", "free"}};
   const Frame down{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
   const Strand upper = strand_at("super_helix", settings, StrandPlace{{}, down}),
-               lower = strand_at("super_helix", settings, StrandPlace{{0, 0, -1}, down});
+               lower =
+                   strand_at("super_helix", settings, StrandPlace{{0, 0, -0.5}, down});
   std::vector<std::unique_ptr<SupportedSystem>> strands;
   strands.push_back(joinable("super_helix", settings, upper, {support(0, {})}));
   strands.push_back(joinable("super_helix", settings, lower));
@@ -149,17 +162,28 @@ TEST(BallJoints, MakeTwoBarsADoublePendulum) {
   ASSERT_EQ(system->support_forces(0, q, v, support_force, support_moment), Status::ok);
   EXPECT_NEAR(force[2] / weight, 1, 1e-9);
   EXPECT_NEAR(support_force[2] / weight, 2, 1e-9);
-  const Eigen::MatrixXd z = free_motions(*system, q);
-  const Eigen::MatrixXd m = z.transpose() * matrix_of(*system, q, lambda, {1, 0, 0}) * z;
-  const Eigen::MatrixXd s = z.transpose() * matrix_of(*system, q, lambda, {1, 0, 1}) * z;
-  const Eigen::MatrixXd k = s - m;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> of(
-      0.5 * (k + k.transpose()), 0.5 * (m + m.transpose()), Eigen::EigenvaluesOnly);
-  std::vector<double> found;
-  for (const double w2 : of.eigenvalues()) {
-    if (w2 / 9.81 > 0.1) found.push_back(w2 / 9.81);  // not the spin of the bars
+  // Motions x of the frequency w solve (M + t^2 K) x - G^T y = (1 + t^2 w^2) M x, G x =
+  // 0.
+  constexpr double t2 = 0.05;  // s^2
+  const Eigen::MatrixXd m = matrix_of(*system, q, lambda, {1, 0, 0});
+  Eigen::MatrixXd answers(m.rows(), m.cols());
+  const std::vector<double> zero(q.size());
+  ASSERT_EQ(dynamics.linearize(0, q, v, zero, lambda, {1, 0, t2}), Status::ok);
+  for (Eigen::Index i = 0; i < m.cols(); ++i) {
+    std::vector<double> x(q.size()), y(lambda.size());
+    Eigen::Map<Eigen::VectorXd>(x.data(), m.rows()) = m.col(i);
+    ASSERT_EQ(dynamics.solve(x, y), Status::ok);
+    answers.col(i) = Eigen::Map<Eigen::VectorXd>(x.data(), m.rows());
   }
-  ASSERT_GE(found.size(), 4U);
+  const Eigen::VectorXd shares =
+      Eigen::EigenSolver<Eigen::MatrixXd>(answers, false).eigenvalues().real();
+  std::vector<double> found;
+  for (const double share : shares) {
+    // Neither the spin of the bars nor their bending.
+    if (share > 0.01 && share < 0.99) found.push_back(0.5 * (1 / share - 1) / t2 / 9.81);
+  }
+  std::ranges::sort(found);
+  ASSERT_EQ(found.size(), 4U);
   const double expected[] = {3 - 6 / std::sqrt(7), 3 - 6 / std::sqrt(7),
                              3 + 6 / std::sqrt(7), 3 + 6 / std::sqrt(7)};
   for (std::size_t i = 0; i < 4; ++i) {

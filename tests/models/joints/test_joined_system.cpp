@@ -100,8 +100,8 @@ class JoinedStrands : public testing::TestWithParam<Case> {
 
 /// S x = b for x = S^-1 b, with S x from differences of the residual. Steps change no
 /// coordinate by more than 7e-4 of its typical size: the differences err by 1e-12 of
-/// the terms, which cancel to b in stiff strands. Bar: 1e-8 of the largest term. Strands
-/// of edges take second derivatives of sections from differences (1e-10).
+/// the terms, which cancel to b in stiff strands, by up to 1e5. Bar: 1e-7 of the largest.
+/// Strands of edges take second derivatives of sections from differences (1e-10).
 TEST_P(JoinedStrands, SolveWithTheDerivativeOfTheResidual) {
   for (const Weights w :
        {Weights{1, 1e-3, 1e-6}, Weights{1, 0, 1e-4}, Weights{1, 1e-2, 1e-4}}) {
@@ -124,7 +124,7 @@ TEST_P(JoinedStrands, SolveWithTheDerivativeOfTheResidual) {
       terms = std::max(terms, state_.q_typ[i] * std::abs(b[i]));
     }
     std::printf("%s: %.1e of the residual\n", GetParam().name, off / terms);
-    EXPECT_LE(off, 1e-8 * terms);
+    EXPECT_LE(off, 1e-7 * terms);
   }
 }
 
