@@ -23,13 +23,6 @@ constexpr double most = 1e6;
 constexpr double most_turns = 20, turn = 2 * std::numbers::pi;
 
 constexpr Parameter own_parameters[] = {
-    {.name = "name", .help = "name of the strand in [joints]", .text = true},
-    {.name = "root",
-     .help =
-         "motion of the root. common: as [root] prescribes; free: held by supports and "
-         "joints alone. It begins with the velocity of a root that moves as [root] "
-         "prescribes",
-     .choices = "common|free"},
     {.name = "position_m",
      .help = "position x, y, z of the root (m)",
      .min = -most,
@@ -75,6 +68,13 @@ constexpr Parameter own_parameters[] = {
      .number = 0,
      .min = 0,
      .max = 1e3},
+    {.name = "name", .help = "name of the strand in [joints]", .text = true},
+    {.name = "root",
+     .help =
+         "motion of the root. common: as [root] prescribes; free: held by supports and "
+         "joints alone. It begins with the velocity of a root that moves as [root] "
+         "prescribes",
+     .choices = "common|free"},
 };
 
 void refuse_beside_points(const Table& table) {
