@@ -8,6 +8,7 @@
 #include "models/strand/strand_parameters.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::experiments::calibrate {
@@ -68,6 +69,10 @@ Specimen specimen(const Scene& scene) {
     throw InputError(
         fmt::format("{} strands, but records are of one", scene.strands.size()), where,
         "leave one [strand] in it");
+  }
+  if (simulation::SceneJoints(scene).any()) {
+    throw InputError("the strand has joints: its tip does not swing about a root", where,
+                     "leave out [joints]");
   }
   if (simulation::SceneSupports(scene).any()) {
     throw InputError("the strand has supports: its tip does not swing about a root",

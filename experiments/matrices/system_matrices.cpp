@@ -13,6 +13,7 @@
 #include "experiments/numerics/dense_algebra.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::experiments::matrices {
@@ -25,6 +26,9 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
   if (scene.strands.empty()) return scene.model->make(scene.model_options);
+  refuse_if(simulation::SceneJoints(scene).any(),
+            "matrices of joined strands, which are one system", "scene " + scene.name,
+            "leave out [joints]");
   return simulation::SceneSupports(scene).on(
       scene.model->on_strand(scene.strands[strand], scene.model_options,
                              simulation::make_effects(scene)),

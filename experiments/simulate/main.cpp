@@ -35,6 +35,7 @@
 #include "simulation/head/ranks.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/plugin/load_plugin.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -277,9 +278,12 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
        control_in_words(scene, run), pictures_in_words(run), came_to_its_end ? "" : "; ",
        run.reason, options.stem);
   if (!run.supports.empty()) {
-    tell(
-        "simulate: {}: forces and moments of supports on their strands at {:.9g} s: {}\n",
-        scene.name, run.simulated_s, supports_in_words(run));
+    tell("simulate: {}: forces and moments of {} at {:.9g} s: {}\n", scene.name,
+         !simulation::SceneJoints(scene).any() ? "supports on their strands"
+         : simulation::SceneSupports(scene).any()
+             ? "supports on their strands and joints on their ends b"
+             : "joints on their ends b",
+         run.simulated_s, supports_in_words(run));
   }
   for (const std::string& warning : warnings(scene, run)) {
     tell("simulate: warning: {}: {}\n", scene.name, warning);

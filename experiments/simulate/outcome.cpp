@@ -116,7 +116,8 @@ constexpr Column columns_of_outcome[] = {
     {"read_s", "time to read and compress the frames and energies of a batch", true},
     {"write_s", "time to write frames and states of a batch", true},
     {"support_force_max_n",
-     "largest force of a support on its strand at a frame; without supports empty"},
+     "largest force of a support on its strand, or of a joint, at a frame; without both "
+     "empty"},
     {"wall_s", "wall time of the run, output included", true},
 };
 

@@ -13,6 +13,7 @@
 #include "experiments/numerics/dense_form.h"
 #include "simulation/rest/held_shape.h"
 #include "simulation/rest/supported_start.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::experiments::statics {
@@ -43,6 +44,9 @@ void check_loads(const Scene& scene, const std::string& where) {
       scene.model->on_strand == nullptr || scene.strands.empty(),
       fmt::format("model {} has a geometry of its own and no strand", scene.model->id),
       where, "use a model of a strand, such as super_helix");
+  refuse_if(simulation::SceneJoints(scene).any(),
+            "the strands are joined: none has equilibria of its own", where,
+            "leave out [joints]");
   refuse_if(scene.strands_touch(),
             "the strands touch each other: none has equilibria of its own", where,
             "leave out the effects between strands");

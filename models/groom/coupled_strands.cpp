@@ -223,31 +223,11 @@ bool CoupledStrands::rebounds() const {
 }
 
 bool CoupledStrands::accept(double t, InOut q, InOut v) {
-  bool changed = false;
-  for (std::size_t k = 0; k < strands(); ++k) {
-    if (strand(k).accept(t, part(q, k), part(v, k))) changed = true;
-  }
+  const bool changed = accept_strands(t, q, v);
   positions(t, q, x_);
   if (!contacts_->update(x_)) return changed;
   couple();
   return true;
-}
-
-bool CoupledStrands::carry(double t, InOut q, InOut v, InOut a) const {
-  bool carried = true;
-  for (std::size_t k = 0; k < strands(); ++k) {
-    if (strand(k).history() == nullptr) continue;
-    carried = tress::carry(strand(k), t, part(q, k), part(v, k), part(a, k)) && carried;
-  }
-  return carried;
-}
-
-std::string CoupledStrands::not_smooth() const {
-  for (std::size_t k = 0; k < strands(); ++k) {
-    const std::string why = tress::not_smooth(strand(k));
-    if (!why.empty()) return "strand " + std::to_string(k) + ": " + why;
-  }
-  return {};
 }
 
 void CoupledStrands::reset() {
@@ -274,27 +254,17 @@ void CoupledStrands::set_multipliers(In values) {
   }
 }
 
-/// Positions at which the pairs were found, then per strand the size and data of its
-/// history.
+/// Positions at which the pairs were found, then the memory of the strands.
 std::vector<double> CoupledStrands::memory() const {
   std::vector<double> all = contacts_->made_at();
-  for (std::size_t k = 0; k < strands(); ++k) {
-    const History* history = strand(k).history();
-    const auto own = history == nullptr ? std::vector<double>{} : history->memory();
-    all.push_back(static_cast<double>(own.size()));
-    all.insert(all.end(), own.begin(), own.end());
-  }
+  const std::vector<double> own = memory_of_strands();
+  all.insert(all.end(), own.begin(), own.end());
   return all;
 }
 
 void CoupledStrands::recall(In memory) {
   if (contacts_->renew(memory.first(x_.size()))) couple();
-  std::size_t at = x_.size();
-  for (std::size_t k = 0; k < strands(); ++k) {
-    const auto size = static_cast<std::size_t>(memory[at]);
-    if (size > 0) strand(k).history()->recall(memory.subspan(at + 1, size));
-    at += 1 + size;
-  }
+  recall_strands(memory.subspan(x_.size()));
 }
 
 Energy CoupledStrands::energy(double t, In q, In v) {

@@ -58,8 +58,10 @@ class CoupledStrands final : public StrandBlock,
 
  private:
   bool accept(double t, InOut q, InOut v) override;
-  bool carry(double t, InOut q, InOut v, InOut a) const override;
-  std::string not_smooth() const override;
+  bool carry(double t, InOut q, InOut v, InOut a) const override {
+    return carry_strands(t, q, v, a);
+  }
+  std::string not_smooth() const override { return strands_not_smooth(); }
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "contract/forms/moving_history.h"
+
 namespace tress::models {
 
 StrandBlock::StrandBlock(std::vector<std::unique_ptr<System>> strands)
@@ -55,6 +57,52 @@ Energetics* StrandBlock::energetics() {
   const bool all = std::ranges::all_of(
       strands_, [](const auto& strand) { return strand->energetics() != nullptr; });
   return all ? this : nullptr;
+}
+
+bool StrandBlock::accept_strands(double t, InOut q, InOut v) {
+  bool changed = false;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    if (strands_[k]->accept(t, part(q, k), part(v, k))) changed = true;
+  }
+  return changed;
+}
+
+bool StrandBlock::carry_strands(double t, InOut q, InOut v, InOut a) const {
+  bool carried = true;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    if (strands_[k]->history() == nullptr) continue;
+    carried =
+        tress::carry(*strands_[k], t, part(q, k), part(v, k), part(a, k)) && carried;
+  }
+  return carried;
+}
+
+std::string StrandBlock::strands_not_smooth() const {
+  for (std::size_t k = 0; k < strands(); ++k) {
+    const std::string why = tress::not_smooth(*strands_[k]);
+    if (!why.empty()) return "strand " + std::to_string(k) + ": " + why;
+  }
+  return {};
+}
+
+std::vector<double> StrandBlock::memory_of_strands() const {
+  std::vector<double> all;
+  for (const auto& strand : strands_) {
+    const History* history = strand->history();
+    const auto own = history == nullptr ? std::vector<double>{} : history->memory();
+    all.push_back(static_cast<double>(own.size()));
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
+void StrandBlock::recall_strands(In memory) {
+  std::size_t at = 0;
+  for (const auto& strand : strands_) {
+    const auto size = static_cast<std::size_t>(memory[at]);
+    if (size > 0) strand->history()->recall(memory.subspan(at + 1, size));
+    at += 1 + size;
+  }
 }
 
 Energy StrandBlock::energy(double t, In q, In v) {

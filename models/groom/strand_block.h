@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "contract/forms/energetics.h"
@@ -41,6 +42,14 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
     const auto from = static_cast<std::size_t>(first_[k]);
     return all.subspan(from, static_cast<std::size_t>(first_[k + 1]) - from);
   }
+
+  // Of histories, strand after strand. memory_of_strands() has the size and the numbers
+  // of each; recall_strands() takes them.
+  bool accept_strands(double t, InOut q, InOut v);
+  bool carry_strands(double t, InOut q, InOut v, InOut a) const;
+  std::string strands_not_smooth() const;
+  std::vector<double> memory_of_strands() const;
+  void recall_strands(In memory);
 
   Energy energy(double t, In q, In v) override;
   std::optional<Momentum> momentum(double t, In q, In v) override;

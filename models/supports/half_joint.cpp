@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
+#include "models/supports/vec_parts.h"
+
 namespace tress::models {
-namespace {
-
-Vec entrywise(const Vec& a, const Vec& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-
-}  // namespace
 
 /// Components that are held; others are 0.
 Vec HalfJoint::held(const Vec& c) const {

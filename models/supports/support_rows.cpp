@@ -6,6 +6,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "models/supports/vec_parts.h"
 
 namespace tress::models {
 namespace {
@@ -17,8 +18,6 @@ MaterialPoints& points_of(System& strand) {
             name_of(0), "use a model of a strand");
   return *strand.material_points();
 }
-
-double component(const Vec& x, int i) { return i == 0 ? x.x : i == 1 ? x.y : x.z; }
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 
 #include "contract/input_error.h"
 #include "linear/vector_ops.h"
+#include "models/supports/kinetic_rate.h"
 
 namespace tress::models {
 
@@ -88,10 +89,10 @@ Status SupportedSystem::residual(double t, In q, In v, In a, Out r) noexcept {
 }
 
 Status SupportedSystem::factor(double t, In q, In v, In a, In lambda, Weights w,
-                               In springs) noexcept {
+                               In springs, std::span<const SectionLoad> loads) noexcept {
   if (assembled_) return assembled_->linearize(t, q, v, a, w);
   if (loaded_ == nullptr) return strand_->linearize(t, q, v, a, w);
-  loads_.clear();
+  loads_.assign(loads.begin(), loads.end());
   if (w.vel != 0 || w.pos != 0) {
     for (std::size_t i = 0; i < supports() && !lambda.empty(); ++i) {
       loads_.push_back(rows_.load(t, q, lambda, i));
@@ -101,24 +102,26 @@ Status SupportedSystem::factor(double t, In q, In v, In a, In lambda, Weights w,
   return loaded_->linearize_loaded(t, q, v, a, w, loads_, springs);
 }
 
-Status SupportedSystem::linearize_with_springs(double t, In q, In v, In a, In lambda,
-                                               Weights w, In springs) noexcept {
+Status SupportedSystem::linearize_with_springs(
+    double t, In q, In v, In a, In lambda, Weights w, In springs,
+    std::span<const SectionLoad> loads) noexcept {
   last_.t = t;
   last_.w = w;
+  last_.loads.assign(loads.begin(), loads.end());
   for (const auto& [to, from] :
        {std::pair{&last_.q, q}, std::pair{&last_.v, v}, std::pair{&last_.a, a},
         std::pair{&last_.lambda, lambda}, std::pair{&last_.springs, springs}}) {
     to->assign(from.begin(), from.end());
   }
   disturbed_ = false;
-  return factor(t, q, v, a, lambda, w, springs);
+  return factor(t, q, v, a, lambda, w, springs, last_.loads);
 }
 
 Status SupportedSystem::solve(In b, Out x) noexcept {
   if (disturbed_) {
     disturbed_ = false;
-    const Status s =
-        factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w, last_.springs);
+    const Status s = factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w,
+                            last_.springs, last_.loads);
     if (s != Status::ok) return s;
   }
   return solve_factored(b, x);
@@ -171,7 +174,7 @@ Status SupportedSystem::hold(double t, In q, In v) {
   disturbed_ = !last_.q.empty();
   for (const Status s :
        {rows_.gradient(t, q, gradient_), rows_.bias(t, q, v, bias_),
-        residual(t, q, v, zero_, acceleration_), factor(t, q, v, zero_, {}, w, {})}) {
+        residual(t, q, v, zero_, acceleration_), factor(t, q, v, zero_, {}, w, {}, {})}) {
     if (s != Status::ok) return s;
   }
   for (double& entry : acceleration_) entry = -entry;
@@ -218,6 +221,11 @@ Status SupportedSystem::support_forces(double t, In q, In v, Out forces, Out mom
   if (const Status s = hold(t, q, v); s != Status::ok) return s;
   std::vector<double> lambda;
   multipliers(rows_.rows(), lambda);
+  loads_of(t, q, v, lambda, forces, moments);
+  return Status::ok;
+}
+
+void SupportedSystem::loads_of(double t, In q, In v, In lambda, Out forces, Out moments) {
   for (std::size_t i = 0; i < supports(); ++i) {
     const SectionLoad load = rows_.load(t, q, lambda, i);
     store3(load.force, &forces[3 * i]);
@@ -226,7 +234,12 @@ Status SupportedSystem::support_forces(double t, In q, In v, Out forces, Out mom
   for (auto& [support, joint] : joints_) {
     store3(joint.load(t, q, v).moment, &moments[3 * support]);
   }
-  return Status::ok;
+}
+
+double SupportedSystem::joint_energy_rate(double t, In q, In v) {
+  double sum = 0;
+  for (auto& [support, joint] : joints_) sum += joint.energy_rate(t, q, v);
+  return sum;
 }
 
 void SupportedSystem::support_motion(double t, Out x, Out u, Out omega) const {
@@ -250,24 +263,13 @@ double SupportedSystem::power(double t, In q, In v) {
     if (solve_factored(change, change) != Status::ok) return std::nan("");
     for (Eigen::Index k = 0; k < rows_.own(); ++k)
       needed_[k] += product(k, change.data());
-    for (auto& [support, joint] : joints_) alone += joint.energy_rate(t, q, v);
+    alone += joint_energy_rate(t, q, v);
   }
   multipliers(rows_.own(), own);
   for (std::size_t k = 0; k < own.size(); ++k) lambda[k] -= own[k];
   Eigen::Map<Eigen::VectorXd>(change.data(), std::ssize(change)) +=
       responses_ * Eigen::Map<const Eigen::VectorXd>(lambda.data(), std::ssize(lambda));
-  double size = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    size = std::max(size, std::abs(change[i]) / v_typ_[i]);
-  }
-  if (size == 0) return alone;
-  // Central differences of a quadratic function are exact; only rounding remains.
-  std::vector<double> moved(v.begin(), v.end());
-  const auto kinetic = [&](double time) {
-    for (std::size_t i = 0; i < v.size(); ++i) moved[i] = v[i] + time * change[i];
-    return strand_->energetics()->energy(t, q, moved).kinetic;
-  };
-  return alone + (kinetic(1 / size) - kinetic(-1 / size)) * size / 2;
+  return alone + kinetic_rate(*strand_->energetics(), t, q, v, change, v_typ_);
 }
 
 }  // namespace tress::models

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -70,10 +71,11 @@ class SupportedSystem final : public System,
   }
   /// Returns true if linearize_with_springs() takes springs.
   bool takes_springs() const { return loaded_ != nullptr; }
-  /// linearize_bordered() with w.pos times springs on the coordinates (n; none: empty),
-  /// for strands that take loads.
+  /// linearize_bordered() with w.pos times springs on the coordinates (n; none: empty)
+  /// and under additional loads, for strands that take loads.
   Status linearize_with_springs(double t, In q, In v, In a, In lambda, Weights w,
-                                In springs) noexcept;
+                                In springs,
+                                std::span<const SectionLoad> loads = {}) noexcept;
   double next_breakpoint(double t) const override;
   std::string not_finite(double t, In q, In v) override {
     return strand_->not_finite(t, q, v);
@@ -93,6 +95,11 @@ class SupportedSystem final : public System,
   std::size_t supports() const override { return rows_.supports().size(); }
   Status support_forces(double t, In q, In v, Out forces, Out moments) override;
   void support_motion(double t, Out x, Out u, Out omega) const override;
+  /// Computes the forces and moments of support_forces() for these multipliers of all
+  /// constraints.
+  void loads_of(double t, In q, In v, In lambda, Out forces, Out moments);
+  /// Returns the rate of the elastic energy of the half joints, W.
+  double joint_energy_rate(double t, In q, In v);
 
   // For searches that lead the strand onto its supports.
   /// Writes the rotations (rad) of the half joints from their walls, (3 joints).
@@ -107,6 +114,7 @@ class SupportedSystem final : public System,
   struct Linearized {
     double t = 0;
     std::vector<double> q, v, a, lambda, springs;
+    std::vector<SectionLoad> loads;
     Weights w;
   };
 
@@ -132,7 +140,8 @@ class SupportedSystem final : public System,
   }
   std::string not_smooth() const override { return tress::not_smooth(*strand_); }
 
-  Status factor(double t, In q, In v, In a, In lambda, Weights w, In springs) noexcept;
+  Status factor(double t, In q, In v, In a, In lambda, Weights w, In springs,
+                std::span<const SectionLoad> loads) noexcept;
   Status solve_factored(In b, Out x) noexcept {
     return assembled_ ? assembled_->solve(b, x) : strand_->solve(b, x);
   }

@@ -11,6 +11,7 @@
 #include "simulation/head/scene_head.h"
 #include "simulation/rest/supported_start.h"
 #include "simulation/run/readout.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
@@ -202,6 +203,9 @@ OwnedSystem system_of(const ScenePtr& scene, std::size_t strand) {
   }
   std::unique_ptr<System> system = scene->model->on_strand(
       scene->strands[strand], scene->model_options, make_effects(*scene));
+  refuse_if(SceneJoints(*scene).of(strand) != nullptr,
+            "a strand with joints is no system of its own", scene->name,
+            "run the scene, or leave out [joints]");
   const SceneSupports supports(*scene);
   if (supports.hold(strand)) {
     system = supports.on(std::move(system), scene->strands[strand], strand);

@@ -8,6 +8,7 @@
 #include "integrators/gradient/gradient_run.h"
 #include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/scene_gradient.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 
@@ -60,6 +61,9 @@ void check_derivatives(const Scene& scene) {
   refuse_if(SceneSupports(scene).any(),
             "no gradient of strands on [supports], whose start depends on the parameters",
             place, "leave out [supports]");
+  refuse_if(SceneJoints(scene).any(),
+            "no gradient of strands with [joints]: each strand is differentiated alone",
+            place, "leave out [joints]");
   const auto system = exact_system_of(scene, 0);
   const auto no = integrators::no_gradient(scene.integrator, *system, scene.options);
   if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);

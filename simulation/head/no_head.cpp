@@ -6,6 +6,7 @@
 
 #include "models/head/head.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 #include "simulation/table/along.h"
@@ -215,6 +216,10 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
     if (source.groom && source.table.values().whole("guides") > 0) {
       return NoHead{"all strands of a batch are simulated", "leave out guides"};
     }
+  }
+  if (SceneJoints(scene).any()) {
+    return NoHead{"[joints] make one system of several strands",
+                  "leave them out, or give --as strands"};
   }
   if (scene.friction() != nullptr) {
     return NoHead{"[effects.strand_friction] solves the contacts of all strands together",

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include "contract/input_error.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
+#include "models/supports/point_force.h"
 #include "models/supports/supported_system.h"
 #include "simulation/rest/tethered_system.h"
 
@@ -255,17 +255,7 @@ class Search {
 
   /// next_ += J^T force.
   void push(MaterialPoints& points, int point, const Vec& force) {
-    const std::array<double, 3> f{force.x, force.y, force.z};
-    if (const auto mean = points.mean(point)) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(mean->count); ++k) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          next_[static_cast<std::size_t>(mean->coordinate[k]) + c] +=
-              mean->weight[k] * f[c];
-        }
-      }
-      return;
-    }
-    static_cast<void>(points.pull_back(0, q, {&point, 1}, f, next_));
+    static_cast<void>(models::add_point_force(points, 0, q, point, force, next_));
   }
 
   SupportedSystem& system_;

@@ -7,6 +7,7 @@
 
 #include "models/effects/effect.h"
 #include "simulation/run/line_curvature.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
@@ -33,6 +34,9 @@ Readout::Readout(const Scene& scene, const World& world)
     : scene_(scene),
       effects_(make_effects(scene)),
       supports_(SceneSupports(scene).named()) {
+  for (NamedSupport& joint : SceneJoints(scene).named()) {
+    supports_.push_back(std::move(joint));
+  }
   find_lines(world);
   const std::vector<std::string> names = effect_names(scene);
   const auto add = [this](std::string name, std::string help) {
@@ -69,17 +73,16 @@ Readout::Readout(const Scene& scene, const World& world)
     add("failed_strands", "strands that have failed and stay where they are");
   }
   first_load_ = series_.size();
-  for (const auto& [of, place, direction] : supports_) {
-    const auto add_axes = [&, name = of](bool held, const char* what, const char* unit) {
+  for (const NamedSupport& support : supports_) {
+    const auto add_axes = [&](bool held, const char* what, const char* unit) {
       if (!held) return;
       for (const char* axis : {"x", "y", "z"}) {
-        add(fmt::format("{}_{}_{}_{}", what, name, axis, unit),
-            fmt::format("{} of the support {} on the strand, along {}", what, name,
-                        axis));
+        add(fmt::format("{}_{}_{}_{}", what, support.name, axis, unit),
+            fmt::format("{} of {}, along {}", what, support.acting, axis));
       }
     };
-    add_axes(place, "force", "n");
-    add_axes(direction, "moment", "n_m");
+    add_axes(support.place, "force", "n");
+    add_axes(support.direction, "moment", "n_m");
   }
   add("dt_s", "step, mean since the last frame");
   add("newton_per_step", "Newton iterations a step, mean since the last frame");

@@ -23,9 +23,9 @@ struct Frame3d {
   std::vector<float> contacts;   // (6 contacts) place, m, and force on the strand, N
 };
 
-/// Force and moment of a support on its strand.
+/// Force and moment of a support on its strand, or of a joint on its end b.
 struct NamedLoad {
-  std::string name;           // of the support
+  std::string name;           // of the support or joint
   std::optional<Vec> force;   // N; none: it holds no place
   std::optional<Vec> moment;  // N m; none: it holds no direction
 };
@@ -49,7 +49,7 @@ class Readout {
   const std::vector<Reading>& channels() const { return channels_; }
   /// Reads the present state of a world.
   Frame3d read(World& world);
-  /// Returns the forces and moments of all supports in a frame.
+  /// Returns the forces and moments of all supports and joints in a frame.
   std::vector<NamedLoad> support_loads(const Frame3d& frame) const;
   /// The next World counts its steps from 0.
   void restart() {
@@ -71,9 +71,9 @@ class Readout {
   std::vector<std::size_t> drawn_;  // material points, line after line
   std::vector<Reading> series_, channels_;
   Effects effects_;
-  std::vector<NamedSupport> supports_;
-  std::size_t first_load_ = 0;  // of a support, among the columns
-  std::vector<Lumps> lumps_;    // of each strand
+  std::vector<NamedSupport> supports_;  // then the joints
+  std::size_t first_load_ = 0;          // of a support, among the columns
+  std::vector<Lumps> lumps_;            // of each strand
   std::vector<double> tangent_;
   std::optional<std::size_t> step_channel_;
   // At the last frame.

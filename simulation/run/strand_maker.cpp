@@ -1,8 +1,10 @@
 #include "simulation/run/strand_maker.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "contract/forms/natural_strains.h"
+#include "simulation/rest/joined_start.h"
 
 namespace tress::simulation {
 namespace {
@@ -26,6 +28,7 @@ StrandMaker::StrandMaker(const Scene& scene)
       options_(scene.options),
       effects_(make_effects(scene)),
       supports_(scene),
+      joints_(scene),
       guard_(scene.guard) {}
 
 /// Those of the scene.
@@ -61,6 +64,38 @@ SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) c
     made.supported = begin_on_supports(*made.system, supports_.place(number));
   }
   add_guard(made, {&strand, 1}, number);
+  return made;
+}
+
+SteppedSystem StrandMaker::joined(std::span<const StrandToMake> strands,
+                                  const SceneJoints::Group& group) const {
+  std::vector<std::shared_ptr<const Metered>> meters;
+  std::vector<std::unique_ptr<System>> systems;
+  std::vector<const Strand*> each;
+  SupportedStart supported;
+  for (std::size_t k = 0; k < strands.size(); ++k) {
+    const std::size_t number = group.first + k;
+    each.push_back(&strands[k].strand);
+    systems.push_back(
+        supports_.on(metered(strands[k], meters), strands[k].strand, number));
+    if (!supports_.hold(number)) continue;
+    const SupportedStart one =
+        begin_on_supports(*systems.back(), supports_.place(number));
+    if (one.moved >= supported.moved) supported = one;
+  }
+  SteppedSystem made(joints_.join(group, std::move(systems), each));
+  made.meters = std::move(meters);
+  made.supported = supported;
+  begin_on_joints(*made.system, joints_.places(group));
+  if (!guard_) return made;
+  // Joints between strands do no work only in a common frame.
+  std::vector<GuardedStrand> all = guarded(strands);
+  const auto moving = std::ranges::find_if(
+      all, [](const GuardedStrand& strand) { return strand.root.has_value(); });
+  for (std::size_t k = 0; moving != all.end() && k < all.size(); ++k) {
+    all[k].root = moving->root;
+  }
+  made.guard.emplace(Guard(*made.system, std::move(all), group.first));
   return made;
 }
 

@@ -8,6 +8,7 @@
 
 #include "simulation/rest/held_shape.h"
 #include "simulation/run/stepped_system.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/support_table.h"
 
@@ -37,10 +38,15 @@ class StrandMaker {
 
   /// Returns the supports of the scene.
   const SceneSupports& supports() const { return supports_; }
+  /// Returns the joints of the scene.
+  const SceneJoints& joints() const { return joints_; }
 
   /// Makes a strand as a system of its own, on its supports, without integrator.
   /// `number`: the strand's number in messages.
   SteppedSystem one(const StrandToMake& strand, std::size_t number) const;
+  /// Makes a group of strands as one system with their joints.
+  SteppedSystem joined(std::span<const StrandToMake> strands,
+                       const SceneJoints::Group& group) const;
   /// Several of equal discretisation as one system; empty: the model has no such form for
   /// them.
   std::optional<SteppedSystem> together(std::span<const StrandToMake> strands,
@@ -65,6 +71,7 @@ class StrandMaker {
   Options options_;
   Effects effects_;
   SceneSupports supports_;
+  SceneJoints joints_;
   bool guard_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contract/forms/joint_forces.h"
 #include "contract/forms/support_forces.h"
 #include "integrators/error_indicator.h"
 
@@ -131,18 +132,29 @@ std::vector<ContactForce> World::contact_forces() {
 
 World::SupportLoads World::support_loads() {
   SupportLoads all;
-  for (const Body& body : bodies_) {
-    SupportForces* const supports = tress::support_forces(*body.system);
-    if (supports == nullptr) continue;
-    std::vector<double> forces(3 * supports->supports()), moments = forces;
-    const Status s =
-        supports->support_forces(t_, body.seen_q(), body.seen_v(), forces, moments);
-    const auto append = [&](std::vector<double>& more, std::vector<double>& to) {
+  const auto append = [&all](const Body& body, std::size_t count, const auto& read) {
+    std::vector<double> forces(3 * count), moments = forces;
+    const Status s = read(forces, moments);
+    const auto add = [&](std::vector<double>& more, std::vector<double>& to) {
       if (s != Status::ok || body.stays()) std::ranges::fill(more, std::nan(""));
       to.insert(to.end(), more.begin(), more.end());
     };
-    append(forces, all.forces);
-    append(moments, all.moments);
+    add(forces, all.forces);
+    add(moments, all.moments);
+  };
+  for (const Body& body : bodies_) {
+    SupportForces* const supports = tress::support_forces(*body.system);
+    if (supports == nullptr) continue;
+    append(body, supports->supports(), [&](Out forces, Out moments) {
+      return supports->support_forces(t_, body.seen_q(), body.seen_v(), forces, moments);
+    });
+  }
+  for (const Body& body : bodies_) {
+    JointForces* const joints = tress::joint_forces(*body.system);
+    if (joints == nullptr) continue;
+    append(body, joints->joints(), [&](Out forces, Out moments) {
+      return joints->joint_forces(t_, body.seen_q(), body.seen_v(), forces, moments);
+    });
   }
   return all;
 }

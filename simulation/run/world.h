@@ -112,13 +112,13 @@ class World {
   /// Returns the held shape of each strand; empty unless the scene's rest is inverse.
   const std::vector<HeldShape>& held() const { return held_; }
 
-  /// Loads of supports on strands, (3 supports) each, strand after strand. NaN of strands
-  /// that have failed.
+  /// Loads of supports on strands, (3 supports) each, strand after strand, then those of
+  /// joints on their ends b. NaN of strands that have failed.
   struct SupportLoads {
     std::vector<double> forces;   // N
     std::vector<double> moments;  // N m, about the held points
   };
-  /// Returns the loads of all supports.
+  /// Returns the loads of all supports and joints.
   SupportLoads support_loads();
   /// Returns the strands that began away from their supports, in words.
   std::vector<std::string> supported_starts() const;
@@ -173,7 +173,9 @@ class World {
     In part(In all) const { return all.subspan(3 * first_point, 3 * points); }
   };
 
-  void add(SteppedSystem system, std::size_t strands);
+  /// `block`: the system, where its strands may differ; all of its memory is stored with
+  /// the first.
+  void add(SteppedSystem system, std::size_t strands, const StrandBlock* block = nullptr);
   Effects effects_between(std::size_t strand) const;
   void hold(const Scene& scene);
   void build_strands(const Scene& scene, const Parameters* between);

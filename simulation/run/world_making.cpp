@@ -55,7 +55,7 @@ World::World(const Scene& scene, int threads, std::vector<HeldShape> held)
   ready(scene);
 }
 
-void World::add(SteppedSystem made, std::size_t strands) {
+void World::add(SteppedSystem made, std::size_t strands, const StrandBlock* block) {
   Body& body = bodies_.emplace_back(std::move(made));
   if (bodies_.size() > 1) {
     const Body& last = bodies_[bodies_.size() - 2];
@@ -73,7 +73,17 @@ void World::add(SteppedSystem made, std::size_t strands) {
     const int before = points->before(static_cast<int>(i));
     before_.push_back(before < 0 ? -1 : before + static_cast<int>(body.first_point));
   }
-  points_.insert(points_.end(), strands, static_cast<int>(body.points / strands));
+  if (block == nullptr) {
+    points_.insert(points_.end(), strands, static_cast<int>(body.points / strands));
+    return;
+  }
+  body.memory.assign(strands, 0);
+  body.memory.front() = system->memory().size();
+  for (std::size_t k = 0; k < strands; ++k) {
+    System& strand = block->strand(k);
+    body.coordinates[k] = static_cast<std::size_t>(strand.layout().coordinates);
+    points_.push_back(strand.material_points()->count());
+  }
 }
 
 Effects World::effects_between(std::size_t strand) const {
@@ -133,8 +143,17 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
   const std::size_t most = alone ? 1 : Pack::lanes;
   for (std::size_t k = 0; k < strands.size();) {
     std::vector<StrandToMake> some;
+    if (const SceneJoints::Group* group = maker_.joints().beginning_with(k)) {
+      for (std::size_t i = k; i < k + group->count; ++i) some.push_back(to_make(i));
+      SteppedSystem made = maker_.joined(some, *group);
+      const auto* block = dynamic_cast<const StrandBlock*>(made.system.get());
+      add(std::move(made), group->count, block);
+      k += group->count;
+      continue;
+    }
     for (std::size_t i = k; i < strands.size() && i < k + most &&
-                            strands[i].segments.size() == strands[k].segments.size();
+                            strands[i].segments.size() == strands[k].segments.size() &&
+                            maker_.joints().beginning_with(i) == nullptr;
          ++i) {
       some.push_back(to_make(i));
     }
@@ -149,26 +168,18 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
 void World::build_coupled(const Scene& scene, const Parameters& between) {
   std::vector<std::unique_ptr<System>> systems;
   std::vector<StrandToMake> strands;
-  std::vector<std::size_t> coordinates;
   std::vector<std::shared_ptr<const Metered>> meters;
   for (const Strand& strand : scene.strands) {
     strands.push_back({strand});
     systems.push_back(maker_.metered(strands.back(), meters));
-    coordinates.push_back(static_cast<std::size_t>(systems.back()->layout().coordinates));
   }
   auto coupled = std::make_unique<CoupledStrands>(std::move(systems), between);
   CoupledStrands* const whole = coupled.get();
   SteppedSystem made(std::move(coupled));
   made.meters = std::move(meters);
   maker_.add_guard(made, strands, 0);
-  add(std::move(made), scene.strands.size());
-  Body& body = bodies_.front();
-  body.coupled = whole;
-  body.coordinates = std::move(coordinates);
-  // Its memory is more than that of its strands: all of it is stored with the first.
-  body.memory.assign(scene.strands.size(), 0);
-  body.memory.front() = body.system->memory().size();
-  points_ = material_points(scene);
+  add(std::move(made), scene.strands.size(), whole);
+  bodies_.front().coupled = whole;
 }
 
 /// Integrators at the initial state.

@@ -261,6 +261,10 @@ void set_root(Strand& strand, const RootMotions& motions, Vec position,
   if (strand.free_root) {
     strand.free_root->position = position;
     strand.free_root->frame = frame;
+    if (!motions.begins_with_head) return;
+    const models::RootPose pose = strand.root.at(0);
+    strand.free_root->velocity = pose.v;
+    strand.free_root->spin = pose.omega;
   }
 }
 

@@ -31,6 +31,8 @@ struct RootMotions {
   const RootMotion& head;                    // rigid motion of all roots
   const std::optional<FreeRoot>& free_root;  // root that moves freely, if it does
   const Skin* skin = nullptr;                // surface that carries roots; null: the head
+  /// A free root begins with the velocity and the spin that a clamped one has there.
+  bool begins_with_head = false;
 };
 
 /// Puts the root of a strand at this position, moving with the head or the skin, or free.

@@ -15,6 +15,7 @@
 #include "models/strand/geometry.h"
 #include "simulation/scene/file_groom.h"
 #include "simulation/scene/gradient_table.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/scene_check.h"
 #include "simulation/scene/scene_tables.h"
@@ -29,9 +30,9 @@ namespace {
 constexpr std::size_t most_effects = 1000, most_groom_files = 100;
 constexpr double most_frames = 1e6;
 
-constexpr std::string_view known_tables[] = {"model",   "integrator", "material",
-                                             "strand",  "groom",      "root",
-                                             "effects", "gradient",   "supports"};
+constexpr std::string_view known_tables[] = {
+    "model", "integrator", "material", "strand",   "groom",
+    "root",  "effects",    "gradient", "supports", "joints"};
 constexpr std::string_view material_table[] = {"material"};
 
 /// A scene being read: the parsed text and the part interpreted so far.
@@ -188,8 +189,8 @@ class Reader {
   }
 
   void refuse_strand_tables() const {
-    for (const std::string_view name :
-         {"strand", "groom", "material", "root", "effects", "gradient", "supports"}) {
+    for (const std::string_view name : {"strand", "groom", "material", "root", "effects",
+                                        "gradient", "supports", "joints"}) {
       const toml::node* node = root_.get(name);
       if (node == nullptr) continue;
       throw InputError(fmt::format("[{}] is not allowed with model {}, which brings its "
@@ -221,8 +222,13 @@ class Reader {
         tables.supports.push_back(read_support(*one, file_));
       }
     }
+    if (const toml::node* node = root_.get("joints")) {
+      for (const toml::table* one : each(*node, "joints", true)) {
+        tables.joints.push_back(read_joint(*one, file_));
+      }
+    }
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
-    if (SceneSupports(scene_).any() &&
+    if ((SceneSupports(scene_).any() || SceneJoints(scene_).any()) &&
         scene_.options.formulation == Formulation::parametric) {
       scene_.options.formulation = formulation_of_supports(scene_);
     }

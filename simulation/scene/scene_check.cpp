@@ -8,6 +8,7 @@
 #include "integrators/catalogue.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 
@@ -93,9 +94,9 @@ void check_friction(const Scene& scene, const ScenePlaces& places) {
 
 void check_integrator(const Scene& scene, System& system, const ScenePlaces& places) {
   const IntegratorEntry& entry = find_integrator(scene.integrator);
-  const Options options = SceneSupports(scene).any()
-                              ? options_beside_supports(system, scene.options)
-                              : scene.options;
+  const bool tied = SceneSupports(scene).any() || SceneJoints(scene).any();
+  const Options options =
+      tied ? options_beside_supports(system, scene.options) : scene.options;
   const std::string reason = refusal(entry, system, options.formulation);
   if (reason.empty()) {
     at_place(places.integrator, [&] { return entry.make(system, options); });
@@ -108,7 +109,9 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
   }
   throw InputError(
       fmt::format("{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
-                  SceneSupports(scene).any() ? " with [supports]" : "",
+                  SceneSupports(scene).any() ? " with [supports]"
+                  : SceneJoints(scene).any() ? " with [joints]"
+                                             : "",
                   name(options.formulation), reason),
       places.integrator,
       able.empty() ? "give another formulation: ./tress list shows what can drive what"
@@ -139,6 +142,26 @@ void check_failed_strands(const Scene& scene, const ScenePlaces& places) {
   if (!places.tolerance.empty()) {
     refuse("strands that touch and choose their steps, which share their intervals",
            "give dt_s instead of position_tol_rel, or " + leave_out);
+  }
+}
+
+/// Makes the joined strands, and looks whether the scene's method can drive them.
+void check_joints(const Scene& scene, const ScenePlaces& places,
+                  const SceneJoints& joints) {
+  const SceneSupports supports(scene);
+  for (const SceneJoints::Group& group : joints.groups()) {
+    std::vector<std::unique_ptr<System>> systems;
+    std::vector<const Strand*> strands;
+    for (std::size_t k = group.first; k < group.first + group.count; ++k) {
+      const Strand& strand = scene.strands[k];
+      strands.push_back(&strand);
+      auto alone = at_place(places.strands[k], [&] {
+        return scene.model->on_strand(strand, scene.model_options,
+                                      effects_of(scene, places));
+      });
+      systems.push_back(supports.on(std::move(alone), strand, k));
+    }
+    check_integrator(scene, *joints.join(group, std::move(systems), strands), places);
   }
 }
 
@@ -174,7 +197,9 @@ void check(const Scene& scene, const ScenePlaces& places) {
     return;
   }
   const SceneSupports supports(scene);
+  const SceneJoints joints(scene);
   supports.check(scene);
+  joints.check(scene);
   check_friction(scene, places);
   check_mesh(scene, places);
   const Parameters* interaction = scene.interaction();
@@ -193,7 +218,9 @@ void check(const Scene& scene, const ScenePlaces& places) {
         places.tolerance,
         "use tr_bdf2 or esdirk43, coupling = \"monolithic\", or no tolerance");
   }
+  check_joints(scene, places, joints);
   const std::string* before = nullptr;
+  bool driven = false;  // a strand alone
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {
     const std::string& place = places.strands[i];
     const std::size_t number = places.numbers[i];
@@ -206,7 +233,10 @@ void check(const Scene& scene, const ScenePlaces& places) {
                                     std::move(effects));
     };
     const auto system = supports.on(at_place(place, make), scene.strands[i], number);
-    if (before == nullptr || held) check_integrator(scene, *system, places);
+    if (joints.of(number) == nullptr && (!driven || held)) {
+      check_integrator(scene, *system, places);
+      driven = true;
+    }
     if (scene.rest == RestStrains::inverse) {
       strains_to_hold(scene, scene.strands[i], *system, places.rest);
     }

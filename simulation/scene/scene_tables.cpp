@@ -9,6 +9,7 @@
 #include "models/effects/catalogue.h"
 #include "simulation/scene/gradient_table.h"
 #include "simulation/scene/groom.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/root_table.h"
 #include "simulation/scene/shapes.h"
@@ -198,6 +199,14 @@ std::vector<TableEntry> table_entries() {
                             "points begin elsewhere. [integrator] formulation has a "
                             "default that suits the method",
                  .parameters = support_table_parameters(),
+                 .many = true});
+  all.push_back({.name = "joints",
+                 .summary =
+                     "a joint between two strands, or two points of one. Its points "
+                     "coincide at the start, except those of a spring. Joined "
+                     "strands are one system. [integrator] formulation has the "
+                     "same default as with supports",
+                 .parameters = joint_table_parameters(),
                  .many = true});
   all.push_back({.name = "gradient",
                  .summary = "derivatives of the motion by numbers of the scene. "

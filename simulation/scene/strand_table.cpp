@@ -68,6 +68,13 @@ constexpr Parameter own_parameters[] = {
      .number = 0,
      .min = 0,
      .max = 1e3},
+    {.name = "name", .help = "name of the strand in [joints]", .text = true},
+    {.name = "root",
+     .help =
+         "motion of the root. common: as [root] prescribes; free: held by supports and "
+         "joints alone. It begins with the velocity of a root that moves as [root] "
+         "prescribes",
+     .choices = "common|free"},
 };
 
 void refuse_beside_points(const Table& table) {
@@ -161,6 +168,15 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
       needed_elements(table, material, length, natural, frame.e0, tolerance));
 }
 
+/// Those of all strands, unless the root of this one is free.
+RootMotions roots_of(const Table& table, const Common& common) {
+  static const std::optional<FreeRoot> at_rest{FreeRoot{}};
+  if (table.values().word("root") == "common" || common.roots.free_root) {
+    return common.roots;
+  }
+  return {common.roots.head, at_rest, common.roots.skin, true};
+}
+
 }  // namespace
 
 std::vector<Parameter> cut_parameters() {
@@ -199,6 +215,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
                     std::uint64_t stream) {
   const Parameters& p = table.values();
   table.refuse_unused("shape", shape_uses());
+  const RootMotions roots = roots_of(table, common);
   const StrandMaterial material = strand_material(common.material, own_material);
   if (!p.numbers("points").empty()) {
     refuse_beside_points(table);
@@ -215,7 +232,7 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
         cut_strand(table, material, curve.length, tied ? uniform_shape({}) : curve.shape,
                    tied ? curve.shape : Shape{});
     vary_along(table, strand);
-    set_root(strand, common.roots, curve.position, curve.frame);
+    set_root(strand, roots, curve.position, curve.frame);
     return strand;
   }
   if (p.word("natural") == "straight") {
@@ -227,9 +244,9 @@ Strand scene_strand(const Table& table, const Table* own_material, const Common&
   Strand strand =
       cut_shape(table, material,
                 natural_shape(table, material, p.number("length_m"), common.seed, stream),
-                frame, !common.roots.free_root);
+                frame, !roots.free_root);
   vary_along(table, strand);
-  set_root(strand, common.roots, p.vec("position_m"), frame);
+  set_root(strand, roots, p.vec("position_m"), frame);
   return strand;
 }
 

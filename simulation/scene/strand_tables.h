@@ -23,12 +23,13 @@ struct StrandSource {
 };
 
 /// The tables, as read, from which the strands of a scene are made, [gradient], which
-/// names numbers of them, and [supports], which hold their points.
+/// names numbers of them, and [supports] and [joints], which hold their points.
 struct StrandTables {
   Table material, root;                   // the scene's [material] and [root]
   std::vector<StrandSource> sources;      // each [strand], then each [groom]
   std::optional<Table> gradient = {};     // the scene's [gradient], if it has one
   std::vector<Table> supports = {};       // each [[supports]]
+  std::vector<Table> joints = {};         // each [[joints]]
   std::shared_ptr<const Skin> skin = {};  // surface that carries roots, or null
 };
 

@@ -93,27 +93,9 @@ constexpr Parameter support_parameters[] = {
 
 /// Index of the material point that `at` names.
 int point_of(const Table& table, const Strand& strand) {
-  const std::string_view at = table.values().word("at");
-  const std::vector<double> s = models::arc_lengths(strand);
-  const auto last = static_cast<int>(s.size()) - 1;
-  if (at == "tip") return last;
-  if (at == "root") return 0;
-  const double share = decimal(at).value_or(-1);
-  const double arc = share * s.back();
-  const auto nearest = std::ranges::min_element(
-      s, {}, [arc](double other) { return std::abs(other - arc); });
-  const auto point = static_cast<std::size_t>(nearest - s.begin());
-  if (share >= 0 && share <= 1 && std::abs(*nearest - arc) <= 1e-9 * s.back()) {
-    return static_cast<int>(point);
-  }
-  throw InputError(
-      fmt::format("no point at {} of strand {}", at, table.values().whole("strand")),
-      table.place("at"),
-      share >= 0 && share <= 1
-          ? fmt::format("give at = {:.9g}, the nearest end of an element, or other "
-                        "elements",
-                        *nearest / s.back())
-          : "give \"tip\", \"root\" or a number of 0 to 1");
+  return point_at(table.values().word("at"), strand,
+                  fmt::format("strand {}", table.values().whole("strand")),
+                  table.place("at"));
 }
 
 /// The axis of a hinge in the components of the section at the start.
@@ -159,6 +141,29 @@ void check_keys(const Table& table) {
 
 }  // namespace
 
+int point_at(std::string_view at, const Strand& strand, const std::string& name,
+             const std::string& place) {
+  const std::vector<double> s = models::arc_lengths(strand);
+  const auto last = static_cast<int>(s.size()) - 1;
+  if (at == "tip") return last;
+  if (at == "root") return 0;
+  const double share = decimal(at).value_or(-1);
+  const double arc = share * s.back();
+  const auto nearest = std::ranges::min_element(
+      s, {}, [arc](double other) { return std::abs(other - arc); });
+  const auto point = static_cast<std::size_t>(nearest - s.begin());
+  if (share >= 0 && share <= 1 && std::abs(*nearest - arc) <= 1e-9 * s.back()) {
+    return static_cast<int>(point);
+  }
+  throw InputError(
+      fmt::format("no point at {} of {}", at, name), place,
+      share >= 0 && share <= 1
+          ? fmt::format("give at = {:.9g}, the nearest end of an element, or other "
+                        "elements",
+                        *nearest / s.back())
+          : "give \"tip\", \"root\" or a number of 0 to 1");
+}
+
 std::span<const Parameter> support_table_parameters() { return support_parameters; }
 
 Table read_support(const toml::table& table, const std::string& file) {
@@ -199,9 +204,10 @@ std::vector<NamedSupport> SceneSupports::named() const {
   for (const Table& table : tables()) {
     const int strand = table.values().whole("strand");
     const std::string_view kind = table.values().word("kind");
-    all.emplace_back(strand, NamedSupport{fmt::format("strand_{}_at_{}", strand,
-                                                      table.values().word("at")),
-                                          kind != "direction", kind != "ball"});
+    const std::string name =
+        fmt::format("strand_{}_at_{}", strand, table.values().word("at"));
+    all.emplace_back(strand, NamedSupport{name, kind != "direction", kind != "ball",
+                                          "the support " + name + " on the strand"});
   }
   std::ranges::stable_sort(all, {}, &std::pair<int, NamedSupport>::first);
   std::vector<NamedSupport> named;

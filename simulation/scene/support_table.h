@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "contract/system.h"
@@ -23,7 +24,13 @@ Table read_support(const toml::table& table, const std::string& file);
 struct NamedSupport {
   std::string name;       // names strand and point
   bool place, direction;  // whether it holds them
+  std::string acting;     // what acts on what, in words
 };
+
+/// Returns the material point of a strand at "tip", "root" or a share of the arc length.
+/// Throws InputError with `place` if no element ends there; `name` is that of the strand.
+int point_at(std::string_view at, const Strand& strand, const std::string& name,
+             const std::string& place);
 
 /// The supports of a scene. Keeps no reference to it.
 class SceneSupports {

@@ -141,10 +141,14 @@ void add_strands(std::string& text, const StrandTables& tables) {
   }
   add_header(text, "[root]");
   add_given(text, tables.root);
-  for (const Table& support : tables.supports) {
-    add_header(text, "[[supports]]");
-    add_given(text, support);
-  }
+  const auto add_each = [&text](std::string_view name, const std::vector<Table>& all) {
+    for (const Table& one : all) {
+      add_header(text, name);
+      add_given(text, one);
+    }
+  };
+  add_each("[[supports]]", tables.supports);
+  add_each("[[joints]]", tables.joints);
   if (!tables.gradient) return;
   add_header(text, "[gradient]");
   add_given(text, *tables.gradient);

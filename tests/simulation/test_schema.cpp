@@ -91,6 +91,7 @@ std::string with_table(const TableEntry& entry) {
 
 TEST(SceneTables, TakeEveryKeyAtItsDefault) {
   for (const TableEntry& entry : table_entries()) {
+    if (entry.name == "joints") continue;  // its ends have no default
     const std::string text = with_table(entry);
     SCOPED_TRACE(text);
     const Scene scene = parse_scene(text, "defaults.toml");

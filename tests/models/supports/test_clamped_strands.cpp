@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/forms/sparse_form.h"
 #include "simulation/rest/supported_start.h"
+#include "tests/models/supports/admitted_motions.h"
 #include "tests/models/supports/held_strand.h"
 
 namespace tress::test_clamped_strands {
@@ -28,53 +27,6 @@ ModelSettings straight(const std::string& elements) {
   return {{"elements", elements},    {"motion", "fixed"},
           {"radius_m", "2e-4"},      {"youngs_modulus_pa", "3e9"},
           {"density_kg_m3", "1300"}, {"internal_friction_kg_m3_s", "0"}};
-}
-
-/// S(w) of a system, dense.
-MatrixXd matrix_of(System& system, In q, In lambda, Weights w) {
-  SparseForm& form = *system.sparse_form();
-  const Pattern& pattern = form.pattern();
-  const std::vector<double> zero(q.size());
-  std::vector<double> values(std::size_t(pattern.nonzeros()));
-  EXPECT_EQ(form.values(0, q, zero, zero, w, values), Status::ok);
-  if (w.pos != 0 && system.layout().constraints > 0) {
-    EXPECT_EQ(system.constraint_form()->add_curvature(0, q, lambda, -w.pos, values),
-              Status::ok);
-  }
-  MatrixXd full = MatrixXd::Zero(pattern.rows, pattern.cols);
-  for (int k = 0; k < pattern.cols; ++k) {
-    for (int p = pattern.start[std::size_t(k)]; p < pattern.start[std::size_t(k) + 1];
-         ++p) {
-      full(pattern.row[std::size_t(p)], k) = values[std::size_t(p)];
-    }
-  }
-  return full;
-}
-
-/// Orthonormal motions that the constraints admit, in typical sizes.
-MatrixXd free_motions(System& system, In q) {
-  const auto n = static_cast<Eigen::Index>(q.size());
-  std::vector<double> q_typ(q.size()), v_typ(q.size());
-  system.scale(q_typ, v_typ);
-  const VectorXd typ = Eigen::Map<const VectorXd>(q_typ.data(), n);
-  if (system.layout().constraints == 0) return typ.asDiagonal();
-  ConstraintForm& form = *system.constraint_form();
-  const Pattern& pattern = form.pattern();
-  std::vector<double> values(std::size_t(pattern.nonzeros()));
-  EXPECT_EQ(form.gradient(0, q, values), Status::ok);
-  MatrixXd g = MatrixXd::Zero(n, pattern.cols);
-  for (int k = 0; k < pattern.cols; ++k) {
-    for (int p = pattern.start[std::size_t(k)]; p < pattern.start[std::size_t(k) + 1];
-         ++p) {
-      g(pattern.row[std::size_t(p)], k) = values[std::size_t(p)];
-    }
-    g.col(k) = typ.asDiagonal() * g.col(k);
-    g.col(k) /= g.col(k).norm();
-  }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(g);
-  EXPECT_EQ(qr.rank(), g.cols());
-  const MatrixXd all = qr.householderQ() * MatrixXd::Identity(n, n);
-  return typ.asDiagonal() * all.rightCols(n - g.cols());
 }
 
 /// A strand whose tip is clamped as it begins, and free to slide along it.
