@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 
+#include "contract/input_error.h"
 #include "contract/printable.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/message.h"
@@ -48,6 +51,24 @@ void tell_verdicts(std::string_view experiment, const Verdicts& verdicts) {
 }
 
 }  // namespace
+
+std::vector<Case> chosen_rows(std::vector<Case> cases, const CommandLine& line) {
+  if (line.run_ids.empty()) return cases;
+  std::set<std::string> wanted;  // of cases: without the number of a further row
+  for (const std::string& id : line.run_ids) wanted.insert(id.substr(0, id.find('.')));
+  std::set<std::string> found;
+  std::erase_if(cases, [&](const Case& work) {
+    const std::string id(work.identity.text("run_id"));
+    if (wanted.contains(id)) found.insert(id);
+    return !wanted.contains(id);
+  });
+  for (const std::string& id : wanted) {
+    if (found.contains(id)) continue;
+    throw InputError("no row of these options has the run_id " + id, line.place("run-id"),
+                     "--dry-run prints the rows with their run_id");
+  }
+  return cases;
+}
 
 int report_table(const Experiment& experiment, const CommandLine& line,
                  const std::vector<Row>& rows, const Verdicts& verdicts) {
