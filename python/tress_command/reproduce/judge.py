@@ -53,7 +53,7 @@ class Judged(NamedTuple):
 def arithmetic(manifest):
     """Returns what decides the last digits of a table, by name."""
     build, machine = manifest.get("build") or {}, manifest.get("machine") or {}
-    facts = {name: build.get(name) for name in ("compiler", "flags")}
+    facts = {name: " ".join(str(build.get(name)).split()) for name in ("compiler", "flags")}
     facts |= {"widest instructions": machine.get("simd"), "kernels": machine.get("kernels")}
     return facts | {f"library {name}": version
                     for name, version in (manifest.get("libraries") or {}).items()}
