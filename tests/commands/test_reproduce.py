@@ -446,6 +446,8 @@ class Parts(unittest.TestCase):
                 ("error_rel", 1.0, 1 + 9e-10, False, True, ""),
                 ("error_rel", 1.0, 1 + 2e-9, False, True, "changed value"),
                 ("error_rel", 1e-12, 2e-12, False, False, "rounding"),
+                ("error_rel", 1e-12, 2e-12, False, True, "changed value"),
+                ("error_rel", 1e-15, 9e-15, False, True, ""),
                 ("t_s", 1e-12, 2e-12, False, False, "changed value"),
                 ("t_s", 1.0, 1 + 9e-6, False, False, "rounding"),
                 ("steps", 10, 11, True, True, "changed value"),

@@ -14,6 +14,9 @@ from ..compare.tables import DIGITS, NOT_COMPARED, TIME, Table, is_number, keyed
 # Numbers of tables have all their digits. The same instructions give the same bits; the room is
 # for libraries of the system that choose instructions by the processor.
 EQUAL = 1e-9
+# Of a column with _rel in its name, whatever the size of the number: fifty roundings (2e-16
+# each) of the scale to which it is relative.
+NOISE = 1e-14
 # Of other arithmetic: the digits that ./tress compare compares.
 ROUNDING = 10.0**-DIGITS
 OUTCOMES = ("status", "outcome", "passed", "verdict", "holds", "failure")
@@ -75,6 +78,13 @@ def difference(a, b):
     return math.inf
 
 
+def _equal(name, a, b, whole):
+    """True if two cells are equal up to the last digits."""
+    if whole or not (is_number(a) and is_number(b)):
+        return a == b
+    return difference(a, b) <= EQUAL or ("_rel" in name and abs(a - b) <= NOISE)
+
+
 def _near(name, a, b, whole):
     """True if rounding of other arithmetic explains a difference."""
     if is_number(a) and is_number(b):
@@ -87,8 +97,7 @@ def _near(name, a, b, whole):
 def judge_cell(name, a, b, whole, same):
     """Returns the verdict on a cell, "" if it agrees. whole: the column holds whole numbers;
     same: so is the arithmetic."""
-    apart = difference(a, b)
-    if apart == 0 or (apart <= EQUAL and not whole):
+    if _equal(name, a, b, whole):
         return ""
     if not same and name not in OUTCOMES and _near(name, a, b, whole):
         return NEAR
