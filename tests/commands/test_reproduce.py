@@ -197,6 +197,12 @@ class Differences(Reproduce):
             judged = judge.judge_table(name, before, after)
             self.assertEqual([one["verdict"] for one in judged.found], verdicts)
             self.assertEqual(judged.bad(), name == "damping")
+        # So is the number of the further rows of a search, but not that of searches.
+        for key, verdict in ((f"{IDS[0]}.001", "other choice"), (IDS[0], "missing")):
+            before.rows[0]["run_id"] = key
+            after.rows[:] = before.rows[1:]
+            (one,) = judge.judge_table("head_accuracy", before, after).found
+            self.assertEqual(one["verdict"], verdict)
 
     def test_an_experiment_that_fails_is_told(self):
         (self.toy / "fail.damping").touch()

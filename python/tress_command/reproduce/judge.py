@@ -141,6 +141,12 @@ def _explained(found, chosen):
     return found
 
 
+def _absent(table, key):
+    """Returns the verdict on a row that only the release has. A search by time finds more rows
+    or fewer, which follow that of their case."""
+    return CHOICE if table in CHOSEN_BY_TIME and "." in key else MISSING
+
+
 def _claims(before, after):
     """Returns the claims whose state changed, as differences. A claim that now holds is none."""
     def states(manifest):
@@ -168,7 +174,7 @@ def judge_table(name, before, after):
     for key, row in old.items():
         title = {"key": key, "run_id": row.get("run_id") or "", "row": label(row, words)}
         if key not in new:
-            found.append(title | {"column": "", "verdict": MISSING})
+            found.append(title | {"column": "", "verdict": _absent(name, key)})
             continue
         cells = [title | {"column": column, "verdict": verdict, "before": row[column],
                           "after": new[key][column],
