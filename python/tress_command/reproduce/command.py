@@ -175,6 +175,11 @@ def compare(recipes, runs, release, results, commit, without, folder):
     title = f"Reproduction of tress {place.version()[0]} at commit {commit[:8]}"
     (folder / "report.md").write_text(page_of(title, _facts(pairs, commit), groups, without),
                                       encoding="utf-8")
+    older = {there[:8]: None for a, _ in pairs if (
+        there := (a.get("git") or {}).get("commit", commit)) != commit}
+    if older:
+        say(f"tables of the release are of commit {', '.join(older)}, this is {commit[:8]}: a "
+            "change of the code counts as a change")
     differs = {text: None for a, b in pairs if b for text in other_arithmetic(a, b)}
     if differs:
         say(f"the arithmetic differs, so last digits may: {'; '.join(differs)}")
