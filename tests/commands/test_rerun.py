@@ -33,8 +33,8 @@ class Archives(Reproduce):
             names = tar.getnames()
             self.assertEqual({(one.mtime, one.uid, one.gid, one.uname) for one in tar},
                              {(0, 0, 0, "")})
-            tar.extractall(self.work, filter="data")
         self.assertEqual(names, sorted(names))
+        subprocess.run(["tar", "-xzf", self.file, "-C", self.work], check=True)
         folder = self.work / "tress-7.8.9-results"
         facts = json.loads((folder / "MANIFEST.json").read_text())
         self.assertEqual((facts["version"], facts["commit"]), ("7.8.9", COMMIT))
