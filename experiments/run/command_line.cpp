@@ -10,6 +10,7 @@
 #include "contract/parameters.h"
 #include "contract/renamed.h"
 #include "experiments/run/options_file.h"
+#include "experiments/run/rows.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/parse.h"
 
@@ -156,9 +157,7 @@ void interpret(const CLI::App& app, const Raw& raw, std::span<const OwnOption> o
   if (given(raw.shard, "shard")) {
     std::tie(line.shard_index, line.shard_count) = parse_shard(raw.shard, "--shard");
   }
-  if (given(raw.run_ids, "run-id")) {
-    line.run_ids = split(raw.run_ids, ',', "--run-id");
-  }
+  if (given(raw.run_ids, "run-id")) line.run_ids = parse_run_ids(raw.run_ids);
   if (given(raw.timeout, "timeout")) {
     line.timeout_s = parse_duration(raw.timeout, "--timeout");
   }

@@ -12,6 +12,7 @@
 #include "contract/printable.h"
 #include "experiments/run/exit_code.h"
 #include "experiments/run/message.h"
+#include "simulation/files/parse.h"
 
 namespace tress::experiments {
 namespace {
@@ -51,6 +52,26 @@ void tell_verdicts(std::string_view experiment, const Verdicts& verdicts) {
 }
 
 }  // namespace
+
+std::vector<std::string> parse_run_ids(const std::string& list) {
+  std::vector<std::string> ids = split(list, ',', "--run-id");
+  for (const std::string& id : ids) {
+    const std::string_view text = id;
+    const std::string_view hash = text.substr(0, 16), further = text.substr(hash.size());
+    const auto made_of = [](std::string_view part, std::string_view digits) {
+      return part.find_first_not_of(digits) == part.npos;
+    };
+    const bool number = further.size() > 1 && further.front() == '.' &&
+                        made_of(further.substr(1), "0123456789");
+    if (hash.size() == 16 && made_of(hash, "0123456789abcdef") &&
+        (further.empty() || number)) {
+      continue;
+    }
+    throw InputError(fmt::format("'{}' is not a run_id", id), "--run-id",
+                     "give the 16 hexadecimal digits of that column");
+  }
+  return ids;
+}
 
 std::vector<Case> chosen_rows(std::vector<Case> cases, const CommandLine& line) {
   if (line.run_ids.empty()) return cases;

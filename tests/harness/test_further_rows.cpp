@@ -76,7 +76,9 @@ TEST(RunId, SelectsRowsOfThePlan) {
 
 TEST(RunId, ThatNoRowHasIsRefused) {
   Toy toy;
-  for (const char* bad : {"0123456789abcdef", "''", "a,,b", "../x"}) {
+  for (const char* bad :
+       {"0123456789abcdef", "''", "a,,b", "../x", "0123456789abcde", "0123456789abcdeg",
+        "0123456789abcdef0", "0123456789abcdef.", "0123456789abcdef.x"}) {
     const Toy::Result result = toy.run(std::string("--out toy.csv --run-id ") + bad);
     EXPECT_EQ(result.code, 2) << bad;
     EXPECT_EQ(result.error_lines(), 1) << bad;
