@@ -10,6 +10,7 @@
 #include "contract/parameters.h"
 #include "contract/renamed.h"
 #include "experiments/run/options_file.h"
+#include "experiments/run/rows.h"
 #include "simulation/files/build_facts.h"
 #include "simulation/files/parse.h"
 
@@ -23,7 +24,7 @@ constexpr int most_repeats = 1'000'000;
 /// remedy.
 struct Raw {
   std::string models, integrators, elements, options, scene, out, shard, timeout,
-      progress;
+      progress, run_ids;
   std::string jobs, repeat, seed;
   std::vector<std::string> set, plugins;
   std::vector<std::string> own;  // the experiment's own options
@@ -65,6 +66,8 @@ void declare(CLI::App& app, CommandLine& line, Raw& raw, std::span<const OwnOpti
       "time is measured)");
   app.add_option("--shard", raw.shard,
                  "run part i of n, as in 1/4; its table is named so, as in x.1-of-4.csv");
+  app.add_option("--run-id", raw.run_ids,
+                 "rows with these run_ids, as in a,b; other options must select them");
   app.add_option("--merge", line.merge, "join tables of this experiment into --out")
       ->allow_extra_args(true);
   app.add_option("--timeout", raw.timeout,
@@ -156,6 +159,7 @@ void interpret(const CLI::App& app, const Raw& raw, std::span<const OwnOption> o
   if (given(raw.shard, "shard")) {
     std::tie(line.shard_index, line.shard_count) = parse_shard(raw.shard, "--shard");
   }
+  if (given(raw.run_ids, "run-id")) line.run_ids = parse_run_ids(raw.run_ids);
   if (given(raw.timeout, "timeout")) {
     line.timeout_s = parse_duration(raw.timeout, "--timeout");
   }

@@ -31,6 +31,7 @@ struct CommandLine {
   std::vector<std::string> plugins;  // shared libraries
   std::string out;                   // "-": standard output
   std::vector<std::string> merge;    // tables to join instead of running
+  std::vector<std::string> run_ids;  // rows to run; empty: all that the options select
   bool quick = false, full = false, resume = false, retry_failed = false;
   bool list = false, dry_run = false, check = false;
   int jobs = 1, repeat = 3;
@@ -44,6 +45,8 @@ struct CommandLine {
   /// "options.toml:3:1". For messages.
   std::map<std::string, std::string, std::less<>> places;
   std::string place(std::string_view option) const;
+  /// Whether the table lacks rows of its experiment: one shard, or rows by run_id.
+  bool partial() const { return shard_count > 1 || !run_ids.empty(); }
 };
 
 /// An option of one experiment: --name VALUE is short for --set key=VALUE. It replaces a

@@ -72,7 +72,7 @@ std::vector<Case> plan(const Experiment& experiment, const CommandLine& line) {
     cases[i].identity.set("run_id", id);
     mine.push_back(std::move(cases[i]));
   }
-  return mine;
+  return chosen_rows(std::move(mine), line);
 }
 
 /// As `plan`, which may compute references first.
@@ -130,7 +130,7 @@ bool keep_table(const Experiment& experiment, const CommandLine& line, Rows& row
 int finish(const Experiment& experiment, const CommandLine& line, std::vector<Row> rows,
            const Manifest& manifest, std::size_t kept_from_before) {
   Verdicts verdicts;
-  if (line.shard_count == 1) {
+  if (!line.partial()) {
     if (experiment.derive) experiment.derive(rows);
     if (experiment.checks) experiment.checks(rows, verdicts);
   }
@@ -142,7 +142,7 @@ int finish(const Experiment& experiment, const CommandLine& line, std::vector<Ro
                  manifest.finished(rows, verdicts, kept_from_before));
     replace_file(line.out, csv);
   }
-  if (experiment.conclude && line.shard_count == 1) experiment.conclude(line, rows);
+  if (experiment.conclude && !line.partial()) experiment.conclude(line, rows);
   return report_table(experiment, line, rows, verdicts);
 }
 

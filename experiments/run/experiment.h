@@ -68,7 +68,7 @@ struct Experiment {
   /// Optional: fills columns that only the whole table knows (fitted orders, fronts).
   std::function<void(std::vector<Row>&)> derive = {};
   /// Optional: the claims that the table must show; a broken claim makes the exit code 3.
-  /// Neither `checks` nor `derive` is called on a single shard.
+  /// Neither `checks` nor `derive` is called on a single shard or with --run-id.
   std::function<void(const std::vector<Row>&, Verdicts&)> checks = {};
   /// Optional: stored in the manifest for the report page.
   std::function<std::vector<Gloss>()> glossary = {};

@@ -76,6 +76,9 @@ std::string settings_text(const CommandLine& line) {
   if (line.quick) text += " quick";
   if (line.full) text += " full";
   for (const auto& [key, value] : sorted) text += fmt::format(" {}={}", key, value);
+  if (!line.run_ids.empty()) {
+    text += fmt::format(" run-id={}", fmt::join(line.run_ids, ","));
+  }
   return text + plugins_text();
 }
 

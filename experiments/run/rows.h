@@ -55,6 +55,14 @@ class Rows {
   std::map<std::string, std::size_t> place_;
 };
 
+/// Returns the run_ids of a list such as a,b. Throws InputError on a text that no row
+/// has, before the rows are planned, which may take minutes.
+std::vector<std::string> parse_run_ids(const std::string& list);
+
+/// Returns the cases with the rows that --run-id names, all without that option. Throws
+/// InputError on a run_id that no case has.
+std::vector<Case> chosen_rows(std::vector<Case> cases, const CommandLine& line);
+
 /// Tells verdicts and the number of rows by status on standard error; returns the exit
 /// code.
 int report_table(const Experiment& experiment, const CommandLine& line,

@@ -78,7 +78,8 @@ def _records(path):
 
 def read_csv(path):
     """Returns the names of the columns, and the rows as dictionaries. A column is numeric if
-    all its cells are numbers or empty, and one is a number."""
+    all its cells are numbers or empty, and one is a number. run_id is text, for a checksum may
+    have no letter."""
     records = list(_records(path))
     if not records:
         refuse(f"{path}:1: empty, expected a header row; {REMEDY}")
@@ -92,7 +93,8 @@ def read_csv(path):
             refuse(f"{path}:{line}: {len(cells)} fields where the header has {len(names)}; "
                    f"{REMEDY}")
     columns = []
-    for column in zip(*(cells for _, cells in body)):
-        numeric = all(map(is_number, column)) and any(cell.strip() for cell in column)
+    for name, column in zip(names, zip(*(cells for _, cells in body))):
+        numeric = (name != "run_id" and all(map(is_number, column))
+                   and any(cell.strip() for cell in column))
         columns.append([number_of(cell) if numeric else cell for cell in column])
     return names, [dict(zip(names, cells)) for cells in zip(*columns)]

@@ -20,11 +20,11 @@ def _there(program):
     return program
 
 
-def make_report():
-    """Writes results/report.html and figures."""
-    must(*_there(REPORT), "results", "--out", "results/report.html")
-    say("tables: results/*.csv; figures: results/*.svg; "
-        f"page: {os.getcwd()}/results/report.html")
+def make_report(folder="results"):
+    """Writes report.html and figures of a folder of results."""
+    must(*_there(REPORT), folder, "--out", f"{folder}/report.html")
+    say(f"tables: {folder}/*.csv; figures: {folder}/*.svg; "
+        f"page: {os.path.abspath(folder)}/report.html")
 
 
 def write_pages():

@@ -7,7 +7,7 @@ from . import place
 from .processes import read
 
 
-def _commit(root):
+def commit_of(root):
     """Returns the commit of a clone, or of the archive that the sources came from."""
     done = read("git", "-C", root, "rev-parse", "HEAD")
     if done.code == 0 and (Path(root) / ".git").exists():
@@ -22,7 +22,7 @@ def describe():
     """Returns version and commit, then commit, build and instructions of the programs."""
     version, root = place.version()
     program = os.path.join(root or "", place.PROGRAMS, "simulate")
-    lines = [f"tress {version}" + (f" ({_commit(root)})" if root else "")]
+    lines = [f"tress {version}" + (f" ({commit_of(root)})" if root else "")]
     done = read(program, "--version") if os.access(program, os.X_OK) else None
     if done is None:
         lines.append("programs: none built here")

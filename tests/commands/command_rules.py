@@ -80,6 +80,8 @@ RULES = (
     of_cluster("mpirun"),
     Rule("docs/compare.md", "./tress compare HEAD~1", left_out="builds two commits"),
     Rule("docs/compare.md", "./tress compare build/bench", left_out="needs two builds of the benchmarks"),
+    Rule("docs/reproduce.md", "./tress", left_out="builds, for which a copy of the sources has no tree",
+         by="tests/commands/test_reproduce.py"),
     Rule("docs/extending.md", f"{experiment('constraint_drift')} --integrators",
          more="--models inextensible_chain --quick"),
     Rule("docs/extending.md", f"{experiment('stability_limit')} --elements",

@@ -148,6 +148,8 @@ class Tables(CompareTest):
             self.refused(pattern, self.compare(bad, bad).done)
         bad = self.folder(table(rows()) | {"swing.meta.json": "{"})
         self.refused(r"swing\.meta\.json: not valid JSON", self.compare(bad, bad).done)
+        bad = self.folder(table(rows()) | {"swing.meta.json": "[]"})
+        self.refused(r"swing\.meta\.json: not a JSON object", self.compare(bad, bad).done)
         bad = self.folder({})
         (bad / "t.csv").mkdir()
         self.refused(r"t\.csv: a folder", self.compare(bad, bad).done)

@@ -55,6 +55,39 @@ TEST(FurtherRows, OfACaseThatCrashesAreItsOwnAlone) {
               ElementsAre("ok", "ok", "ok", "ok", "ok", "ok", "crashed"));
 }
 
+TEST(RunId, SelectsRowsOfThePlan) {
+  Toy toy;
+  const std::string arguments = "--set particles=4 --set further=1 --set promise=broken";
+  ASSERT_EQ(toy.run(arguments + " --out all.csv").code, 3);
+  const CsvTable all = table(toy, "all.csv");
+  // The second row of the third case, and the first case.
+  const std::string ids = std::string(all.rows[5].text("run_id")) + ',' +
+                          std::string(all.rows[0].text("run_id"));
+  const std::string one = arguments + " --out one.csv --run-id ";
+  ASSERT_EQ(toy.run(one + ids).code, 0) << "claims need the whole table";
+  EXPECT_THAT(cells(table(toy, "one.csv"), "run_id"),
+              ElementsAre(all.rows[0].text("run_id"), all.rows[1].text("run_id"),
+                          all.rows[4].text("run_id"), all.rows[5].text("run_id")));
+  EXPECT_THAT(toy.executed(), ElementsAre(0, 1, 2, 3, 0, 2));
+  EXPECT_THAT(toy.read("one.meta.json"), HasSubstr(" run-id=" + ids));
+  EXPECT_EQ(toy.run(arguments + " --out one.csv --resume").code, 2)
+      << "the whole table does not continue one of some rows";
+}
+
+TEST(RunId, ThatNoRowHasIsRefused) {
+  Toy toy;
+  for (const char* bad :
+       {"0123456789abcdef", "''", "a,,b", "../x", "0123456789abcde", "0123456789abcdeg",
+        "0123456789abcdef0", "0123456789abcdef.", "0123456789abcdef.x"}) {
+    const Toy::Result result = toy.run(std::string("--out toy.csv --run-id ") + bad);
+    EXPECT_EQ(result.code, 2) << bad;
+    EXPECT_EQ(result.error_lines(), 1) << bad;
+    EXPECT_THAT(result.err, HasSubstr("--run-id"));
+  }
+  EXPECT_TRUE(toy.executed().empty());
+  EXPECT_FALSE(toy.exists("toy.csv"));
+}
+
 TEST(OwnOptions, SayWhatSetSays) {
   Toy toy;
   ASSERT_EQ(toy.run("--only quit --pause 0.001 --set particles=1").code, 0);

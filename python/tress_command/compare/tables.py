@@ -3,6 +3,7 @@
 import re
 
 from ..files import read_csv, read_json
+from ..messages import refuse
 from ..number_text import rounded
 from .intervals import spread, verdict
 
@@ -20,15 +21,23 @@ def is_number(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
+def manifest_of(folder, table):
+    """Returns the manifest of a table, {} if it has none."""
+    path = folder / f"{table}.meta.json"
+    found = read_json(path) if path.exists() else {}
+    if not isinstance(found, dict):
+        refuse(f"{path}: not a JSON object; write it again or remove it")
+    return found
+
+
 class Table:
     """A table: names of columns, rows, columns of timings, and the machine that made it."""
 
     def __init__(self, folder, name):
         self.names, self.rows = read_csv(folder / f"{name}.csv")
-        meta = folder / f"{name}.meta.json"
-        manifest = read_json(meta) if meta.exists() else {}
-        self.timings = manifest.get("timings", [])
-        machine = manifest.get("machine")
+        self.manifest = manifest_of(folder, name)
+        self.timings = self.manifest.get("timings", [])
+        machine = self.manifest.get("machine")
         self.machine = machine and f"{machine.get('cpu')}, {machine.get('simd')}"
 
     @classmethod
@@ -41,7 +50,7 @@ def _cell(value):
     return rounded(value, DIGITS) if is_number(value) else str("" if value is None else value)
 
 
-def _keyed(table, shared, words):
+def keyed(table, shared, words):
     """Returns rows by what identifies them: run_id, or, in tables without, the columns of
     words. Equal keys are told apart by their order."""
     seen, rows = {}, {}
@@ -55,7 +64,7 @@ def _keyed(table, shared, words):
     return rows
 
 
-def _label(row, words):
+def label(row, words):
     """Returns what a reader knows a row by."""
     texts = [_cell(row[name]) for name in words]
     return ", ".join([text for text in texts if 0 < len(text) < LONGEST_LABEL][:LABELS])
@@ -66,7 +75,7 @@ def _changed(name, row, other, values, words):
     if not changed:
         return []
     change = "; ".join(f"{c}: {_cell(row[c])} -> {_cell(other[c])}" for c in changed)
-    return [{"table": name, "row": _label(row, words), "column": " ".join(changed),
+    return [{"table": name, "row": label(row, words), "column": " ".join(changed),
              "verdict": "changed value", "change": change}]
 
 
@@ -78,17 +87,17 @@ def _compare_table(name, before, after, threshold):
               if column not in timings and column not in NOT_COMPARED]
     words = [column for column in values if any(
         row[column] is not None and not is_number(row[column]) for row in before.rows)]
-    of_before, of_after = (_keyed(table, shared, words) for table in (before, after))
+    of_before, of_after = (keyed(table, shared, words) for table in (before, after))
     rows, pairs, changed = [], [], 0
     for key, row in of_before.items():
         if key not in of_after:
-            rows.append({"table": name, "row": _label(row, words), "verdict": "only before"})
+            rows.append({"table": name, "row": label(row, words), "verdict": "only before"})
             continue
         pairs.append((row, of_after[key]))
         found = _changed(name, row, of_after[key], values, words)
         changed += len(found)
         rows += found
-    rows += [{"table": name, "row": _label(row, words), "verdict": "only after"}
+    rows += [{"table": name, "row": label(row, words), "verdict": "only after"}
              for key, row in of_after.items() if key not in of_before]
     rows += _compare_times(name, before, after, pairs, timings, threshold)
     return rows, len(pairs) - changed

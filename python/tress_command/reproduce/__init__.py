@@ -1,0 +1,1 @@
+"""./tress reproduce, ./tress rerun and ./tress archive."""
