@@ -37,8 +37,12 @@ constexpr double turned_edge = 0.5;
 /// does, and the steps of order 2 are many at tight tolerances.
 constexpr double most_thresholds = 10;
 
-/// Coordinates of constant mass are those of points.
-bool of_points(Dynamics& dynamics) { return dynamics.system().traits().constant_mass; }
+/// Coordinates of constant mass are those of points, and so are those whose edges
+/// stretch.
+bool of_points(Dynamics& dynamics) {
+  System& system = dynamics.system();
+  return system.traits().constant_mass || system.stress_form() != nullptr;
+}
 
 bool smooth(Dynamics& dynamics) {
   return !of_points(dynamics) && dynamics.m() == 0 &&

@@ -33,6 +33,9 @@ namespace {
 /// the section has rho I only, it is twice too large, of order (r/L)^2 of the total.
 /// Friction: gamma/l on w', and stretch_friction/l on |e|'.
 ///
+/// In rotation vectors (rotation_vectors.h), norms are 1 and nu has no effect. The mass
+/// matrix is not constant then.
+///
 /// Rotations between neighbours stay below 180 degrees.
 struct CordeOptions {
   double coupling = 100;        // kappa l^2/EI
@@ -66,6 +69,8 @@ std::span<const Parameter> corde_parameters() {
       Parameter{.name = "stretch_friction_n_s",
                 .help = "force per rate of stretch, N s",
                 .min = 0},
+      coordinates_parameter,
+      renewal_parameter,
       maximal_solver_parameter};
   return all;
 }
@@ -73,7 +78,7 @@ std::span<const Parameter> corde_parameters() {
 std::unique_ptr<System> make_corde(const Strand& strand, const Parameters& parameters,
                                    Effects effects) {
   return quaternion_rod(strand, rod_kind<CordeEdge>(&parameters), std::move(effects),
-                        maximal_solver(parameters));
+                        parameters);
 }
 
 }  // namespace

@@ -104,10 +104,28 @@ class QuaternionRod final : public Elasticity,
   std::vector<QuaternionElimination<double>::Factor> factors_;
 };
 
-/// A rod of this kind. Throws InputError naming the model unless the strand is a chain.
+/// Coordinates of the frames of edges.
+inline constexpr Parameter coordinates_parameter{
+    .name = "coordinates",
+    .help =
+        "coordinates of the frames: quaternions with a penalty on their norms, or "
+        "rotation vectors",
+    .choices = "quaternion|rotation_vector"};
+/// Renewal of the references of rotation vectors.
+inline constexpr Parameter renewal_parameter{
+    .name = "renewal_angle_rad",
+    .help =
+        "angle of a rotation vector beyond which references are renewed (rad); 0: "
+        "after every step",
+    .number = 1,
+    .min = 0,
+    .max = 3};
+
+/// A rod of this kind with the model's options. Throws InputError naming the model unless
+/// the strand is a chain, and on effects that its coordinates do not have.
 template <class Edge>
 std::unique_ptr<System> quaternion_rod(const Strand& strand,
                                        const QuaternionRodKind<Edge>& kind,
-                                       Effects effects, LinearKind solver);
+                                       Effects effects, const Parameters& options);
 
 }  // namespace tress::models

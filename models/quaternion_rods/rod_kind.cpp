@@ -1,6 +1,8 @@
 #include "models/quaternion_rods/rod_kind.h"
 
+#include "contract/input_error.h"
 #include "models/quaternion_rods/quaternion_rod.h"
+#include "models/quaternion_rods/rotation_vectors.h"
 
 namespace tress::models {
 
@@ -37,14 +39,25 @@ QuaternionStrandParts<Edge> quaternion_strand(const Strand& strand,
 template <class Edge>
 std::unique_ptr<System> quaternion_rod(const Strand& strand,
                                        const QuaternionRodKind<Edge>& kind,
-                                       Effects effects, LinearKind solver) {
+                                       Effects effects, const Parameters& options) {
+  const bool distant = needs(effects).couplings;
   QuaternionStrandParts<Edge> made = quaternion_strand(strand, kind);
   MaximalStrand& parts = made.nodal.parts;
   parts.elasticity = std::make_unique<QuaternionRod<Edge>>(
       std::move(made.edges), std::move(made.joints), parts.clamped);
   parts.effects = std::move(effects);
-  parts.solver = solver;
-  return std::make_unique<MaximalSystem>(std::move(parts));
+  parts.solver = maximal_solver(options);
+  auto rod = std::make_unique<MaximalSystem>(std::move(parts));
+  if (options.word(coordinates_parameter.name) == "quaternion") return rod;
+  const auto refuse = [&](bool has, const char* what) {
+    refuse_if(has, std::string("rotation vectors do not take ") + what,
+              "model " + kind.model, "give [model] coordinates = \"quaternion\"");
+  };
+  refuse(distant, "contact of a strand with itself");
+  refuse(rod->contact_form() != nullptr, "exact contact");
+  return std::make_unique<RotationVectors>(std::move(rod), strand.segments.size(),
+                                           options.number(renewal_parameter.name),
+                                           maximal_solver(options));
 }
 
 template QuaternionStrandParts<CordeEdge> quaternion_strand(
@@ -53,9 +66,9 @@ template QuaternionStrandParts<CosseratEdge> quaternion_strand(
     const Strand&, const QuaternionRodKind<CosseratEdge>&);
 template std::unique_ptr<System> quaternion_rod(const Strand&,
                                                 const QuaternionRodKind<CordeEdge>&,
-                                                Effects, LinearKind);
+                                                Effects, const Parameters&);
 template std::unique_ptr<System> quaternion_rod(const Strand&,
                                                 const QuaternionRodKind<CosseratEdge>&,
-                                                Effects, LinearKind);
+                                                Effects, const Parameters&);
 
 }  // namespace tress::models

@@ -27,6 +27,8 @@ namespace {
 /// stretch_factor softens EA alone, as codes do that cannot follow a hair's: the rod then
 /// stretches by its weight over stretch_factor EA.
 ///
+/// In rotation vectors (rotation_vectors.h), norms are 1 and nu has no effect.
+///
 /// Order 2 as corde. Stretch and shear have the material's stiffness, so a light
 /// cantilever bends lower by 4 EI/(k GA L^2) of its deflection and nothing locks. The
 /// norm softens joints as in corde.cpp, by 2 (u l)^2/norm in bending of curvature u.
@@ -87,6 +89,8 @@ std::span<const Parameter> xpbd_cosserat_parameters() {
                         "over rho A l^3",
                 .number = XpbdCosseratOptions{}.edge_inertia,
                 .min = 0},
+      coordinates_parameter,
+      renewal_parameter,
       maximal_solver_parameter};
   return all;
 }
@@ -95,7 +99,7 @@ std::unique_ptr<System> make_xpbd_cosserat(const Strand& strand,
                                            const Parameters& parameters,
                                            Effects effects) {
   return quaternion_rod(strand, rod_kind<CosseratEdge>(&parameters), std::move(effects),
-                        maximal_solver(parameters));
+                        parameters);
 }
 
 }  // namespace

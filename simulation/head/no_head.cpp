@@ -63,6 +63,10 @@ std::optional<NoHead> no_springs(const Scene& scene) {
 }
 
 std::optional<NoHead> no_quaternions(const Scene& scene) {
+  const Parameters& p = scene.model_options;
+  if (p.word("coordinates") != "quaternion") {
+    return no_option(p, "coordinates", "give [model] coordinates = \"quaternion\"");
+  }
   if (auto no = no_integrator(scene)) return no;
   // Long steps of a motion that is not smooth have several solutions, and a lane has
   // fewer ways to stay on one of them than a strand by itself.

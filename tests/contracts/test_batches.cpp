@@ -360,6 +360,37 @@ TEST(ReplicatedHead, HoldsStrandsBySupportsAsAWorldDoes) {
   }
 }
 
+TEST(ReplicatedHead, TakesRotationVectorsThatLanesDoNotHave) {
+  // A support holds the section of the tip, which turns with a rotation vector.
+  for (const std::string support : {"", "[[supports]]\nkind = \"clamp\"\n"}) {
+    const auto text = [&](const std::string& coordinates) {
+      return "title = \"b\"\nduration_s = 0.02\nframes_per_s = 100\n"
+             "failed_strands = \"stay\"\n[model]\nid = \"corde\"\n" +
+             coordinates +
+             "[integrator]\nid = \"backward_euler\"\ndt_s = 0.005\n[groom]\n"
+             "count = 3\nlength_m = 0.05\nelements = 4\n[effects.gravity]\n" +
+             support;
+    };
+    SCOPED_TRACE(support);
+    const std::string vectors = text("coordinates = \"rotation_vector\"\n");
+    const SceneOutline outline = parse_outline(vectors, "batch.toml");
+    if (support.empty()) {
+      EXPECT_THAT(no_lanes(outline.scene).value().reason,
+                  testing::HasSubstr("coordinates = \"rotation_vector\""));
+    }
+    const auto run = batch(outline);
+    EXPECT_FALSE(run->lanes());
+    const Scene scene = parse_scene(vectors, "batch.toml");
+    const Course strands = of_strands(scene), together = of_batch(*run, scene);
+    EXPECT_EQ(together.frames, strands.frames);
+    EXPECT_TRUE(strands.lost.empty());
+    // A stiff penalty softens joints by 2 (u l)^2/norm, u l < 1 here.
+    const Course stiff = of_strands(parse_scene(text("norm = 1e6\n"), "batch.toml"));
+    EXPECT_LT(apart(strands, stiff), 2e-6 * 0.05);
+    EXPECT_GT(apart(strands, stiff), 0);
+  }
+}
+
 TEST(BatchMatrix, PrintsEveryCellAndItsReason) {
   const std::string text = batch_matrix();
   for (const ModelEntry* model : strand_models()) {
