@@ -114,8 +114,10 @@ function(tress_program target)
   tress_warnings(${target})
 endfunction()
 
-# tress_test(name source... [SHARDS n]): an executable of GoogleTest cases, of which ctest runs
-# name_0, name_1, ... n parts: of cases that take milliseconds, one process each is all start-up.
+# tress_test(name source... [SHARDS n] [MORE n]): an executable of GoogleTest cases, of which
+# ctest runs name_0, name_1, ... n parts: of cases that take milliseconds, one process each is
+# all start-up. MORE: suites that are instantiated as More repeat others on a larger population;
+# name_more_0, ... of label `long` run them, in n parts.
 function(tress_test name)
   if(NOT TARGET tress_test_headers)
     tress_headers(tress_test_headers <gmock/gmock.h> <gtest/gtest.h> <Eigen/Dense> <random>
@@ -123,7 +125,7 @@ function(tress_test name)
     target_link_libraries(tress_test_headers PRIVATE GTest::gtest GTest::gmock Eigen3::Eigen)
     tress_optimise_less(tress_test_headers)
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS;MORE" "")
   add_executable(test_${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(test_${name} PRIVATE tress_numerics tress::integrators tress::models
                         GTest::gtest GTest::gmock GTest::gtest_main)
@@ -137,16 +139,37 @@ function(tress_test name)
   if(NOT arg_SHARDS)
     set(arg_SHARDS 1)
   endif()
-  math(EXPR last "${arg_SHARDS} - 1")
-  foreach(shard RANGE ${last})
-    set(report ${CMAKE_CURRENT_BINARY_DIR}/${name}_${shard}.xml)
-    add_test(NAME ${name}_${shard}
-             COMMAND test_${name} --gtest_brief=1 --gtest_output=xml:${report})
-    set_tests_properties(${name}_${shard} PROPERTIES TIMEOUT 900 ENVIRONMENT
-      "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
-    list(APPEND shards ${name}_${shard})
-    list(APPEND reports ${report})
-  endforeach()
+  tress_test_parts(${name} "" "-More/*" ${arg_SHARDS})
   set(${name}_shards ${shards} PARENT_SCOPE)    # names of the tests
   set(${name}_reports ${reports} PARENT_SCOPE)  # what each of them writes
+  if(arg_MORE)
+    tress_test_parts(${name} _more "More/*" ${arg_MORE})
+    set_tests_properties(${shards} PROPERTIES LABELS long)
+  endif()
+  foreach(source IN LISTS arg_UNPARSED_ARGUMENTS)
+    file(STRINGS ${source} found REGEX "^ *(INSTANTIATE_TEST_SUITE_P.)?More,")
+    if(found AND NOT arg_MORE)
+      message(FATAL_ERROR "test_${name} has suites of the name More: give it MORE")
+    endif()
+  endforeach()
+endfunction()
+
+# The cases of an executable that a filter lets through, in n parts; their names in `shards`,
+# their reports in `reports`.
+function(tress_test_parts name suffix filter n)
+  set(shards)
+  set(reports)
+  math(EXPR last "${n} - 1")
+  foreach(part RANGE ${last})
+    set(test ${name}${suffix}_${part})
+    set(report ${CMAKE_CURRENT_BINARY_DIR}/${test}.xml)
+    add_test(NAME ${test}
+             COMMAND test_${name} --gtest_brief=1 --gtest_output=xml:${report})
+    set_tests_properties(${test} PROPERTIES TIMEOUT 900 ENVIRONMENT
+      "GTEST_FILTER=${filter};GTEST_TOTAL_SHARDS=${n};GTEST_SHARD_INDEX=${part}")
+    list(APPEND shards ${test})
+    list(APPEND reports ${report})
+  endforeach()
+  set(shards ${shards} PARENT_SCOPE)
+  set(reports ${reports} PARENT_SCOPE)
 endfunction()

@@ -1,4 +1,4 @@
-"""./tress test: all tests, and the long ones by name."""
+"""./tress test: the tests, and the long ones by name."""
 
 import os
 import re
@@ -88,10 +88,11 @@ def _packages(_, __, machine):
     must(*TEST_PACKAGES, *packages())
 
 
-def _all(preset, words, _):
+def _ctest(preset, *words):
     build(preset)
     began = time.time()
-    must("ctest", "--preset", preset, "-j", str(len(os.sched_getaffinity(0))), *words)
+    # One more than processors: a test that waits for a disk or a browser leaves one free.
+    must("ctest", "--preset", preset, "-j", str(len(os.sched_getaffinity(0)) + 1), *words)
     cases = 0
     for report in Path(f"build/{preset}/tests").rglob("*.xml"):
         if report.stat().st_mtime > began:
@@ -100,7 +101,15 @@ def _all(preset, words, _):
     say(f"cases of GoogleTest in these tests: {cases}")
 
 
-TESTS = {"fuzz": _fuzz, "mutants": _mutants, "corpus": _corpus, "extremes": _extremes,
+def _usual(preset, words, _):
+    _ctest(preset, "--label-exclude", "^long$", *words)
+
+
+def _all(preset, words, _):
+    _ctest(preset, *words)
+
+
+TESTS = {"all": _all, "fuzz": _fuzz, "mutants": _mutants, "corpus": _corpus, "extremes": _extremes,
          "advice": _advice, "cluster": _cluster, "readers": _readers,
          "packages": _packages}
 
@@ -111,18 +120,21 @@ def _run(words, machine):
     preset = "debug" if read.options.pop("--sanitize", False) else RELEASE
     machine.ensure()
     kinds = [TESTS[option.removeprefix("--")] for option in read.options]
-    (kinds[-1] if kinds else _all)(preset, read.more, machine)
+    (kinds[-1] if kinds else _usual)(preset, read.more, machine)
 
 
 COMMAND = Command(
     "test", "[--sanitize] [KIND] [-- ARGUMENTS]",
-    "builds and runs every test, or one of the long tests. Arguments after -- go to ctest.",
+    "builds and runs the tests, all of them with --all, or one of the long tests. Arguments "
+    "after -- go to ctest.",
     _run,
     example="./tress test -- -R contracts",
     time="about 20 minutes on two cores after the build; --fuzz seven minutes, --corpus "
          "7000 short runs, --advice 20 minutes and more, --mutants half an hour and more.",
     options=(
         ("--sanitize", "build with sanitizers (preset debug)"),
+        ("--all", "in addition the tests of label `long`, which repeat the others on more models, "
+         "methods, scenes and strands"),
         ("--fuzz [-- SECONDS SEED [READER...]]", "corrupted files for the reader of scenes, each "
          "reader of grooms (hair, data, bin, ply, usda, vtp) and of meshes (mesh.obj, mesh.ply, "
          "mesh.stl), under sanitizers (default: 60 s of processor time each, seed 1)"),

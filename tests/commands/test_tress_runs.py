@@ -62,6 +62,12 @@ class Runs(House):
         self.ends(0, "heads --full --resume --jobs 1\n",
                   self.tress("run", "--resume", "--full", "--", "--jobs", "1"))
 
+    def test_long_tests_run_with_all(self):
+        self.stand_in("ctest", 'echo "ctest $*"')
+        self.ends(0, r"ctest --preset release -j \d+ --label-exclude \^long\$ -R head\n",
+                  self.tress("test", "--", "-R", "head"))
+        self.ends(0, r"ctest --preset debug -j \d+\n", self.tress("test", "--sanitize", "--all"))
+
     def test_an_interrupted_experiment_names_what_is_left(self):
         self.experiments("heads", "full", "rubs")
         self.study("rubs", CHECKED + "true")

@@ -83,7 +83,8 @@ TEST_P(OnDevice, StepsAreTheBitsOfTheProcessorIn64Bits) {
 // holds.
 TEST_P(OnDevice, StepsAreTheBitsOfTheProcessorIn32Bits) {
   HeadRun here(testing_support::head(GetParam(), {HeadNumber::float32, 8}, 19), 1);
-  HeadRun there(testing_support::head(GetParam(), {HeadNumber::float32, 16}, 19), 1);
+  HeadRun there(testing_support::head(GetParam(), testing_support::longest_floats(), 19),
+                1);
   there.move_to_device();
   const std::size_t start = here.head().hash();
   advance(here, 0, 100);
@@ -120,8 +121,9 @@ void spoil(Head& head, std::size_t strand) {
 
 TEST_F(Device, LosesTheSameStrandsInTheSameStepsAndKeepsThem) {
   const Case c{.name = "Moved", .moves = true};
-  HeadRun here(testing_support::head(c, {HeadNumber::float64, 8}, 21), 1);
-  HeadRun there(testing_support::head(c, {HeadNumber::float64, 8}, 21), 3);
+  const HeadPack pack = testing_support::longest_doubles();
+  HeadRun here(testing_support::head(c, pack, 21), 1);
+  HeadRun there(testing_support::head(c, pack, 21), 3);
   there.move_to_device();
   advance(here, 0, 10);
   advance(there, 0, 10);

@@ -184,11 +184,11 @@ Outcome run(const SceneOutline& outline, const models::HeadPack& pack, int ranks
 }
 
 TEST_P(DividedHead, IsTheSameBitsForAnyNumberOfRanksAndThreads) {
-  constexpr int count = 150, steps = 60;
+  constexpr int count = 150, steps = 30;
   const SceneOutline outline = scene(GetParam(), count);
   for (const models::HeadPack& pack :
-       {models::HeadPack{models::HeadNumber::float64, 8},
-        models::HeadPack{models::HeadNumber::float32, 16}}) {
+       {models::longest_pack(models::HeadNumber::float64),
+        models::longest_pack(models::HeadNumber::float32)}) {
     const Outcome one = run(outline, pack, 1, 1, steps, GetParam().h);
     EXPECT_EQ(one.most, count);
     for (const auto& [ranks, threads] : {std::pair(2, 1), {3, 2}, {4, 1}}) {

@@ -108,16 +108,25 @@ TEST_P(TurningBody, WhatSticksStaysWhereItIs) {
   }
 }
 
-std::vector<Turning> turning() {
+/// Every model with each of its contacts and roots, by one of the integrators in turn; or
+/// by the others, which are `more`.
+std::vector<Turning> turning(bool more) {
+  std::vector<std::string> integrators;
+  for (const IntegratorEntry& one : integrator_catalogue()) {
+    if (one.contact != Contact::regular) integrators.emplace_back(one.id);
+  }
   std::vector<Turning> all;
-  for (const IntegratorEntry& integrator : integrator_catalogue()) {
-    if (integrator.contact == Contact::regular) continue;
-    for (const ModelEntry& model : model_catalogue()) {
-      if (!model.on_strand) continue;
-      for (const bool free : {true, false}) {
-        if (free && model.roots != Roots::clamped_or_free) continue;
-        for (const bool rigid : {true, false}) {
-          all.push_back({std::string(model.id), std::string(integrator.id), rigid, free});
+  std::size_t turn = 0;
+  for (const ModelEntry& model : model_catalogue()) {
+    if (!model.on_strand) continue;
+    ++turn;  // so that the same contacts of two models are by two integrators
+    for (const bool free : {true, false}) {
+      if (free && model.roots != Roots::clamped_or_free) continue;
+      for (const bool rigid : {true, false}) {
+        const std::string own = integrators[turn++ % integrators.size()];
+        for (const std::string& integrator : integrators) {
+          if ((integrator == own) == more) continue;
+          all.push_back({std::string(model.id), integrator, rigid, free});
         }
       }
     }
@@ -125,7 +134,9 @@ std::vector<Turning> turning() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, TurningBody, testing::ValuesIn(turning()),
+INSTANTIATE_TEST_SUITE_P(Models, TurningBody, testing::ValuesIn(turning(false)),
+                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(More, TurningBody, testing::ValuesIn(turning(true)),
                          testing::PrintToStringParamName());
 
 }  // namespace

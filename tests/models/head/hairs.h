@@ -16,18 +16,13 @@
 #include "models/reduced/articulated_chain.h"
 #include "models/reduced/super_helix.h"
 #include "simulation/head/make_head.h"
+#include "tests/models/head/arrangements.h"
 #include "tests/models/head/exact_methods.h"
 
 namespace tress::testing_support {
 
 using namespace simulation;
 using integrators::make_integrator;
-
-inline constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
-                                     {HeadNumber::float64, 4},
-                                     {HeadNumber::float64, 8},
-                                     {HeadNumber::float32, 8},
-                                     {HeadNumber::float32, 16}};
 
 /// What hair is made of, as a head and by itself.
 struct HairModel {
@@ -127,8 +122,8 @@ inline Strand strand(const Case& c, std::size_t k) {
 }
 
 /// Numbers that its head can have: rigid links by single corrections have 64 bits.
-inline std::span<const HeadPack> packs_of(const Case& c) {
-  return std::span(packs).first(c.model == &chains && c.method == &midpoint ? 3 : 5);
+inline std::vector<HeadPack> packs_of(const Case& c) {
+  return packs_of_build(c.model != &chains || c.method != &midpoint);
 }
 
 inline std::unique_ptr<Head> head(const Case& c, HeadPack pack, std::size_t strands) {

@@ -9,10 +9,6 @@
 
 namespace tress::testing_support {
 
-inline constexpr models::HeadPack spring_packs[] = {{models::HeadNumber::float64, 1},
-                                                    {models::HeadNumber::float64, 4},
-                                                    {models::HeadNumber::float64, 8}};
-
 /// A head of springs whose strands are those of discrete rods.
 inline std::unique_ptr<models::Head> springs(const RodCase& c, const HairMethod& method,
                                              const models::HeadPack& pack,

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <tuple>
 
 #include "contract/forms/material_points.h"
@@ -27,54 +26,73 @@ int parts_for(const HeadMaker& maker) {
   return maker.stretches ? 800 : 200;
 }
 
-/// A hair alone.
-using Alone = std::function<std::unique_ptr<Head>(const HeadOptions&, const HeadPack&)>;
+/// The motion of a hair at the ends of all intervals.
+using Path = std::vector<Motion>;
 
-/// Its motion at the ends of all intervals, each in so many calls.
+/// Paths of the hairs of a head, each interval in so many calls, and what they cost.
 struct Course {
-  std::vector<Motion> at;
+  std::vector<Path> of;
   long steps = 0, iterations = 0;
 };
+/// Of each hair of the head at t.
+void look(const Head& head, double t, std::vector<Path>& of) {
+  const Motion all = motion_of(head, t);
+  const auto each = static_cast<std::ptrdiff_t>(head.numbers());
+  of.resize(head.strands());
+  auto x = all.x.begin(), u = all.u.begin();
+  for (Path& path : of) {
+    path.push_back({{x, x + each}, {u, u + each}});
+    x += each;
+    u += each;
+  }
+}
 Course course(Head& head, int calls) {
   Course all;
   const auto scratch = head.scratch();
   for (int i = 0; i < intervals; ++i) {
     for (int s = 0; s < calls; ++s) {
-      head.step(0, 1, (i + static_cast<double>(s) / calls) * interval, interval / calls,
-                *scratch);
+      head.step(0, head.blocks(), (i + static_cast<double>(s) / calls) * interval,
+                interval / calls, *scratch);
     }
-    all.at.push_back(motion_of(head, (i + 1) * interval));
+    look(head, (i + 1) * interval, all.of);
   }
   EXPECT_TRUE(head.losses().empty());
   all.steps = scratch->work.steps;
   all.iterations = scratch->work.iterations + scratch->work.again_iterations;
   return all;
 }
-double off(const Course& from, const Course& want, double length) {
+double off(const Path& from, const Path& want, double length) {
   double most = 0;
-  for (std::size_t i = 0; i < want.at.size(); ++i) {
-    most = std::max(most, off(from.at[i], want.at[i], 0, length));
+  for (std::size_t i = 0; i < want.size(); ++i) {
+    most = std::max(most, off(from[i], want[i], 0, length));
   }
   return most;
 }
 
 /// Each of N steps leaves an estimated error of the threshold, share tolerance^power, at
-/// most. The motion makes so many times as much of one until the end, by what it makes of
-/// a change of the velocities after the first interval, so that a run may be wrong by
-/// their product.
-double grown(Head& equal, int parts, const Course& want, double length) {
+/// most. The motion of a hair makes so many times as much of one until the end, by what
+/// it makes of a change of the velocities after the first interval, so that a run may be
+/// wrong by their product.
+std::vector<double> grown(Head& equal, int parts, const std::vector<Path>& want,
+                          const std::vector<Strand>& hairs) {
   advance(equal, 0, 1, parts);
   auto kept = kept_of(equal);
   const std::size_t n = equal.kept_of_state() / 2;
-  for (std::size_t i = 0; i < n; ++i) kept[0][n + i] *= 1 + 1e-6;
+  for (auto& one : kept) {
+    for (std::size_t i = 0; i < n; ++i) one[n + i] *= 1 + 1e-6;
+  }
   recall(equal, kept);
-  const double began = off(motion_of(equal, interval), want.at[0], 0, length);
-  double most = 1;
+  std::vector<Path> now;
+  look(equal, interval, now);
   for (int i = 1; i < intervals; ++i) {
     advance(equal, i, i + 1, parts);
-    const Motion now = motion_of(equal, (i + 1) * interval);
-    most =
-        std::max(most, off(now, want.at[static_cast<std::size_t>(i)], 0, length) / began);
+    look(equal, (i + 1) * interval, now);
+  }
+  std::vector<double> most;
+  for (std::size_t k = 0; k < hairs.size(); ++k) {
+    const double length = hairs[k].length();
+    const double began = off(now[k][0], want[k][0], 0, length);
+    most.push_back(std::max(1.0, off(now[k], want[k], length) / began));
   }
   return most;
 }
@@ -82,26 +100,34 @@ double grown(Head& equal, int parts, const Course& want, double length) {
 struct Found {
   double error = 0, bound = 0;
 };
-/// Of a tolerance, in `options` for equal steps.
-Found with_tolerance(const Alone& alone, HeadOptions options, const HeadPack& pack,
-                     double tolerance, const Course& want, double by_motion,
-                     double length) {
-  options.tolerance = tolerance;
-  const Course own = course(*alone(options, pack), 1);
-  return {off(own, want, length), static_cast<double>(own.steps) * by_motion *
-                                      integrators::tr_bdf2_estimate.threshold(tolerance)};
-}
 
 class ControlledErrors : public testing::TestWithParam<HeadMaker> {
  protected:
-  static Alone alone(const Strand& strand) {
-    return [strand](const HeadOptions& options, const HeadPack& pack) {
-      auto made = GetParam().make(options, pack);
-      made->add(strand);
-      return made;
-    };
+  static std::unique_ptr<Head> head(const std::vector<Strand>& hairs,
+                                    const HeadOptions& options,
+                                    const HeadPack& pack = wide) {
+    auto made = GetParam().make(options, pack);
+    for (const Strand& one : hairs) made->add(one);
+    return made;
+  }
+  /// Of a hair alone with a tolerance, in `options` for equal steps.
+  static Found with_tolerance(const Strand& hair, HeadOptions options,
+                              const HeadPack& pack, double tolerance, const Path& want,
+                              double by_motion) {
+    options.tolerance = tolerance;
+    const Course own = course(*head({hair}, options, pack), 1);
+    return {off(own.of[0], want, hair.length()),
+            static_cast<double>(own.steps) * by_motion *
+                integrators::tr_bdf2_estimate.threshold(tolerance)};
   }
 };
+
+std::vector<Strand> mixed_hairs() {
+  std::vector<Strand> hairs;
+  hairs.reserve(mixed);
+  for (std::size_t k = 0; k < mixed; ++k) hairs.push_back(mixed_hair(k));
+  return hairs;
+}
 
 // In the limit of short steps errors fall as the threshold to the power 2/3, so as
 // tolerance^(1.25 2/3). Steps are a half of what the control asks for at least, which
@@ -111,21 +137,20 @@ TEST_P(ControlledErrors, AreWithinTheToleranceAndFallWithItForEachStrand) {
   const int parts = parts_for(GetParam());
   const bool stretches = GetParam().stretches;
   const double finest = stretches ? 1e-3 : 1e-4;
+  const HeadOptions equal = mixed_options(0);
+  const std::vector<Strand> hairs = mixed_hairs();
+  const std::vector<Path> want = course(*head(hairs, equal), parts).of,
+                          coarse = course(*head(hairs, equal), parts / 2).of;
+  const std::vector<double> by_motion = grown(*head(hairs, equal), parts, want, hairs);
   double falls = 0;  // log10, the mean
   for (std::size_t k = 0; k < mixed; ++k) {
     SCOPED_TRACE(k);
-    const Strand strand = mixed_hair(k);
-    const Alone hair = alone(strand);
-    const HeadOptions equal = mixed_options(0);
-    const double length = strand.length();
-    const Course want = course(*hair(equal, wide), parts);
     // By twice the step the error of second order is 4 times as large.
-    const double left = off(course(*hair(equal, wide), parts / 2), want, length) / 3,
-                 by_motion = grown(*hair(equal, wide), parts, want, length);
+    const double left = off(coarse[k], want[k], hairs[k].length()) / 3;
     double before = 1, first = 0;
     for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
       const auto [error, bound] =
-          with_tolerance(hair, equal, wide, tolerance, want, by_motion, length);
+          with_tolerance(hairs[k], equal, wide, tolerance, want[k], by_motion[k]);
       EXPECT_LE(error, bound + left) << tolerance;
       if (tolerance < finest) continue;
       EXPECT_GT(error, 2 * left) << tolerance;  // or this says little
@@ -165,21 +190,20 @@ std::vector<Other> others(const HeadMaker& maker) {
 
 TEST_P(ControlledErrors, AreWithinTheToleranceWhateverElseThereIs) {
   const int parts = parts_for(GetParam());
+  const std::vector<Strand> hairs{mixed_hair(0), mixed_hair(4), mixed_hair(11)};
+  const std::vector<Path> without = course(*head(hairs, mixed_options(0)), parts).of;
   for (const Other& other : others(GetParam())) {
     SCOPED_TRACE(other.name);
+    const std::vector<Path> want = course(*head(hairs, other.options), parts).of;
+    const std::vector<double> by_motion =
+        grown(*head(hairs, other.options), parts, want, hairs);
     double seen = 0;  // of what else there is, over the error
-    for (const std::size_t k : {0, 4, 11}) {
+    for (std::size_t k = 0; k < hairs.size(); ++k) {
       SCOPED_TRACE(k);
-      const Strand strand = mixed_hair(k);
-      const double length = strand.length();
-      const Alone hair = alone(strand);
-      const Course want = course(*hair(other.options, wide), parts);
-      const auto [error, bound] =
-          with_tolerance(hair, other.options, other.pack, other.tolerance, want,
-                         grown(*hair(other.options, wide), parts, want, length), length);
+      const auto [error, bound] = with_tolerance(hairs[k], other.options, other.pack,
+                                                 other.tolerance, want[k], by_motion[k]);
       EXPECT_LE(error, bound);
-      const Course without = course(*hair(mixed_options(0), wide), parts);
-      seen = std::max(seen, off(without, want, length) / error);
+      seen = std::max(seen, off(without[k], want[k], hairs[k].length()) / error);
     }
     EXPECT_TRUE(seen == 0 || seen > 10) << seen;
   }
@@ -223,9 +247,9 @@ TEST_P(ControlledErrors, AreThoseOfAStrandAloneInAboutAsManySteps) {
   for (std::size_t k = 0; k < mixed; ++k) {
     SCOPED_TRACE(k);
     const Strand strand = mixed_hair(k);
-    const Course own = course(*alone(strand)(mixed_options(1e-3), wide), 1);
+    const Course own = course(*head({strand}, mixed_options(1e-3)), 1);
     const auto [steps, end] = by_integrator(GetParam(), strand);
-    EXPECT_LE(off(own.at.back(), end, 0, strand.length()),
+    EXPECT_LE(off(own.of[0].back(), end, 0, strand.length()),
               static_cast<double>(own.steps + steps) *
                   integrators::tr_bdf2_estimate.threshold(1e-3));
     all += own.steps;
@@ -239,24 +263,17 @@ TEST_P(ControlledErrors, AreThoseOfAStrandAloneInAboutAsManySteps) {
 // alike would cost up to a fifth more: their waves of stretch count, which the steps of
 // hairs do not resolve.
 TEST_P(ControlledErrors, TakeNoMoreIterationsThanEqualStepsThatLeaveNoLess) {
-  std::vector<Strand> hairs;
-  hairs.reserve(mixed + 1);
-  for (std::size_t k = 0; k < mixed; ++k) hairs.push_back(mixed_hair(k));
+  std::vector<Strand> hairs = mixed_hairs();
   if (GetParam().stretches) hairs.push_back(lively_hair());
-  std::vector<Course> want;
-  want.reserve(hairs.size());
-  for (const Strand& one : hairs) {
-    want.push_back(course(*alone(one)(mixed_options(0), wide), parts_for(GetParam())));
-  }
+  const std::vector<Path> want =
+      course(*head(hairs, mixed_options(0)), parts_for(GetParam())).of;
   const auto run = [&](const HeadOptions& options, int calls) {
+    const Course own = course(*head(hairs, options), calls);
     double error = 0;
-    long iterations = 0;
     for (std::size_t k = 0; k < hairs.size(); ++k) {
-      const Course own = course(*alone(hairs[k])(options, wide), calls);
-      error = std::max(error, off(own, want[k], hairs[k].length()));
-      iterations += own.iterations;
+      error = std::max(error, off(own.of[k], want[k], hairs[k].length()));
     }
-    return std::pair{error, iterations};
+    return std::pair{error, own.iterations};
   };
   for (const double tolerance : {1e-2, 1e-3}) {
     const auto [error, iterations] = run(mixed_options(tolerance), 1);

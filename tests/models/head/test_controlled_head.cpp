@@ -4,6 +4,7 @@
 #include <functional>
 #include <numeric>
 
+#include "tests/models/head/arrangements.h"
 #include "tests/models/head/mixed_hairs.h"
 #include "tests/support/refusal.h"
 
@@ -36,19 +37,19 @@ TEST_P(ControlledHead, AStrandIsTheSameBitsInAnyCompany) {
                                           {HeadNumber::float32, 1e-2}}) {
     if (number == HeadNumber::float32 && !GetParam().narrow) continue;
     std::vector<std::vector<double>> want;
-    const bool long_ones = number == HeadNumber::float64;
-    for (const int lanes : long_ones ? std::vector{1, 4, 8} : std::vector{8, 16}) {
+    for (const HeadPack& pack : packs_of_build()) {
+      if (pack.number != number) continue;
       for (const std::size_t together : {1, 2, 1000}) {
-        const auto all = head(mixed_options(tolerance), {number, lanes});
+        const auto all = head(mixed_options(tolerance), pack);
         const HeadWork work = advance(*all, 0, intervals, 1, together);
         EXPECT_TRUE(all->losses().empty());
         EXPECT_TRUE(tolerance < 1e-2 || work.rejected_by_error > 0);
         if (want.empty()) want = kept_of(*all);
-        EXPECT_EQ(kept_of(*all), want) << lanes << ' ' << together;
+        EXPECT_EQ(kept_of(*all), want) << pack.lanes << ' ' << together;
       }
       for (const std::vector<std::size_t>& some :
            {std::vector<std::size_t>{3}, {11}, {10, 2, 5, 7, 0}}) {
-        const auto few = head(mixed_options(tolerance), {number, lanes}, some);
+        const auto few = head(mixed_options(tolerance), pack, some);
         advance(*few, 0, intervals);
         const auto kept = kept_of(*few);
         for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(kept[i], want[some[i]]);
@@ -78,7 +79,7 @@ TEST_P(ControlledHead, StrandsTakeAsManyStepsAsEachNeeds) {
 
 TEST_P(ControlledHead, GoesOnFromWhatIsKeptWithTheSameBits) {
   const auto first = head(mixed_options(1e-3), wide),
-             second = head(mixed_options(1e-3), {HeadNumber::float64, 8});
+             second = head(mixed_options(1e-3), {HeadNumber::float64, 1});
   advance(*first, 0, 3);
   const auto kept = kept_of(*first);
   EXPECT_NE(kept_of(*second), kept);

@@ -7,6 +7,7 @@
 #include "tests/models/head/arrangements.h"
 #include "tests/models/head/der_strands.h"
 #include "tests/models/head/exact_methods.h"
+#include "tests/models/head/mixed_hairs.h"
 #include "tests/support/apart.h"
 #include "tests/support/bare_system.h"
 
@@ -16,11 +17,6 @@ using namespace simulation;
 using namespace testing_support;
 using integrators::make_integrator;
 
-constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
-                              {HeadNumber::float64, 4},
-                              {HeadNumber::float64, 8},
-                              {HeadNumber::float32, 8},
-                              {HeadNumber::float32, 16}};
 using Method = HairMethod;
 constexpr Method methods[] = {one_solve, newton, midpoint, tr_bdf2};
 
@@ -30,9 +26,8 @@ double step_of(const Method& method, double h) {
 }
 
 /// Numbers that its head can have: single corrections have 64 bits.
-std::span<const HeadPack> packs_of(const Method& method) {
-  return std::span(packs).first(
-      method.method == HeadMethod::linearly_implicit_midpoint ? 3 : 5);
+std::vector<HeadPack> packs_of(const Method& method) {
+  return packs_of_build(method.method != HeadMethod::linearly_implicit_midpoint);
 }
 
 std::unique_ptr<Head> head(const RodCase& c, const Method& method, HeadPack pack,
@@ -104,7 +99,7 @@ TEST_P(DerHead, StrandsMoveAsTheyDoAlone) {
     const double h = step_of(method, 1e-3);
     if (h < 1e-3 && c.friction > 0) continue;
     SCOPED_TRACE(method.id);
-    const auto all = head(c, method, {HeadNumber::float64, 8}, strands);
+    const auto all = head(c, method, longest_doubles(), strands);
     advance(*all, steps, h);
     const auto n = static_cast<std::size_t>(c.elements);
     std::vector<double> q(4 * n), v(4 * n), x(strands * 3 * (n + 1));
@@ -147,12 +142,16 @@ TEST_P(DerHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
   constexpr double h = 1e-3, t = steps * h;
   const Method& method = one_solve;
   const auto n = static_cast<std::size_t>(c.elements);
-  const auto all = head(c, method, {HeadNumber::float64, 8}, 8);
+  const auto all = head(c, method, longest_doubles(), 8);
   advance(*all, steps, h);
   std::vector<HeadEnergy> each(8);
   std::vector<double> x(8 * all->numbers()), v(8 * all->numbers());
-  all->energies(0, t, each);
-  all->motion(0, t, x, v);
+  for (std::size_t b = 0, k = 0; b < all->blocks(); k += all->strands_of(b++)) {
+    const std::size_t from = k * all->numbers(),
+                      size = all->strands_of(b) * all->numbers();
+    all->energies(b, t, std::span(each).subspan(k, all->strands_of(b)));
+    all->motion(b, t, std::span(x).subspan(from, size), std::span(v).subspan(from, size));
+  }
   for (std::size_t k = 0; k < 8; ++k) {
     SCOPED_TRACE(k);
     const auto system = rod_alone(c, k, "elastic");
@@ -186,17 +185,11 @@ TEST(DerHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   const RodCase c{.name = "", .moves = true, .speed = 3};  // with new references
   for (const Method& method : methods) {
     const double h = step_of(method, 1e-3);
-    const auto first = head(c, method, {HeadNumber::float64, 8}, 11);
+    const auto first = head(c, method, {HeadNumber::float64, 4}, 11),
+               second = head(c, method, {HeadNumber::float64, 1}, 11);
     advance(*first, 20, h);
-    std::vector<double> kept(11 * first->kept());
-    first->keep(0, std::span(kept).first(8 * first->kept()));
-    first->keep(1, std::span(kept).subspan(8 * first->kept()));
-    const auto second = head(c, method, {HeadNumber::float64, 4}, 11);
     EXPECT_NE(second->hash(), first->hash());
-    for (std::size_t b = 0, k = 0; b < second->blocks(); k += second->strands_of(b++)) {
-      second->recall(b, std::span(kept).subspan(k * second->kept(),
-                                                second->strands_of(b) * second->kept()));
-    }
+    recall(*second, kept_of(*first));
     EXPECT_EQ(second->hash(), first->hash());
     for (Head* of : {first.get(), second.get()}) {
       const auto scratch = of->scratch();
@@ -220,7 +213,7 @@ TEST_P(DerHead, LanesRefillsAndInstructionsGiveTheSameBits) {
     }
     if (packs_of(method).back().number == HeadNumber::float64) continue;
     const auto f8 = head(c, method, {HeadNumber::float32, 8}, 19),
-               f16 = head(c, method, {HeadNumber::float32, 16}, 19);
+               f16 = head(c, method, longest_floats(), 19);
     advance(*f8, 10, h);
     advance(*f16, 10, h);
     EXPECT_EQ(f8->hash(), f16->hash());
@@ -250,15 +243,11 @@ TEST(DerHeadOf32Bits, DiffersByAHundredThousandthOfALengthAfterASecond) {
     SCOPED_TRACE(method.id);
     for (const int elements : {5, 20}) {
       const RodCase c{.name = "", .elements = elements, .sprung = false};
-      const auto wide = head(c, method, {HeadNumber::float64, 8}, 16),
-                 narrow = head(c, method, {HeadNumber::float32, 16}, 16);
+      const auto wide = head(c, method, longest_doubles(), 16),
+                 narrow = head(c, method, longest_floats(), 16);
       advance(*wide, 500, 2e-3);
       advance(*narrow, 500, 2e-3);
-      const auto n = 3 * static_cast<std::size_t>(elements + 1);
-      std::vector<double> x(16 * n), y(16 * n);
-      wide->positions(0, 1, std::span(x).first(8 * n));
-      wide->positions(1, 1, std::span(x).last(8 * n));
-      narrow->positions(0, 1, y);
+      const std::vector<double> x = points(*wide, 1), y = points(*narrow, 1);
       EXPECT_LE(apart(x, y), std::max(1.0, method.left) * 1e-5 * 0.25) << elements;
       EXPECT_GT(apart(x, y), 0) << elements;
     }
@@ -314,9 +303,9 @@ TEST(DerHeadWithLosses, OtherStrandsGoOn) {
 TEST(DerHeadMemory, IsTheState) {
   // q, v, a, rest strain, reference axes of each edge; root and material. With two
   // accelerations, when they were.
-  EXPECT_LE(head({""}, newton, {HeadNumber::float64, 8}, 16)->bytes(),
+  EXPECT_LE(head({""}, newton, longest_doubles(), 16)->bytes(),
             16U * (10 * (3 * 4 + 9) + 25) * sizeof(double));
-  EXPECT_LE(head({""}, tr_bdf2, {HeadNumber::float64, 8}, 16)->bytes(),
+  EXPECT_LE(head({""}, tr_bdf2, longest_doubles(), 16)->bytes(),
             16U * (10 * (4 * 4 + 9) + 27) * sizeof(double));
 }
 

@@ -27,23 +27,13 @@ using testing_support::head;
 using testing_support::HeadMaker;
 using testing_support::left_by_newton;
 using testing_support::packs_of;
+using testing_support::points;
 using testing_support::refusal;
 using testing_support::rod;
 using testing_support::rod_options;
 using testing_support::RodCase;
 using testing_support::rods;
 using testing_support::spring_masses;
-
-/// Points of all strands.
-std::vector<double> points(const Head& all, double t) {
-  std::vector<double> x(all.strands() * all.numbers());
-  for (std::size_t b = 0, done = 0; b < all.blocks(); ++b) {
-    const std::size_t size = all.strands_of(b) * all.numbers();
-    all.positions(b, t, std::span(x).subspan(done, size));
-    done += size;
-  }
-  return x;
-}
 
 /// Of four strands at t after so many steps of the method.
 using After = std::function<std::vector<double>(const HairMethod&, double t, int steps)>;
@@ -55,8 +45,9 @@ std::vector<double> after(Head& all, double t, int steps) {
 
 void expect_order(const HairMethod& method, double t, int steps, const After& of) {
   const int order = method.method == HeadMethod::backward_euler ? 1 : 2;
-  // By another method, whose error is smaller by 32^2/8 at least.
-  const std::vector<double> want = of(testing_support::tr_bdf2, t, 32 * steps);
+  // Of second order by steps that are shorter by 4 at least: an error of it is smaller by
+  // 4^2, which changes the power by log2(1 + 4^-2) at most.
+  const std::vector<double> want = of(testing_support::tr_bdf2, t, 16 * steps);
   double before = apart(of(method, t, steps), want);
   for (const int more : {2, 4}) {
     const double error = apart(of(method, t, more * steps), want);
@@ -112,17 +103,18 @@ TEST_P(HeadMethods, StepsOfOtherLengthsAreThoseOfTheStrandAlone) {
 }
 
 // Of hairs let go in another shape than that at rest whole corrections fail.
-TEST_P(HeadMethods, HardStepsAreTheSameBitsForAnyLanes) {
+class HardSteps : public HeadMethods {};
+TEST_P(HardSteps, AreTheSameBitsForAnyLanes) {
   Case c = of({.name = "", .moves = true});
   c.sprung = true;
   std::size_t want[2] = {};
   for (const HeadPack& pack : packs_of(c)) {
-    const auto all = head(c, pack, 11);
+    const auto all = head(c, pack, 9);
     const auto scratch = all->scratch();
     constexpr double h = 1.0 / 240;
-    for (int s = 0; s < 3; ++s) all->step(0, all->blocks(), s * h, h, *scratch);
+    for (int s = 0; s < 2; ++s) all->step(0, all->blocks(), s * h, h, *scratch);
     const HeadWork& work = scratch->work;
-    EXPECT_EQ(work.steps, 3 * 11);
+    EXPECT_EQ(work.steps, 2 * 9);
     EXPECT_GT(work.retried, 0);
     EXPECT_GT(work.in_parts, 0);
     std::size_t& one = want[pack.number == HeadNumber::float64 ? 0 : 1];
@@ -133,7 +125,7 @@ TEST_P(HeadMethods, HardStepsAreTheSameBitsForAnyLanes) {
 
 // One correction a step once two have been iterated, two stages a step.
 TEST_P(HeadMethods, WorkIsThatOfTheMethod) {
-  const auto all = head(of({}), {HeadNumber::float64, 8}, 16);
+  const auto all = head(of({}), testing_support::longest_doubles(), 16);
   const auto scratch = all->scratch();
   const auto step = [&](int s) { all->step(0, all->blocks(), s * 1e-3, 1e-3, *scratch); };
   for (int s = 0; s < 2; ++s) step(s);
@@ -152,13 +144,31 @@ TEST_P(HeadMethods, WorkIsThatOfTheMethod) {
   }
 }
 
+std::string name_of(const testing::TestParamInfo<Method>& of) {
+  return std::string(std::get<0>(of.param)->name) + std::get<1>(of.param)->name;
+}
 INSTANTIATE_TEST_SUITE_P(All, HeadMethods,
                          testing::Combine(testing::ValuesIn(hair_models),
                                           testing::ValuesIn(exact_methods)),
-                         [](const auto& of) {
-                           return std::string(std::get<0>(of.param)->name) +
-                                  std::get<1>(of.param)->name;
-                         });
+                         name_of);
+// Steps in parts are those of the method: of clothoids, which take the most time, others
+// than Newton's are `More`.
+using testing_support::chains;
+using testing_support::clothoids;
+using testing_support::helices;
+INSTANTIATE_TEST_SUITE_P(All, HardSteps,
+                         testing::Combine(testing::Values(&helices, &chains),
+                                          testing::ValuesIn(exact_methods)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Clothoids, HardSteps,
+                         testing::Combine(testing::Values(&clothoids),
+                                          testing::Values(&testing_support::newton)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(More, HardSteps,
+                         testing::Combine(testing::Values(&clothoids),
+                                          testing::Values(&testing_support::midpoint,
+                                                          &testing_support::tr_bdf2)),
+                         name_of);
 
 /// Heads whose elements stretch.
 using Stretched = std::tuple<const HeadMaker*, const HairMethod*>;

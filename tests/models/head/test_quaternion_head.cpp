@@ -22,8 +22,6 @@ struct Rods {
 void PrintTo(const Rods& r, std::ostream* out) { *out << r.id; }  // NOLINT
 constexpr Rods all_rods[] = {{"corde", corde_head}, {"xpbd_cosserat", cosserat_head}};
 
-constexpr HeadPack packs[] = {
-    {HeadNumber::float64, 1}, {HeadNumber::float64, 4}, {HeadNumber::float64, 8}};
 /// Single corrections need shorter steps, in the head or alone.
 double step_of(const HairMethod& method) {
   return method.method == HeadMethod::backward_euler ? 1e-3 : 1e-4;
@@ -135,7 +133,7 @@ TEST_P(QuaternionHead, StrandsMoveAsTheyDoAlone) {
   const int steps = step < 1e-3 ? 200 : 60;
   constexpr std::size_t strands = 5;
   constexpr double rate = 60;
-  const auto all = head(rods(), acted(), method(), {HeadNumber::float64, 8}, strands);
+  const auto all = head(rods(), acted(), method(), longest_doubles(), strands);
   advance_springs(*all, steps, step);
   const auto elements = static_cast<std::size_t>(acted().c.elements);
   const std::size_t n = 7 * elements, points = 3 * (elements + 1);
@@ -206,8 +204,8 @@ class EachQuaternionMethod : public testing::TestWithParam<EachCase> {
 TEST_P(EachQuaternionMethod, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   const double step = step_of(method());
   const Acted acted{"", {.name = "", .moves = true, .sprung = false}};
-  const auto first = head(rods(), acted, method(), packs[2], 11),
-             second = head(rods(), acted, method(), packs[1], 11);
+  const auto first = head(rods(), acted, method(), {HeadNumber::float64, 1}, 11),
+             second = head(rods(), acted, method(), wide, 11);
   advance_springs(*first, 20, step);
   EXPECT_NE(second->hash(), first->hash());
   recall(*second, kept_of(*first));
@@ -224,7 +222,7 @@ TEST_P(EachQuaternionMethod, LosesStrandsByNameAndGoesOn) {
   const double step = step_of(method());
   const Acted acted{"", {.name = "", .sprung = false}};
   const auto fails = [](std::size_t k) { return k % 6 == 1; };
-  for (const HeadPack& pack : packs) {
+  for (const HeadPack& pack : packs_of_build(false)) {
     const auto sound = head(rods(), acted, method(), pack, 64),
                hurt = head(rods(), acted, method(), pack, 0);
     for (std::size_t k = 0; k < 64; ++k) {
@@ -263,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(All, EachQuaternionMethod,
 TEST(QuaternionHeadOptions, AreThoseOfTheModel) {
   Acted acted{"", {.name = "", .moves = true, .sprung = false}};
   const auto off = [&] {
-    const auto all = head(all_rods[0], acted, newton, packs[1], 1);
+    const auto all = head(all_rods[0], acted, newton, wide, 1);
     advance_springs(*all, 40, step_of(newton));
     std::vector<double> q(70), v(70);
     all->state(0, q, v);
@@ -286,8 +284,8 @@ TEST(QuaternionHeadOf32Bits, MovesAsThatOf64) {
     for (const HairMethod* method : {&newton, &tr_bdf2}) {
       std::vector<std::vector<double>> x;
       std::vector<double> u;
-      for (const HeadPack& pack : {packs[2], HeadPack{HeadNumber::float32, 8},
-                                   HeadPack{HeadNumber::float32, 16}}) {
+      for (const HeadPack& pack :
+           {longest_doubles(), HeadPack{HeadNumber::float32, 8}, longest_floats()}) {
         HeadOptions options = mixed_options(0);
         options.method = method->method;
         options.newton_tolerance = Options{}.newton_tolerance;

@@ -5,6 +5,8 @@
 #include "contract/forms/energetics.h"
 #include "contract/input_error.h"
 #include "models/effects/constant_force.h"
+#include "tests/models/head/arrangements.h"
+#include "tests/models/head/mixed_hairs.h"
 #include "tests/models/head/spring_strands.h"
 
 /// Heads of springs by linearly_implicit_euler; by the other methods in
@@ -37,7 +39,7 @@ TEST_P(SpringHead, StrandsMoveAsTheyDoAlone) {
   const int steps = c.elements > 20 ? 5 : 60;
   constexpr double h = 1e-3;
   constexpr std::size_t strands = 10;
-  const auto all = head(c, {HeadNumber::float64, 8}, strands);
+  const auto all = head(c, longest_doubles(), strands);
   advance_springs(*all, steps, h);
   const auto n = static_cast<std::size_t>(3 * c.elements);
   std::vector<double> q(n), v(n), u;
@@ -61,7 +63,7 @@ TEST_P(SpringHead, EnergiesAndVelocitiesAreThoseOfTheStrandsAlone) {
   const RodCase& c = GetParam();
   constexpr int steps = 20;
   constexpr double h = 1e-3, t = steps * h;
-  const auto all = head(c, {HeadNumber::float64, 8}, 8);
+  const auto all = head(c, longest_doubles(), 8);
   advance_springs(*all, steps, h);
   std::vector<HeadEnergy> each(8);
   all->energies(0, t, each);
@@ -193,7 +195,7 @@ TEST_P(SpringHeadOnBodies, LanesAndInstructionsGiveTheSameBits) {
   const RodCase c{.name = "", .elements = GetParam().elements, .moves = GetParam().moves};
   const Effects bodies = effects_of(GetParam(), c);
   std::size_t want = 0;
-  for (const HeadPack& pack : spring_packs) {
+  for (const HeadPack& pack : packs_of_build(false)) {
     const auto all = head(c, pack, 19, bodies);
     advance_springs(*all, 60, 5e-4);
     if (want == 0) want = all->hash();
@@ -206,17 +208,11 @@ INSTANTIATE_TEST_SUITE_P(Bodies, SpringHeadOnBodies, testing::ValuesIn(spring_bo
 
 TEST(SpringHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   const RodCase c{.name = "", .moves = true};
-  const auto first = head(c, {HeadNumber::float64, 8}, 11);
+  const auto first = head(c, {HeadNumber::float64, 4}, 11),
+             second = head(c, {HeadNumber::float64, 1}, 11);
   advance_springs(*first, 20, 1e-3);
-  std::vector<double> kept(11 * first->kept());
-  first->keep(0, std::span(kept).first(8 * first->kept()));
-  first->keep(1, std::span(kept).subspan(8 * first->kept()));
-  const auto second = head(c, {HeadNumber::float64, 4}, 11);
   EXPECT_NE(second->hash(), first->hash());
-  for (std::size_t b = 0, k = 0; b < second->blocks(); k += second->strands_of(b++)) {
-    second->recall(b, std::span(kept).subspan(k * second->kept(),
-                                              second->strands_of(b) * second->kept()));
-  }
+  recall(*second, kept_of(*first));
   for (Head* of : {first.get(), second.get()}) {
     const auto scratch = of->scratch();
     for (int s = 20; s < 60; ++s) of->step(0, of->blocks(), s * 1e-3, 1e-3, *scratch);
@@ -228,7 +224,7 @@ TEST(SpringHeadKept, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
 TEST(SpringHeadWithLosses, OtherStrandsGoOn) {
   const RodCase c{""};
   const auto fails = [](std::size_t k) { return k % 6 == 1; };
-  for (const HeadPack& pack : spring_packs) {
+  for (const HeadPack& pack : packs_of_build(false)) {
     const auto sound = head(c, pack, 64), hurt = spring_head(rod_options(c), pack);
     for (std::size_t k = 0; k < 64; ++k) {
       Strand one = rod(c, k);
@@ -256,7 +252,7 @@ TEST(SpringHeadWithLosses, OtherStrandsGoOn) {
 }
 
 TEST(SpringHeadMemory, IsTheState) {
-  const auto all = head({""}, {HeadNumber::float64, 8}, 16);
+  const auto all = head({""}, longest_doubles(), 16);
   // q, v and rest strains of each edge; root and material.
   EXPECT_LE(all->bytes(), 16U * (10 * 8 + 20) * sizeof(double));
 }

@@ -59,7 +59,7 @@ TEST_P(SpringMethods, StrandsMoveAsTheyDoAlone) {
   const int steps = h < 1e-3 ? 200 : 60;
   constexpr std::size_t strands = 10;
   const double solved = method().left_after(steps);
-  const auto all = springs(c(), method(), {HeadNumber::float64, 8}, strands, effects());
+  const auto all = springs(c(), method(), longest_doubles(), strands, effects());
   advance_springs(*all, steps, h);
   const auto n = static_cast<std::size_t>(3 * c().elements);
   std::vector<double> q(n), v(n), u;
@@ -109,7 +109,7 @@ class EachSpringMethod : public testing::TestWithParam<const HairMethod*> {};
 TEST_P(EachSpringMethod, GoesOnWithTheSameBitsInAHeadOfOtherLanes) {
   const RodCase c{.name = "", .moves = true};
   const double h = step_of(*GetParam(), 1e-3);
-  const auto first = springs(c, *GetParam(), {HeadNumber::float64, 8}, 11),
+  const auto first = springs(c, *GetParam(), {HeadNumber::float64, 1}, 11),
              second = springs(c, *GetParam(), {HeadNumber::float64, 4}, 11);
   advance_springs(*first, 20, h);
   EXPECT_NE(second->hash(), first->hash());
@@ -127,7 +127,7 @@ TEST_P(EachSpringMethod, LosesStrandsByNameAndGoesOn) {
   const RodCase c{""};
   const auto fails = [](std::size_t k) { return k % 6 == 1; };
   const double h = step_of(*GetParam(), 2e-3);
-  for (const HeadPack& pack : spring_packs) {
+  for (const HeadPack& pack : packs_of_build(false)) {
     const auto sound = springs(c, *GetParam(), pack, 64),
                hurt = springs(c, *GetParam(), pack, 0);
     for (std::size_t k = 0; k < 64; ++k) {
