@@ -13,8 +13,6 @@ using simulation::PointRecord;
 using simulation::Scene;
 using simulation::SceneParameter;
 
-constexpr double length = 0.1;  // m
-constexpr int elements = 10;
 constexpr std::string_view method_of_record = "esdirk43";
 // Where a fit starts, over the true values less 1, in the order of `parameters`. With a
 // curvature that is far off, other windings of the curl fit as well.
@@ -66,7 +64,7 @@ void fit(Scene scene, int steps, const PointRecord& record,
     row.set(parameters[k].column, error);
     worst = std::max(worst, error);
   }
-  row.set("gradient_error_rel", worst).set("tip_error_rel", found.rms / length);
+  row.set("gradient_error_rel", worst).set("tip_error_rel", found.rms / strand_length);
 }
 
 }  // namespace
@@ -74,16 +72,16 @@ void fit(Scene scene, int steps, const PointRecord& record,
 std::vector<Row> fit_rows(const Row& own, const Sweep& sweep) {
   const std::string_view model = own.text("model");
   const Scene given = curl();
-  const Scene finest = with(given, model, method_of_record, elements);
+  const Scene finest = with(given, model, method_of_record, usual_elements);
   const Course run = course(finest, sweep.reference_steps);
   const PointRecord record = record_of(finest, run);
   const auto truth = simulation::gradient_parameters(finest, names(), "cost_of_gradient");
   std::vector<Row> rows;
   for (const std::string_view method : gradient_methods(finest, sweep.integrators)) {
-    const Scene scene = with(given, model, method, elements);
+    const Scene scene = with(given, model, method, usual_elements);
     for (const int steps : sweep.steps) {
       Row& row = rows.emplace_back(own);
-      row.set("integrator", method).set("elements", elements).set("steps", steps);
+      row.set("integrator", method).set("elements", usual_elements).set("steps", steps);
       row.set("start", "damped").set("jacobian", "exact");
       if (run.failure.empty()) {
         fit(scene, steps, record, truth, row);

@@ -21,6 +21,9 @@ inline constexpr ByParameter parameters[] = {
     {"linear_drag.drag_kg_m_s", "drag_error_rel"},
     {"natural_curvature_per_m", "curvature_error_rel"}};
 
+inline constexpr double strand_length = 0.1;  // m, of all strands
+inline constexpr int usual_elements = 10;     // number of elements where it does not vary
+
 /// A curl whose clamp swings, and straight hair that falls on a plane 30 mm below. A body
 /// of that scene is given as the lines of its table.
 simulation::Scene curl();

@@ -15,8 +15,7 @@ namespace {
 using integrators::GradientStart;
 using simulation::Scene;
 
-constexpr double length = 0.1;                 // m, of all strands here
-constexpr int elements = 10, usual_order = 2;  // half as many where the order is higher
+constexpr int usual_order = 2;  // half of the elements where it is higher
 constexpr std::string_view finest_method = "esdirk43";
 constexpr int steps_in_space = 80;
 // Errors are told apart from that of a reference if they are so many times its own.
@@ -55,7 +54,7 @@ void set_errors(Row& row, const Course& found, const Reference& reference) {
     row.failed("diverged", "the derivatives are not finite");
     return;
   }
-  row.set("tip_error_rel", tip_distance(found, reference.course) / length);
+  row.set("tip_error_rel", tip_distance(found, reference.course) / strand_length);
   row.set("gradient_error_rel", error).set("reference_gap", reference.gap);
   for (std::size_t k = 0; k < std::size(parameters); ++k) {
     row.set(parameters[k].column, relative_error(found, reference.course, k));
@@ -104,7 +103,7 @@ Sweep Sweep::full() {
 std::vector<Row> time_rows(const Row& own, const Sweep& sweep) {
   const std::string model(own.text("model"));
   const ModelEntry& entry = models::find_model(model);
-  const int count = entry.order > usual_order ? elements / 2 : elements;
+  const int count = entry.order > usual_order ? usual_elements / 2 : usual_elements;
   const Scene given = curl();
   const Reference reference =
       reference_in_time(with(given, model, finest_method, count), sweep.reference_steps);
@@ -168,13 +167,13 @@ std::vector<Row> contact_rows(const Row& own, const Sweep& sweep, const ContactL
   const Scene given = fall(law.table);
   const std::string_view model = "super_helix";
   const Reference reference = reference_in_time(
-      with(given, model, law.integrators.back(), elements), sweep.reference_steps);
+      with(given, model, law.integrators.back(), usual_elements), sweep.reference_steps);
   std::vector<Row> rows;
   for (const std::string_view method : law.integrators) {
     if (!wanted(sweep.integrators, method)) continue;
     for (const int steps : sweep.steps) {
-      rows.push_back(row_of(own, model, method, elements, steps));
-      set_errors(rows.back(), course(with(given, model, method, elements), steps),
+      rows.push_back(row_of(own, model, method, usual_elements, steps));
+      set_errors(rows.back(), course(with(given, model, method, usual_elements), steps),
                  reference);
     }
   }

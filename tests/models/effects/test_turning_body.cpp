@@ -111,9 +111,9 @@ TEST_P(TurningBody, WhatSticksStaysWhereItIs) {
 /// Every model with each of its contacts and roots, by one of the integrators in turn; or
 /// by the others, which are `more`.
 std::vector<Turning> turning(bool more) {
-  std::vector<std::string> integrators;
-  for (const IntegratorEntry& one : integrator_catalogue()) {
-    if (one.contact != Contact::regular) integrators.emplace_back(one.id);
+  std::vector<std::string> methods;
+  for (const auto& one : integrators::integrator_catalogue()) {
+    if (one.contact != integrators::Contact::regular) methods.emplace_back(one.id);
   }
   std::vector<Turning> all;
   std::size_t turn = 0;
@@ -123,8 +123,8 @@ std::vector<Turning> turning(bool more) {
     for (const bool free : {true, false}) {
       if (free && model.roots != Roots::clamped_or_free) continue;
       for (const bool rigid : {true, false}) {
-        const std::string own = integrators[turn++ % integrators.size()];
-        for (const std::string& integrator : integrators) {
+        const std::string own = methods[turn++ % methods.size()];
+        for (const std::string& integrator : methods) {
           if ((integrator == own) == more) continue;
           all.push_back({std::string(model.id), integrator, rigid, free});
         }
