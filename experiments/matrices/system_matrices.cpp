@@ -11,9 +11,9 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
+#include "simulation/joints/joint_table.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/changes.h"
-#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::experiments::matrices {

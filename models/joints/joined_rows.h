@@ -18,8 +18,8 @@ class JoinedRows final : public ConstraintForm {
  public:
   /// A strand and its first coordinate.
   struct Member {
-    SupportedSystem* strand;
-    std::size_t first;
+    SupportedSystem* strand;  // with its supports
+    std::size_t first;        // coordinate among those of all strands
   };
   /// Members and joints must outlive it.
   JoinedRows(std::vector<Member> members, std::vector<JointPair>& joints);
@@ -30,8 +30,9 @@ class JoinedRows final : public ConstraintForm {
   bool turns(int row) const;
   /// Returns the first constraint of the joints.
   std::size_t first_of_joints() const { return first_joint_; }
-  /// Returns the multipliers of a strand and its supports, or of a joint.
+  /// Returns the multipliers of a strand and its supports.
   In of_strand(In lambda, std::size_t k) const;
+  /// Returns the multipliers of a joint.
   In of_joint(In lambda, std::size_t k) const;
   /// Returns the length of the longest strand, m.
   double length() const { return length_; }

@@ -25,8 +25,9 @@ struct StrandPoint {
 
 /// A joint of two points of strands, or of one strand.
 struct Joint {
-  JointKind kind = JointKind::ball;
-  StrandPoint a{}, b{};
+  JointKind kind = JointKind::ball;  // parts that are held together
+  StrandPoint a{};                   // first end
+  StrandPoint b{};                   // second end
   /// Axis of a hinge at the start, world components, of any length.
   Vec axis{};
   // Of a spring.

@@ -9,10 +9,11 @@
 
 namespace tress::models {
 
-/// A force (N) on the second end of a joint and a moment (N m) about its point, world
-/// components. The first end has the opposite ones.
+/// Force and moment on the second end of a joint, world components. The first end has the
+/// opposite ones.
 struct JointLoad {
-  Vec force, moment;
+  Vec force;   // N
+  Vec moment;  // N m, about the point of the second end
 };
 
 /// The equations of one joint of ends a and b. With x the places of the points and c the
@@ -44,9 +45,11 @@ class JointPair {
   /// Returns the largest number of columns that add_couplings() appends.
   int couplings() const { return (spring_ ? 3 : 0) + (turning_ ? 3 : 0); }
 
-  /// Evaluates g, g' or g'' - G a, (rows).
+  /// Evaluates g, (rows).
   void value(double t, In q, Out g);
+  /// Evaluates g', (rows).
   void rate(double t, In q, In v, Out g);
+  /// Evaluates g'' - G a, (rows).
   void bias(double t, In q, In v, Out g);
   /// Returns the rate of c, rad/s.
   Vec turning_rate(double t, In q, In v);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "contract/forms/natural_strains.h"
-#include "simulation/rest/joined_start.h"
+#include "simulation/joints/joined_start.h"
 
 namespace tress::simulation {
 namespace {

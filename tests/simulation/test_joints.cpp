@@ -258,6 +258,30 @@ TEST(Joints, MakeAnArchOfClampedStrands) {
   }
 }
 
+/// Three strands at one point: a third joint is redundant. The motion is that of two, to
+/// rounding, and the forces have the least norm: they share the load.
+TEST(Joints, MayBeRedundant) {
+  Text text;
+  text.strands +=
+      "[[strand]]\nname = \"third\"\nroot = \"free\"\nlength_m = 0.1\nelements = "
+      "4\nroot_tangent = [-1, 0, 0]\nposition_m = [0, 0, -0.1]\n";
+  text.joints += "[[joints]]\na = [\"upper\", \"tip\"]\nb = [\"third\", \"root\"]\n";
+  World two(scene_of(text));
+  text.joints += "[[joints]]\na = [\"lower\", \"root\"]\nb = [\"third\", \"root\"]\n";
+  World three(scene_of(text));
+  ASSERT_EQ(two.advance(0.05), Status::ok) << two.failure();
+  ASSERT_EQ(three.advance(0.05), Status::ok) << three.failure();
+  EXPECT_EQ(two.stats().rank_deficiency, 0);
+  EXPECT_EQ(three.stats().rank_deficiency, 3);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_LE(norm(point(two, i) - point(three, i)), 1e-10);
+  }
+  const std::vector<double> one = two.support_loads().forces,
+                            all = three.support_loads().forces;
+  // What acts on the third strand.
+  EXPECT_NEAR(all[3] + all[6], one[3], 1e-9);
+}
+
 /// The columns of the series are those of the joints, and each strand is a line.
 TEST(Joints, WriteTheirForcesAmongTheColumns) {
   const Scene scene = scene_of({});

@@ -30,7 +30,8 @@ class SceneJoints {
 
   /// Strands first to first + count - 1, which their joints make one system.
   struct Group {
-    std::size_t first = 0, count = 1;
+    std::size_t first = 0;              // number of the first strand
+    std::size_t count = 1;              // number of strands
     std::vector<std::size_t> joints{};  // numbers of tables
   };
   /// Returns true if the scene has joints.

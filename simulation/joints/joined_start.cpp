@@ -1,4 +1,4 @@
-#include "simulation/rest/joined_start.h"
+#include "simulation/joints/joined_start.h"
 
 #include <fmt/format.h>
 
