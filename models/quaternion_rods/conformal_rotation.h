@@ -19,7 +19,7 @@ class ConformalRotation {
   /// Returns the vector of a unit quaternion with w > -1.
   static Vec vector(const Quaternion& p) { return (4 / (1 + p.w)) * p.v; }
 
-  /// Returns p.
+  /// Returns the unit quaternion p.
   Quaternion value() const { return {2 * f_ - 1, 2 * f_ * s_}; }
   /// Returns the length of the derivative of p along a unit vector.
   double scale() const { return f_ / 2; }
@@ -67,8 +67,8 @@ class ConformalRotation {
   double second_of_f(const Vec& u, const Vec& w) const {
     return 2 * f_ * f_ * (4 * f_ * dot(s_, u) * dot(s_, w) - dot(u, w));
   }
-  /// Of p = (2 f - 1, 2 f s): `of_f` belongs to f, `rest` to f s at fixed derivative of
-  /// f.
+  /// Returns a derivative of p = (2 f - 1, 2 f s) from `of_f`, that of f, and `rest`,
+  /// that of f s at fixed derivative of f.
   Quaternion around(double of_f, const Vec& rest) const {
     return {2 * of_f, 2.0 * (of_f * s_ + rest)};
   }

@@ -77,9 +77,9 @@ Status RotationVectors::rod_values(double t, Weights w, Out s) noexcept {
   return rod_->sparse_form()->values(t, q_, v_, a_, w, s.first(s.size() - 1));
 }
 
-/// force_ = r with the stresses of the next matrix. Linear in the change d since the
-/// origin, it is r(origin) + (r(origin + d) - r(origin - d))/2 up to d^3: stretch of
-/// edges that d has turned is even in d.
+/// force_ = r with the stresses of the next matrix. With the change d since the origin,
+/// the part linear in d is r(origin) + (r(origin + d) - r(origin - d))/2 up to d^3.
+/// Stretch of edges that d has turned is even in d and drops out.
 Status RotationVectors::find_force(double t) noexcept {
   if (!stresses_) return rod_->residual(t, q_, v_, a_, force_);
   const Stresses stresses = *stresses_;

@@ -134,7 +134,7 @@ class RotationVectors final : public System,
   void place(In q) noexcept;
   void place(In q, In v) noexcept;
   void place(In q, In v, In a) noexcept;
-  /// to = J^T from.
+  /// Computes to = J^T from.
   void pull_back(In from, Out to) const noexcept;
   Status rod_values(double t, Weights w, Out s) noexcept;
   Status find_force(double t) noexcept;

@@ -6,13 +6,14 @@
 
 #include "contract/forms/moving_history.h"
 #include "contract/input_error.h"
+#include "experiments/numerics/fit.h"
 #include "integrators/catalogue.h"
 #include "models/effects/exact_body.h"
 #include "models/effects/gravity.h"
 #include "models/effects/self_contact.h"
-#include "models/quaternion_rods/rotation_vectors.h"
-#include "tests/models/maximal/drift.h"
+#include "models/quaternion_rods/conformal_rotation.h"
 #include "tests/models/maximal/thin_rod.h"
+#include "tests/models/maximal/vector_rods.h"
 #include "tests/support/apart.h"
 
 namespace tress::test_rotation_vectors {
@@ -20,8 +21,6 @@ namespace tress::test_rotation_vectors {
 using namespace experiments;
 
 using namespace testing_support;
-
-const ModelSettings rotations = {{"coordinates", "rotation_vector"}};
 
 std::vector<double> four(const Quaternion& q) {
   std::vector<double> all(4);
@@ -63,23 +62,7 @@ TEST(ConformalRotation, DerivativesAreThoseOfDifferences) {
   EXPECT_LE(norm(turn.rate(turn.slope(x)) - x), 1e-14);
 }
 
-struct Rod {
-  const char* model;
-  const char* renewal;
-};
-void PrintTo(const Rod& rod, std::ostream* out) {  // NOLINT
-  *out << rod.model << " " << rod.renewal;
-}
-
-class RotationVectorRods : public testing::TestWithParam<Rod> {
- protected:
-  ModelSettings chosen(const ModelSettings& settings) const {
-    return with(with(settings, rotations), {{"renewal_angle_rad", GetParam().renewal}});
-  }
-  std::unique_ptr<System> make(const ModelSettings& settings) const {
-    return make_model(GetParam().model, chosen(settings));
-  }
-};
+class RotationVectorRods : public VectorRods {};
 
 TEST_P(RotationVectorRods, TangentIsExactWithFrictionOnATurningRoot) {
   const auto system = make({{"elements", "6"},
@@ -133,105 +116,6 @@ TEST_P(RotationVectorRods, CarryAMotionIntoNewCoordinates) {
   EXPECT_GT(apart(now.a, a), 1);
 }
 
-/// A stiff short rod in free flight turns as a symmetric top: its axis goes round the
-/// angular momentum L at the rate |L|/I. Frames have the same inertia J about each axis.
-/// Centrifugal stretch is rho omega^2 length^2/E = 4e-8, and changes I by twice that.
-struct Top {
-  double step;
-  double error;     // of the direction of the rod, rad
-  double momentum;  // relative drift
-  double norm;      // of quaternions, largest distance from 1
-  Stats stats;
-};
-Top spin(const std::string& model, const ModelSettings& more, double step) {
-  constexpr double duration = 0.6;
-  const auto system = make_model(model, with({{"elements", "4"},
-                                              {"motion", "free"},
-                                              {"gravity_m_s2", "0"},
-                                              {"length_m", "0.02"},
-                                              {"radius_m", "2e-3"},
-                                              {"density_kg_m3", "1000"},
-                                              {"youngs_modulus_pa", "1e9"},
-                                              {"internal_friction_kg_m3_s", "0"},
-                                              {"spin_rad_s", "10"}},
-                                             more));
-  State start{zeros(*system), zeros(*system)};
-  system->initial_state(start.q, start.v);
-  const auto axis_of = [&](In q) {
-    std::vector<double> x(15);
-    system->material_points()->positions(0, q, x);
-    const Vec along = load3(&x[12]) - load3(x.data());
-    return (1 / norm(along)) * along;
-  };
-  const Momentum was = system->energetics()->momentum(0, start.q, start.v).value();
-  std::vector<double> places(15);
-  system->material_points()->positions(0, start.q, places);
-  Vec centre;
-  for (std::size_t i = 0; i < 5; ++i) {
-    centre = centre + (i % 4 == 0 ? 0.125 : 0.25) * load3(&places[3 * i]);
-  }
-  const Vec before = axis_of(start.q),
-            l = load3(was.angular.data()) - cross(centre, load3(was.linear.data()));
-  const double j = 1000 * std::numbers::pi * 8e-12 * 0.005 * 4;  // 2 rho I l, four edges
-  const double m = 1000 * std::numbers::pi * 4e-6 * 0.005;
-  const double across = m * (0.5 * 2 * 1e-4 + 2 * 0.25e-4) + j;
-  const double turned = norm(l) / across * duration;
-  const Vec u = (1 / norm(l)) * l;
-  const Vec want = std::cos(turned) * before + std::sin(turned) * cross(u, before) +
-                   ((1 - std::cos(turned)) * dot(u, before)) * u;
-  Options options;
-  options.step = step;
-  options.newton_tolerance = 1e-12;
-  Top top{step, 0, 0, 0, {}};
-  auto* const vectors = dynamic_cast<RotationVectors*>(system.get());
-  std::vector<double> of_rod(31);
-  const Simulation run = simulate(
-      "generalized_alpha", *system, options, start, duration, [&](double, In q, In) {
-        if (vectors != nullptr) {
-          vectors->rod_coordinates(q, of_rod);
-        } else {
-          std::ranges::copy(q, of_rod.begin());
-        }
-        for (std::size_t e = 0; e < 4; ++e) {
-          const Quaternion p = load_quaternion(&of_rod[15 + 4 * e]);
-          top.norm = std::max(top.norm, std::abs(std::sqrt(dot(p, p)) - 1));
-        }
-        return true;
-      });
-  EXPECT_EQ(run.status, Status::ok) << run.failure;
-  const Momentum now =
-      system->energetics()->momentum(duration, run.state.q, run.state.v).value();
-  top.momentum = norm(load3(now.angular.data()) - load3(was.angular.data())) / norm(l);
-  top.error = norm(axis_of(run.state.q) - want);
-  top.stats = run.stats;
-  return top;
-}
-
-TEST_P(RotationVectorRods, FreeRodTurnsAsATopAtOrder2) {
-  std::vector<double> steps, errors, momenta;
-  for (const double step : {0.01, 0.005, 0.0025, 0.00125}) {
-    const Top top = spin(GetParam().model, chosen({}), step);
-    const Top penalty = spin(GetParam().model, {}, step);
-    for (const auto& [name, one] :
-         {std::pair{GetParam().renewal, &top}, {"quaternions", &penalty}}) {
-      std::printf(
-          "%s, %s, step %g s: axis off by %.2e, momentum by %.2e, norms by %.1e, "
-          "%ld corrections\n",
-          GetParam().model, name, step, one->error, one->momentum, one->norm,
-          one->stats.newton_iterations);
-    }
-    steps.push_back(step);
-    errors.push_back(top.error);
-    momenta.push_back(top.momentum);
-    EXPECT_LE(top.norm, 8 * eps);  // two products of four numbers
-    // The curvature of the flight is the same in both coordinates.
-    EXPECT_NEAR(top.error, penalty.error, 0.05 * penalty.error);
-  }
-  // The next order is (h omega)^2 = 1 % of the leading one at the longest step.
-  EXPECT_NEAR(log_log_slope(steps, errors), 2, 0.05);
-  EXPECT_NEAR(log_log_slope(steps, momenta), 2, 0.2);
-}
-
 // A soft curl thrown into space. Steps resolve its stiffest oscillations: of edges
 // against their shear, sqrt(0.9 GA/(2 rho I)) = 7e3 rad/s, and of frames against their
 // edges.
@@ -276,14 +160,7 @@ TEST_P(RotationVectorRods, GeneralizedAlphaHasOrder2) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2, 0.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Maximal, RotationVectorRods,
-                         testing::Values(Rod{"corde", "1"}, Rod{"corde", "0"},
-                                         Rod{"xpbd_cosserat", "1"},
-                                         Rod{"xpbd_cosserat", "0"}),
-                         [](const auto& test) {
-                           return std::string(test.param.model) + "_" +
-                                  test.param.renewal;
-                         });
+INSTANTIATE_TEST_SUITE_P(Maximal, RotationVectorRods, vector_rods(), name_of);
 
 /// The penalty softens joints by 2 (u l)^2/(coupling + norm) (corde.cpp), by 2 (u l)^2/
 /// norm in xpbd_cosserat: without it a rod is the limit of stiff penalties, at order 1.
