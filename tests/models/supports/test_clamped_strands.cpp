@@ -1,8 +1,7 @@
 // Strands between clamps against closed forms of beams and of the elastica.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "contract/forms/sparse_form.h"
+#include "experiments/numerics/dense_algebra.h"
 #include "simulation/rest/supported_start.h"
 #include "tests/models/supports/held_strand.h"
 
@@ -71,10 +71,8 @@ MatrixXd free_motions(System& system, In q) {
     g.col(k) = typ.asDiagonal() * g.col(k);
     g.col(k) /= g.col(k).norm();
   }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(g);
-  EXPECT_EQ(qr.rank(), g.cols());
-  const MatrixXd all = qr.householderQ() * MatrixXd::Identity(n, n);
-  return typ.asDiagonal() * all.rightCols(n - g.cols());
+  EXPECT_TRUE(experiments::is_definite(g.transpose() * g));  // independent
+  return typ.asDiagonal() * experiments::complement(g);
 }
 
 /// A strand whose tip is clamped as it begins, and free to slide along it.
@@ -97,8 +95,8 @@ double first_frequency(SupportedSystem& system) {
   const MatrixXd m = z.transpose() * matrix_of(system, q, lambda, {1, 0, 0}) * z,
                  k = z.transpose() * matrix_of(system, q, lambda, {0, 0, 1}) * z;
   // Massless coordinates have infinite frequencies: 1/omega^2 of K^-1 M.
-  const Eigen::EigenSolver<MatrixXd> inverse(k.partialPivLu().solve(m), false);
-  return 1 / std::sqrt(inverse.eigenvalues().real().maxCoeff());
+  const Eigen::VectorXcd inverse = experiments::eigenvalues(experiments::solution(k, m));
+  return 1 / std::sqrt(inverse.real().maxCoeff());
 }
 
 struct Accuracy {
@@ -143,7 +141,7 @@ TEST_P(ClampedStrands, SagAsABeamBetweenClamps) {
   const MatrixXd z = free_motions(*system, q);
   const MatrixXd k = z.transpose() * matrix_of(*system, q, lambda, {0, 0, 1}) * z;
   const VectorXd load = z.transpose() * Eigen::Map<const VectorXd>(r.data(), z.rows());
-  const VectorXd moved = z * k.partialPivLu().solve(-load);
+  const VectorXd moved = z * experiments::solution(k, -load);
   MaterialPoints& points = *system->material_points();
   std::vector<double> u(3 * std::size_t(points.count()));
   points.velocities(0, q, In(moved.data(), q.size()), u);
@@ -251,8 +249,7 @@ TEST(TwistedStrands, BuckleUnderTheMomentOfGreenhill) {
       if (model != "der") lambda[2] = moment * bending / length;
       const MatrixXd z = free_motions(held, q);
       const MatrixXd k = z.transpose() * matrix_of(held, q, lambda, {0, 0, 1}) * z;
-      return Eigen::SelfAdjointEigenSolver<MatrixXd>((k + k.transpose()) / 2)
-          .eigenvalues()[0];
+      return experiments::symmetric_eigenvalues((k + k.transpose()) / 2)[0];
     };
     double low = 7, high = 11;
     ASSERT_GT(least(low), 0) << model;
