@@ -129,8 +129,8 @@ COMMAND = Command(
     "after -- go to ctest.",
     _run,
     example="./tress test -- -R contracts",
-    time="about 20 minutes on two cores after the build; --fuzz seven minutes, --corpus "
-         "7000 short runs, --advice 20 minutes and more, --mutants half an hour and more.",
+    time="about 10 minutes on two cores after the build, 20 with --all; --fuzz seven minutes, "
+         "--corpus 7000 short runs, --advice 20 minutes and more, --mutants half an hour and more.",
     options=(
         ("--sanitize", "build with sanitizers (preset debug)"),
         ("--all", "in addition the tests of label `long`, which repeat the others on more models, "

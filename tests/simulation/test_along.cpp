@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "experiments/numerics/dense_algebra.h"
 #include "models/catalogue.h"
 #include "simulation/head/no_head.h"
 #include "simulation/scene/scene.h"
@@ -103,9 +104,7 @@ double ritz(const Varied& v) {
       });
     }
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> solver(k,
-                                                                                     m);
-  return std::sqrt(solver.eigenvalues()[0]);
+  return std::sqrt(experiments::symmetric_eigenpairs(k, m).values[0]);
 }
 
 /// The sag of the tip (m) under a weight of acceleration g, straight beam theory.

@@ -2,13 +2,14 @@
 // Beck's column through a scene.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <string>
 
 #include "contract/input_error.h"
+#include "experiments/numerics/dense_algebra.h"
 #include "models/effects/point_force.h"
 #include "simulation/run/world.h"
 #include "tests/models/effects/cloud.h"
@@ -140,7 +141,7 @@ bool flutters(const std::string& model, int elements, double load_over) {
     EXPECT_EQ(system->solve(force, x), Status::ok);
     rates.col(k) = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
   }
-  const Eigen::VectorXcd all = Eigen::EigenSolver<Eigen::MatrixXd>(rates).eigenvalues();
+  const Eigen::VectorXcd all = experiments::eigenvalues(rates);
   double largest = 0;
   for (const auto& one : all) largest = std::max(largest, std::abs(one));
   return std::ranges::any_of(all, [&](const auto& one) {
