@@ -1,7 +1,7 @@
 """Errors and cost of gradients of runs."""
 import numpy as np
 
-from .tables import groups, known, records
+from .tables import first, groups, known, records
 from .words import must, number, percent, span, table
 
 _COARSE = 10  # elements of the runs in time
@@ -224,3 +224,35 @@ def contact_verdict(tables):
     return (f"The gradient through regularised contact is exact for its run. But in a finer run, contacts open and close at other steps. "
             f"With {rows['steps'].iloc[0]} steps and methods of higher order, its relative error is {span(ratio, lambda x: number(x, 2))} times "
             f"that of the tip. The error depends irregularly on the step: compare runs with different steps.{_exact(rows)}")
+
+
+_FITTED = {"modulus_error_rel": "Young's modulus", "friction_error_rel": "internal friction", "drag_error_rel": "drag",
+           "curvature_error_rel": "natural curvature"}
+
+
+def _fits(tables):
+    return _measured(tables, {"part": "fit"})
+
+
+def fit_model(tables):
+    return ", ".join(f"`{model}`" for model in _fits(tables)["model"].unique())
+
+
+def fit_by_backward_euler(tables):
+    """Returns how far the values that backward Euler fits are off, and how well its tip fits."""
+    rows = _fits(tables)
+    row = first(rows[(rows["integrator"] == "backward_euler") & (rows["steps"] == 2 * _OTHER_STEPS)])
+    worst = max(_FITTED, key=lambda column: row[column])
+    return (f"With `backward_euler` and {row['steps']} steps, the fitted {_FITTED[worst]} is {percent(row[worst])} off, although the tip of the "
+            f"fitted run is within {percent(row['tip_error_rel'])} of the length of the record")
+
+
+def fits(tables):
+    """Largest error of the four fitted values: a row for each method, a column for each number of steps."""
+    rows = _fits(tables)
+    steps = sorted(rows["steps"].unique())
+    lines = []
+    for method, members in groups(rows, "integrator"):
+        cells = {row["steps"]: f"{percent(row['tip_error_rel'])}, {percent(row['gradient_error_rel'])}" for row in records(members)}
+        lines.append([f"`{method}`", *(cells.get(one, "") for one in steps)])
+    return table(["method", *(f"{one} steps" for one in steps)], lines)
