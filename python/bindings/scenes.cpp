@@ -203,8 +203,8 @@ OwnedSystem system_of(const ScenePtr& scene, std::size_t strand) {
   std::unique_ptr<System> system = scene->model->on_strand(
       scene->strands[strand], scene->model_options, make_effects(*scene));
   const SceneSupports supports(*scene);
+  system = supports.on(std::move(system), scene->strands[strand], strand);
   if (supports.hold(strand)) {
-    system = supports.on(std::move(system), scene->strands[strand], strand);
     static_cast<void>(begin_on_supports(*system, supports.place(strand)));
   }
   return {std::move(system), scene};

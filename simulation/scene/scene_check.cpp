@@ -107,9 +107,10 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
     able += (able.empty() ? "" : ", ") + std::string(other.id);
   }
   throw InputError(
-      fmt::format("{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
-                  SceneSupports(scene).any() ? " with [supports]" : "",
-                  name(options.formulation), reason),
+      fmt::format(
+          "{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
+          SceneSupports(scene).any() ? " with " + SceneSupports(scene).table_name() : "",
+          name(options.formulation), reason),
       places.integrator,
       able.empty() ? "give another formulation: ./tress list shows what can drive what"
                    : "use one of: " + able);
@@ -197,7 +198,7 @@ void check(const Scene& scene, const ScenePlaces& places) {
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {
     const std::string& place = places.strands[i];
     const std::size_t number = places.numbers[i];
-    const bool held = supports.hold(number);
+    const bool held = supports.change(number);
     // Of the same groom.
     if (before != nullptr && *before == place && !held) continue;
     Effects effects = effects_of(scene, places);

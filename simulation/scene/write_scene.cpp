@@ -145,6 +145,13 @@ void add_strands(std::string& text, const StrandTables& tables) {
     add_header(text, "[[supports]]");
     add_given(text, support);
   }
+  for (const auto& [id, all] : {std::pair{"point_moment", &tables.driven.moments},
+                                std::pair{"natural_shape", &tables.driven.shapes}}) {
+    for (const Table& one : *all) {
+      add_header(text, fmt::format("[[effects.{}]]", id));
+      add_given(text, one);
+    }
+  }
   if (!tables.gradient) return;
   add_header(text, "[gradient]");
   add_given(text, *tables.gradient);
