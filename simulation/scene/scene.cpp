@@ -272,10 +272,22 @@ class Reader {
     for (const bool between : {false, true}) {
       for (const auto& [key, node] : *all) {
         if (is_driven(key.str())) continue;
+        refuse_misspelt(key.str(), place_of(key.source(), file_));
         const EffectEntry& entry = find_effect(key.str(), place_of(key.source(), file_));
         if ((entry.make == nullptr) == between) read_effect(entry, node);
       }
     }
+  }
+
+  /// Refuses a name that is no effect, but nearly that of a table of driven_kinds().
+  static void refuse_misspelt(std::string_view name, const std::string& place) {
+    if (std::ranges::count(models::effects(), name, &EffectEntry::id) > 0) return;
+    std::vector<std::string_view> ids;
+    for (const DrivenKind& kind : driven_kinds()) ids.push_back(kind.id);
+    for (const EffectEntry& entry : models::effects()) ids.push_back(entry.id);
+    const std::string_view near = nearest(name, ids);
+    refuse_if(is_driven(near), fmt::format("unknown effect '{}'", name), place,
+              fmt::format("did you mean '{}'?", near));
   }
 
   void read_effect(const EffectEntry& entry, const toml::node& node) {

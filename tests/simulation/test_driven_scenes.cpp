@@ -182,6 +182,10 @@ TEST(PointMoment, RefusesWhatCannotTurnTheStrand) {
   };
   const std::string helix = "id = \"super_helix\"", one = "moment_n_m = [0, 1e-9, 0]";
   EXPECT_EQ(why(helix, ""), "");  // of 0
+  Text misspelt;
+  misspelt.drive = "[[effects.point_momen]]\nmoment_n_m = [0, 1e-9, 0]\n";
+  EXPECT_NE(refusal([&] { scene_of(misspelt); }).find("did you mean 'point_moment'?"),
+            std::string::npos);
   EXPECT_NE(why(helix, one + "\nat = 0.33").find("give at = 0.35"), std::string::npos);
   EXPECT_NE(why(helix, one + "\nat = 0").find("clamped root"), std::string::npos);
   EXPECT_NE(why(helix, one + "\nfactor_over_time = [[1, 1], [1, 2]]")
