@@ -13,8 +13,8 @@ namespace tress::models {
 std::span<const Parameter> ring_parameters();
 
 /// An elastic ring of no width through which the strand slides without friction. X(t) is
-/// the place of the ring. x(s) is the strand between its points, a polynomial through four
-/// points. s* is the arc length of the place that is closest to the ring. With
+/// the place of the ring. x(s) is the strand between its points, a polynomial through
+/// four points. s* is the arc length of the place that is closest to the ring. With
 ///
 ///     d = x(s*) - X,   f = -k d - c P (u - X'),   E = k |d|^2/2,
 ///
