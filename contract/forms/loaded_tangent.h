@@ -7,14 +7,16 @@
 
 namespace tress {
 
-/// A force that keeps its direction, and a moment, on the section at a point of a strand;
-/// world components.
+/// A force and a moment on the section at a point of a strand, world components. The
+/// force does not change with the rotation of the section.
 struct SectionLoad {
-  int point = 0;              // of MaterialPoints
-  Vec force;                  // N
-  Vec moment;                 // N m, about the point
-  Matrix3<double> by_turn{};  // derivative of the moment by a rotation, N m
-  Matrix3<double> by_spin{};  // derivative of the moment by the angular velocity, N m s
+  int point = 0;               // of MaterialPoints
+  Vec force;                   // N
+  Vec moment;                  // N m, about the point
+  Matrix3<double> by_turn{};   // derivative of the moment by a rotation, N m
+  Matrix3<double> by_spin{};   // derivative of the moment by the angular velocity, N m s
+  Matrix3<double> by_place{};  // derivative of the force by the position, N/m
+  Matrix3<double> by_velocity{};  // derivative of the force by the velocity, N s/m
 };
 
 /// S(w) of a strand under additional loads on its points, an optional capability.

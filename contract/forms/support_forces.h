@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "contract/system.h"
+#include "math/vec3.h"
 
 namespace tress {
 
@@ -20,6 +21,10 @@ class SupportForces {
   /// Writes the places (m), the velocities (m/s) and the angular velocities (rad/s) of
   /// the supports, (3 supports) each.
   virtual void support_motion(double t, Out x, Out u, Out omega) const = 0;
+  /// Computes the power (W) of moments on sections and of natural strains that move. The
+  /// moments are seen from a frame that turns with the angular velocity `turning`
+  /// (rad/s).
+  virtual double driven_power(double t, In q, In v, const Vec& turning) = 0;
 };
 
 /// Returns the support forces of a system; null if it has no supports.

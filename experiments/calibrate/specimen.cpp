@@ -74,9 +74,10 @@ Specimen specimen(const Scene& scene) {
     throw InputError("the strand has joints: its tip does not swing about a root", where,
                      "leave out [joints]");
   }
-  if (simulation::SceneSupports(scene).any()) {
-    throw InputError("the strand has supports: its tip does not swing about a root",
-                     where, "leave out [supports]");
+  if (const simulation::SceneSupports supports(scene); supports.any()) {
+    throw InputError(
+        supports.table_name() + ": the tip does not swing freely about a root", where,
+        "leave out " + supports.table_name());
   }
   const Strand& strand = scene.strands.front();
   if (strand.free_root) {

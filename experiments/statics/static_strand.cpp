@@ -123,7 +123,7 @@ std::unique_ptr<SupportedSystem> StaticStrand::make(double value) const {
             "exact contact has jumps of forces, which a path cannot follow",
             "scene " + scene.name, "give friction_law = \"regularised\"");
   const SceneSupports supports(scene);
-  if (!supports.hold(number_)) {
+  if (!supports.change(number_)) {
     return std::make_unique<SupportedSystem>(std::move(strand),
                                              std::vector<models::Support>{});
   }

@@ -9,6 +9,8 @@
 #include "models/effects/control_mesh.h"
 #include "models/effects/gravity.h"
 #include "models/effects/linear_drag.h"
+#include "models/effects/loads/distributed_load.h"
+#include "models/effects/loads/ring.h"
 #include "models/effects/point_force.h"
 #include "models/effects/self_contact.h"
 #include "models/effects/strand_friction.h"
@@ -31,6 +33,8 @@ std::vector<EffectEntry> built_in_effects() {
       EffectEntry{"quadratic_drag", "drag of still air in the square of the speed, across and along the strand", "Ablow & Schechter 1983; White, Viscous Fluid Flow", quadratic_drag_parameters(), make_quadratic_drag},
       EffectEntry{"wind", "load of moving air: steady, sine or gusts", "Ablow & Schechter 1983; Bridson et al. 2007; Kraichnan 1970", wind_parameters(), make_wind},
       EffectEntry{"point_force", "force on one place of a strand, dead or along its tangent, constant or over time", "Beck 1952 (follower force)", point_force_parameters(), make_point_force, true},
+      EffectEntry{"distributed_load", "force per length on a part of a strand, dead, along its tangent or across it, constant or over time", "Leipholz 1980 (follower load)", distributed_load_parameters(), make_distributed_load, true},
+      EffectEntry{"ring", "elastic ring through which a strand slides without friction", "Hooke", ring_parameters(), make_ring, true},
       EffectEntry{"tether", "spring, damper and pull of one point towards a moving place", "Hooke", tether_parameters(), make_tether, true},
       EffectEntry{"body", "contact with a rigid body, with friction", "Hunt & Crossley 1975; Li et al. 2020, eq. 15; Alart & Curnier 1991", body_parameters(), make_body, true, true},
       EffectEntry{"self_contact", "repulsion and drag between parts of a strand far apart along it", "law of Wang, thesis, NCTU, section 5.2", self_contact_parameters(), make_self_contact, false, true},

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "contract/parameters.h"
 #include "models/effects/effect.h"
+#include "models/motion/factor_over_time.h"
 #include "models/motion/root_motion.h"
 
 namespace tress::models {
@@ -17,17 +17,11 @@ std::span<const Parameter> point_force_parameters();
 ///
 ///     f = c (F + P t),   E = -c F.x,   power = dE/dt at fixed x + c P t.v
 ///
-/// F is a force in the world (N), P a force along the unit tangent t (N). A quantity at
-/// the place is sum_k w_k times that of up to four neighbouring points, by the polynomial
-/// through them. Point k bears w_k f, so that the work is the same. At the tip this is
-/// exact for nodes, cubic splines and rigid links, and of fourth order in the element for
-/// helices and clothoids. O(points).
+/// F is a force in the world (N), P a force along the unit tangent t (N). With the shares
+/// w_k of PlaceShares, point k bears w_k f, so that the work is the same. O(points).
 class PointForce final : public Effect {
  public:
-  /// Factor at a time (s), linear between rows and constant beyond them.
-  struct Row {
-    double time, factor;  // s, and the factor there
-  };
+  using Row = FactorOverTime::Row;  // factor at a time
   /// Parameters of the force.
   struct Settings {
     double at = 1;            // place along the strand, 0 root to 1 tip
@@ -42,7 +36,7 @@ class PointForce final : public Effect {
   std::string_view name() const override { return "point_force"; }
   Needs needs() const override {
     const bool follows = s_.follower != 0;
-    return {.position = !s_.rows.empty(),
+    return {.position = !factor_.constant(),
             .velocity = follows,
             .tangent = follows,
             .directions = follows};
@@ -54,21 +48,13 @@ class PointForce final : public Effect {
                                  InOut blocks) const noexcept override;
   double potential(double t, const Points& p) const noexcept override;
   double power(double t, const Points& p) const noexcept override;
-  double next_breakpoint(double t) const noexcept override;
+  double next_breakpoint(double t) const noexcept override {
+    return factor_.next_breakpoint(t);
+  }
 
  private:
-  /// Shares w_k of the place's neighbours: points from `first` on.
-  struct Shares {
-    std::size_t first = 0, count = 0;
-    std::array<double, 4> weight{};
-  };
-  Shares shares(const Points& p) const noexcept;
-  double factor(double t) const noexcept;
-  double factor_rate(double t) const noexcept;
-  /// Sum of w_k values_k, three numbers each.
-  static Vec mean(const Shares& of, In values) noexcept;
-
   Settings s_;
+  FactorOverTime factor_;
 };
 
 /// Makes the effect.

@@ -85,7 +85,7 @@ double JoinedSystem::power(double t, In q, In v) {
   for (std::size_t k = 0; k < strands(); ++k) {
     const In q_k = part(q, k), v_k = part(v, k);
     sum += held_[k]->strand().energetics()->power(t, q_k, v_k) +
-           held_[k]->joint_energy_rate(t, q_k, v_k);
+           held_[k]->added_energy_rate(t, q_k, v_k);
   }
   for (JointPair& joint : joints_) sum += joint.energy_rate(t, q, v);
   for (std::size_t i = 0; i < scratch_.size(); ++i) {

@@ -72,6 +72,8 @@ class JoinedSystem final : public StrandBlock,
   std::size_t supports() const override;
   Status support_forces(double t, In q, In v, Out forces, Out moments) override;
   void support_motion(double t, Out x, Out u, Out omega) const override;
+  /// Returns 0: nothing drives joined strands.
+  double driven_power(double, In, In, const Vec&) override { return 0; }
   std::size_t joints() const override { return joints_.size(); }
   Status joint_forces(double t, In q, In v, Out forces, Out moments) override;
 

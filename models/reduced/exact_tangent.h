@@ -117,20 +117,34 @@ class ExactTangent {
   /// Adds the derivatives of a load on a point with this motion to those of the wrench at
   /// the point by its state (SegmentTangent::tip). Expects the load to be part of
   /// at_tip() and at_root() (InverseDynamics::hang). A force f that keeps its direction
-  /// changes its components by f x phi, a moment likewise.
+  /// changes its components by f x phi, a moment likewise. A rotation phi at a fixed
+  /// state v of the velocity changes the velocity by phi x v.
   static void load(const SectionLoad& load, const FrameMotion& m,
                    Eigen::Matrix<double, Shape::wrench, Shape::states>& tip) {
     const Frame& f = m.frame;
     const Vec force = f.back(load.force), moment = f.back(load.moment);
+    for (int c = 0; c < t; ++c) {
+      const Vec e = Frames::axis(S::translation[c]);
+      Vec by_place = load.by_place * (f * e);
+      if constexpr (modes == 1) {
+        // Velocity across the plane is not among the states (points()).
+        const Vec across{0, cross(m.omega, e).y, 0};
+        by_place = by_place + load.by_velocity * (f * across);
+      }
+      subtract_wrench(f.back(by_place), {}, c, tip);
+      subtract_wrench(f.back(load.by_velocity * (f * e)), {}, size + c, tip);
+    }
     for (int c = 0; c < S::rotations; ++c) {
       const Vec e = Frames::axis(S::rotation[c]), turn = f * e;
+      const Vec by_swing = f.back(load.by_velocity * (f * cross(e, m.v)));
       Vec by_turn = load.by_turn * turn;
       // In the plane, omega turns with the frame: its variation in the world is the
       // state.
       if constexpr (modes > 1) {
         by_turn = by_turn - load.by_spin * (f * cross(m.omega, e));
       }
-      subtract_wrench(cross(force, e), f.back(by_turn) + cross(moment, e), t + c, tip);
+      subtract_wrench(cross(force, e) + by_swing, f.back(by_turn) + cross(moment, e),
+                      t + c, tip);
       subtract_wrench({}, f.back(load.by_spin * turn), size + t + c, tip);
     }
   }

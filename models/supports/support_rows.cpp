@@ -67,7 +67,7 @@ SupportRows::SupportRows(System& strand, std::vector<Support> supports)
     HeldSection section(strand, support.point, support.path,
                         support.section == HeldPart::frame, support.hinge,
                         strand.sparse_form(), name_of(i));
-    if (section.half_edge()) continue;
+    if (section.half_edge() || support.turn_sprung()) continue;
     for (std::size_t k = 0; k < section.components().size(); ++k) {
       add_row(section.coordinates(), true);
     }
@@ -107,6 +107,7 @@ void SupportRows::add_place(const Support& support, std::size_t i, In q, Out col
                             std::ranges::all_of(column, [](double x) { return x == 0; })),
         "a support of the clamped root", name_of(i),
         "leave it out, or give [root] motion = \"free\"");
+    if (support.sprung()) continue;
     std::vector<int> coordinates;
     for (const auto& entry : entries) coordinates.push_back(entry.first);
     add_row(coordinates, false);
@@ -130,10 +131,10 @@ void SupportRows::fill(const Read& place, const Turn& turn, Out rows) {
   for (std::size_t i = 0; i < supports_.size(); ++i) {
     std::size_t row = held_[i].first;
     const Support& support = supports_[i];
-    if (!support.axes.empty()) {
+    if (!support.rigid_axes().empty()) {
       const Vec d =
           place(load3(&x_[3 * static_cast<std::size_t>(support.point)]), support.path);
-      for (const Vec& axis : support.axes) rows[row++] = dot(axis, d);
+      for (const Vec& axis : support.rigid_axes()) rows[row++] = dot(axis, d);
     }
     if (!held_[i].section) continue;
     const Vec c = turn(*held_[i].section);
@@ -161,7 +162,7 @@ void SupportRows::add_gradient(double t, In q, double factor, InOut entries) {
   };
   for (std::size_t i = 0; i < supports_.size(); ++i) {
     std::size_t row = held_[i].first;
-    for (const Vec& axis : supports_[i].axes) {
+    for (const Vec& axis : supports_[i].rigid_axes()) {
       if (!linear_) pull(t, q, supports_[i], factor * axis, part(row));
       ++row;
     }
@@ -255,14 +256,14 @@ void SupportRows::multiplied(double t, In q, In lambda, InOut sum) {
 Vec SupportRows::force(std::size_t i, In lambda) const {
   Vec sum;
   std::size_t row = held_[i].first;
-  for (const Vec& axis : supports_[i].axes) sum = sum + lambda[row++] * axis;
+  for (const Vec& axis : supports_[i].rigid_axes()) sum = sum + lambda[row++] * axis;
   return sum;
 }
 
 /// Multipliers of the rotation of support i, in the components of its wall.
 Vec SupportRows::stress(std::size_t i, In lambda) const {
   double all[3] = {};
-  std::size_t row = held_[i].first + supports_[i].axes.size();
+  std::size_t row = held_[i].first + supports_[i].rigid_axes().size();
   for (const int k : held_[i].section->components()) all[k] = lambda[row++];
   return load3(all);
 }

@@ -9,31 +9,10 @@
 #include "contract/forms/material_points.h"
 #include "contract/forms/point_accelerations.h"
 #include "contract/system.h"
-#include "models/motion/root_motion.h"
-#include "models/strand/rod_joint.h"
 #include "models/supports/held_section.h"
+#include "models/supports/support.h"
 
 namespace tress::models {
-
-/// Part of a section's rotation that a support holds, if the model determines it.
-enum class HeldPart {
-  nothing,  // no part
-  tangent,  // direction of the strand
-  frame     // direction and twist
-};
-
-/// A support of a material point of a strand by a path in space.
-struct Support {
-  int point = 0;    // of MaterialPoints
-  RootMotion path;  // place of the support over time, and its frame
-  /// Directions in which the point is held, orthonormal; none: its place is free.
-  std::vector<Vec> axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  HeldPart section = HeldPart::nothing;  // held by the path's frame
-  /// Axis of a hinge, in the components of the path's frame and across its e0: the held
-  /// part turns freely about it. 0: no hinge.
-  Vec hinge{};
-  RodJoint half_edge{};  // joint of half an edge to the path's frame (HalfJoint)
-};
 
 /// Constraints of supports, after those that the strand has of its own:
 ///
@@ -42,7 +21,8 @@ struct Support {
 ///
 /// a row for each support and each of its axes e, with x_i the material point and p the
 /// path. Then follows a row for each held component of the rotation c of the section
-/// (SectionGap), unless a half edge lies before it (HalfJoint). Points that are means of
+/// (SectionGap), unless a half edge lies before it (HalfJoint). Springs of compliant
+/// supports take the place of rows (AddedForces). Points that are means of
 /// coordinates (MaterialPoints::mean) have a constant G. Other points take G from
 /// pull_back() and g'' - G a from PointAccelerations. Rotations take both from Sections.
 ///
@@ -65,7 +45,8 @@ class SupportRows final : public ConstraintForm {
   double length() const { return length_; }
   /// Returns true if a constraint is a rotation (rad), not a place (m).
   bool turns(int row) const { return turns_[static_cast<std::size_t>(row)]; }
-  /// Returns the force and the moment of support i on the strand, for all multipliers.
+  /// Returns the force and the moment of support i on the strand, for all multipliers;
+  /// without those of springs and joints.
   SectionLoad load(double t, In q, In lambda, std::size_t i);
 
   const Pattern& pattern() const override { return pattern_; }

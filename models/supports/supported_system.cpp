@@ -13,25 +13,22 @@
 namespace tress::models {
 
 SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
-                                 std::vector<Support> supports)
+                                 std::vector<Support> supports, StrandDrives drives)
     : strand_(std::move(strand)),
       rows_(*strand_, std::move(supports)),
-      loaded_(strand_->sparse_form() == nullptr ? loaded_tangent(*strand_) : nullptr) {
+      loaded_(strand_->sparse_form() == nullptr ? loaded_tangent(*strand_) : nullptr),
+      forces_(*strand_, rows_.supports(), std::move(drives.moments)),
+      drives_{{}, std::move(drives.natural)},
+      strains_(natural_strains(*strand_)) {
   refuse_if(strand_->contact_form() != nullptr,
-            "supports of a strand with exact contact: the response of contacts to their "
-            "forces leaves supports out",
-            "support 0", "use law = \"regularised\" for bodies");
-  for (std::size_t i = 0; i < this->supports(); ++i) {
-    const Support& support = rows_.supports()[i];
-    if (support.section == HeldPart::nothing) continue;
-    HeldSection section(*strand_, support.point, support.path,
-                        support.section == HeldPart::frame, support.hinge,
-                        strand_->sparse_form(), "support " + std::to_string(i));
-    if (section.half_edge()) {
-      joints_.emplace_back(i, HalfJoint(std::move(section), support.half_edge));
-    }
-  }
-  if (!joints_.empty() && loaded_ == nullptr) {
+            "supports or moments of a strand with exact contact: the response of "
+            "contacts to their forces leaves these out",
+            rows_.supports().empty() ? "moment 0" : "support 0",
+            "use law = \"regularised\" for bodies");
+  refuse_if(drives_.natural.any() && strains_ == nullptr,
+            "the model lacks a natural strain for each direction in which it bends",
+            "natural shape", "use a model such as \"super_helix\" or \"der\"");
+  if (forces_.any() && loaded_ == nullptr) {
     of_strand();
     assembled_.emplace(static_cast<SparseForm&>(*this));
   }
@@ -75,29 +72,38 @@ double SupportedSystem::next_breakpoint(double t) const {
   for (const Support& support : rows_.supports()) {
     next = std::min(next, support.path.next_breakpoint(t));
   }
-  return next;
+  next = std::min(next, forces_.next_breakpoint(t));
+  return drives_.natural.any() ? std::min(next, drives_.natural.next_breakpoint(t))
+                               : next;
 }
 
-void SupportedSystem::add_joint_forces(double t, In q, In v, InOut r) {
-  for (auto& [support, joint] : joints_) joint.add_force(t, q, v, r);
+ComplianceForm* SupportedSystem::compliance_form() {
+  if (rows_.rows() > 0 || !SupportedCompliance::available(*strand_, forces_))
+    return nullptr;
+  if (!compliant_) compliant_.emplace(*strand_, forces_, drives_.natural);
+  return &*compliant_;
 }
 
 Status SupportedSystem::residual(double t, In q, In v, In a, Out r) noexcept {
+  prepare(t);
   const Status s = strand_->residual(t, q, v, a, r);
-  if (s == Status::ok) add_joint_forces(t, q, v, r);
+  if (s == Status::ok) forces_.add_to_residual(t, q, v, r);
   return s;
 }
 
 Status SupportedSystem::factor(double t, In q, In v, In a, In lambda, Weights w,
                                In springs, std::span<const SectionLoad> loads) noexcept {
-  if (assembled_) return assembled_->linearize(t, q, v, a, w);
+  prepare(t);
+  const bool mass_alone = w.vel == 0 && w.pos == 0;
+  in_assembled_ = assembled_ && !mass_alone;
+  if (in_assembled_) return assembled_->linearize(t, q, v, a, w);
   if (loaded_ == nullptr) return strand_->linearize(t, q, v, a, w);
   loads_.assign(loads.begin(), loads.end());
-  if (w.vel != 0 || w.pos != 0) {
+  if (!mass_alone) {
     for (std::size_t i = 0; i < supports() && !lambda.empty(); ++i) {
       loads_.push_back(rows_.load(t, q, lambda, i));
     }
-    for (auto& [support, joint] : joints_) loads_.push_back(joint.load(t, q, v));
+    forces_.append_loads(t, q, v, loads_);
   }
   return loaded_->linearize_loaded(t, q, v, a, w, loads_, springs);
 }
@@ -129,28 +135,17 @@ Status SupportedSystem::solve(In b, Out x) noexcept {
 
 Status SupportedSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
   if (dense_) disturbed_ = !last_.q.empty();
+  prepare(t);
   const Status status = of_strand().values(t, q, v, a, w, s);
-  if (status != Status::ok) return status;
-  for (auto& [support, joint] : joints_) joint.add_tangent(t, q, v, w, s);
-  return Status::ok;
+  if (status == Status::ok) forces_.add_tangent(t, q, v, w, s);
+  return status;
 }
 
 Energy SupportedSystem::energy(double t, In q, In v) {
+  prepare(t);
   Energy sum = strand_->energetics()->energy(t, q, v);
-  for (auto& [support, joint] : joints_) sum.potential += joint.energy(t, q);
+  sum.potential += forces_.energy(t, q);
   return sum;
-}
-
-void SupportedSystem::joint_rotations(double t, In q, Out c) {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    store3(joints_[j].second.rotation(t, q), &c[3 * j]);
-  }
-}
-
-void SupportedSystem::lead_joints(In by) {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    joints_[j].second.lead(load3(&by[3 * j]));
-  }
 }
 
 /// Row k of G times x.
@@ -231,15 +226,7 @@ void SupportedSystem::loads_of(double t, In q, In v, In lambda, Out forces, Out 
     store3(load.force, &forces[3 * i]);
     store3(load.moment, &moments[3 * i]);
   }
-  for (auto& [support, joint] : joints_) {
-    store3(joint.load(t, q, v).moment, &moments[3 * support]);
-  }
-}
-
-double SupportedSystem::joint_energy_rate(double t, In q, In v) {
-  double sum = 0;
-  for (auto& [support, joint] : joints_) sum += joint.energy_rate(t, q, v);
-  return sum;
+  forces_.write_support_forces(t, q, v, forces, moments);
 }
 
 void SupportedSystem::support_motion(double t, Out x, Out u, Out omega) const {
@@ -251,19 +238,43 @@ void SupportedSystem::support_motion(double t, Out x, Out u, Out omega) const {
   }
 }
 
+/// Power of natural strains that move: the derivative of the elastic energy by time. A
+/// central difference of a quadratic function is exact.
+double SupportedSystem::power_of_natural(double t, In q, In v) {
+  if (!drives_.natural.any() || strand_->energetics() == nullptr) return 0;
+  prepare(t);
+  std::vector<double> values, change;
+  const double time = drives_.natural.slope(t, values, change);
+  if (time == 0) return 0;
+  const auto potential = [&](double part) {
+    std::vector<double> moved = values;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += part * change[i];
+    strains_->set_natural(moved);
+    return strand_->energetics()->energy(t, q, v).potential;
+  };
+  const double power = (potential(1) - potential(-1)) / (2 * time);
+  strains_->set_natural(values);
+  return power;
+}
+
+double SupportedSystem::driven_power(double t, In q, In v, const Vec& turning) {
+  return forces_.power_of_moments(t, q, v, turning) + power_of_natural(t, q, v);
+}
+
 double SupportedSystem::power(double t, In q, In v) {
-  double alone = strand_->energetics()->power(t, q, v);
+  prepare(t);
+  double alone = strand_->energetics()->power(t, q, v) + power_of_natural(t, q, v);
   if (hold(t, q, v) != Status::ok) return std::nan("");
   std::vector<double> lambda, own, change(q.size());
   multipliers(rows_.rows(), lambda);
-  // What joints change of the accelerations, and of the strand's own constraints.
-  if (!joints_.empty()) {
-    add_joint_forces(t, q, v, change);
+  // What added forces change of the accelerations, and of the strand's own constraints.
+  if (forces_.any()) {
+    forces_.add_to_residual(t, q, v, change);
     for (double& entry : change) entry = -entry;
     if (solve_factored(change, change) != Status::ok) return std::nan("");
     for (Eigen::Index k = 0; k < rows_.own(); ++k)
       needed_[k] += product(k, change.data());
-    alone += joint_energy_rate(t, q, v);
+    alone += forces_.energy_rate(t, q, v);
   }
   multipliers(rows_.own(), own);
   for (std::size_t k = 0; k < own.size(); ++k) lambda[k] -= own[k];

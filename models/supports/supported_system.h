@@ -10,42 +10,57 @@
 #include "contract/forms/energetics.h"
 #include "contract/forms/loaded_tangent.h"
 #include "contract/forms/moving_history.h"
+#include "contract/forms/stress_form.h"
 #include "contract/forms/support_forces.h"
+#include "models/supports/added_forces.h"
 #include "models/supports/assembled_solver.h"
 #include "models/supports/dense_tangent.h"
-#include "models/supports/half_joint.h"
+#include "models/supports/natural_motion.h"
 #include "models/supports/support_rows.h"
+#include "models/supports/supported_compliance.h"
 
 namespace tress::models {
 
-/// A strand whose points and sections are held by supports: the strand's own equations
-/// with the forces of HalfJoints and the constraints of SupportRows. Methods drive it in
-/// every formulation that they have for systems with constraints.
+/// Moments and natural strains over time that drive a strand.
+struct StrandDrives {
+  std::vector<PointMoment> moments{};  // moments on its sections
+  NaturalMotion natural{};             // natural strains over time
+};
+
+/// A strand whose points and sections are held by supports or loaded by moments: the
+/// strand's own equations with AddedForces and the constraints of SupportRows. Its
+/// natural strains may follow a NaturalMotion. Methods drive it in every formulation that
+/// they have for systems with constraints; without constraints, as they drive the strand.
 ///
-/// S is the strand's own, with the derivatives of the joints and of the constraints:
+/// S is the strand's own, with the derivatives of the added forces and the constraints:
 ///
 ///     strand                  matrix
 ///     has a SparseForm        its sparse matrix
-///     takes loads             LoadedTangent in O(n): forces of supports and joints are
-///                             loads. Methods that need entries get a DenseTangent
+///     takes loads             LoadedTangent in O(n): forces of supports and added
+///                             forces are loads. Methods that need entries get a
+///                             DenseTangent
 ///     any other               a DenseTangent
 ///
 /// The power of supports belongs to Energetics::power. At a state, let a and a' be the
-/// accelerations with and without supports, and U the energy of the joints. Kinetic
-/// energy is quadratic in v, so
+/// accelerations with and without supports and added forces. U is the energy of joints
+/// and springs. E_t is the derivative of the elastic energy by time at fixed coordinates,
+/// where natural strains move. Kinetic energy is quadratic in v, so
 ///
-///     power = (power of the strand alone) + dT/dv . (a - a') + dU/dt,
+///     power = (power of the strand alone) + dT/dv . (a - a') + dU/dt + E_t,
 ///
 /// which has the work of the supports and the change of the work of a moving root.
 class SupportedSystem final : public System,
                               public SupportForces,
                               public BorderedForm,
                               private SparseForm,
+                              private StressForm,
                               private Energetics,
                               private MovingHistory {
  public:
-  /// Throws InputError naming the support if the strand cannot be held so.
-  SupportedSystem(std::unique_ptr<System> strand, std::vector<Support> supports);
+  /// Throws InputError naming the support, or the moment, if the strand cannot be held
+  /// or loaded so.
+  SupportedSystem(std::unique_ptr<System> strand, std::vector<Support> supports,
+                  StrandDrives drives = {});
 
   /// The state from which runs begin, and what the strand remembers of its way there.
   /// Without it: that of the strand.
@@ -82,10 +97,13 @@ class SupportedSystem final : public System,
   }
   SparseForm* sparse_form() override {
     SparseForm& own = of_strand();
-    return joints_.empty() ? &own : this;
+    return changed() ? this : &own;
   }
   ConstraintForm* constraint_form() override { return &rows_; }
-  StressForm* stress_form() override { return strand_->stress_form(); }
+  ComplianceForm* compliance_form() override;
+  StressForm* stress_form() override {
+    return strand_->stress_form() == nullptr ? nullptr : this;
+  }
   Energetics* energetics() override {
     return strand_->energetics() == nullptr ? nullptr : this;
   }
@@ -98,16 +116,17 @@ class SupportedSystem final : public System,
   /// Computes the forces and moments of support_forces() for these multipliers of all
   /// constraints.
   void loads_of(double t, In q, In v, In lambda, Out forces, Out moments);
-  /// Returns the rate of the elastic energy of the half joints, W.
-  double joint_energy_rate(double t, In q, In v);
+  /// Returns the rate of the elastic energy of half joints and springs, W.
+  double added_energy_rate(double t, In q, In v) { return forces_.energy_rate(t, q, v); }
+  double driven_power(double t, In q, In v, const Vec& turning) override;
 
   // For searches that lead the strand onto its supports.
   /// Writes the rotations (rad) of the half joints from their walls, (3 joints).
-  void joint_rotations(double t, In q, Out c);
+  void joint_rotations(double t, In q, Out c) { forces_.joint_rotations(t, q, c); }
   /// Returns the number of half joints.
-  std::size_t joints() const { return joints_.size(); }
+  std::size_t joints() const { return forces_.joints(); }
   /// Moves the rest values of the half joints, (3 joints) rad; 0 at first.
-  void lead_joints(In by);
+  void lead_joints(In by) { forces_.lead_joints(by); }
 
  private:
   /// Arguments of the last linearize_with_springs().
@@ -140,12 +159,23 @@ class SupportedSystem final : public System,
   }
   std::string not_smooth() const override { return tress::not_smooth(*strand_); }
 
+  void take_stresses(double t, In q, Stresses stresses) noexcept override {
+    prepare(t);
+    strand_->stress_form()->take_stresses(t, q, stresses);
+  }
+
+  /// Whether the matrix or the residual is not the strand's own.
+  bool changed() const { return forces_.any() || drives_.natural.any(); }
+  /// Sets the natural strains of time t.
+  void prepare(double t) {
+    if (drives_.natural.any()) drives_.natural.set(*strains_, t);
+  }
+  double power_of_natural(double t, In q, In v);
   Status factor(double t, In q, In v, In a, In lambda, Weights w, In springs,
                 std::span<const SectionLoad> loads) noexcept;
   Status solve_factored(In b, Out x) noexcept {
-    return assembled_ ? assembled_->solve(b, x) : strand_->solve(b, x);
+    return in_assembled_ ? assembled_->solve(b, x) : strand_->solve(b, x);
   }
-  void add_joint_forces(double t, In q, In v, InOut r);
   double product(Eigen::Index row, const double* x) const;
   Status hold(double t, In q, In v);
   void multipliers(int rows, std::vector<double>& lambda) const;
@@ -154,8 +184,12 @@ class SupportedSystem final : public System,
   SupportRows rows_;
   LoadedTangent* loaded_;              // null: the strand takes no loads
   std::optional<DenseTangent> dense_;  // made when of_strand() is needed
-  std::vector<std::pair<std::size_t, HalfJoint>> joints_;  // with their supports
-  std::optional<AssembledSolver> assembled_;  // if there are joints and no loads
+  AddedForces forces_;
+  StrandDrives drives_;  // the moments have moved to forces_
+  NaturalStrains* strains_;
+  std::optional<SupportedCompliance> compliant_;  // made by compliance_form()
+  std::optional<AssembledSolver> assembled_;  // of forces on a strand that takes no loads
+  bool in_assembled_ = false;                 // whether it has the last matrix
   std::vector<SectionLoad> loads_;            // scratch of factor()
   Linearized last_;
   bool disturbed_ = false;  // hold() has factored another matrix since

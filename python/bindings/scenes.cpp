@@ -207,8 +207,8 @@ OwnedSystem system_of(const ScenePtr& scene, std::size_t strand) {
             "a strand with joints is no system of its own", scene->name,
             "run the scene, or leave out [joints]");
   const SceneSupports supports(*scene);
+  system = supports.on(std::move(system), scene->strands[strand], strand);
   if (supports.hold(strand)) {
-    system = supports.on(std::move(system), scene->strands[strand], strand);
     static_cast<void>(begin_on_supports(*system, supports.place(strand)));
   }
   return {std::move(system), scene};

@@ -58,12 +58,19 @@ void check_derivatives(const Scene& scene) {
             "no gradient with rest = \"inverse\", whose natural strains follow from the "
             "parameters",
             place, "leave out rest = \"inverse\"");
-  refuse_if(SceneSupports(scene).any(),
-            "no gradient of strands on [supports], whose start depends on the parameters",
-            place, "leave out [supports]");
   refuse_if(SceneJoints(scene).any(),
             "no gradient of strands with [joints]: each strand is differentiated alone",
             place, "leave out [joints]");
+  if (const SceneSupports supports(scene); supports.any()) {
+    throw InputError(
+        supports.drive()
+            ? fmt::format("no gradient of strands with {}: its forces are not "
+                          "differentiated",
+                          supports.table_name())
+            : "no gradient of strands on [supports], whose start depends on "
+              "the parameters",
+        place, "leave out " + supports.table_name());
+  }
   const auto system = exact_system_of(scene, 0);
   const auto no = integrators::no_gradient(scene.integrator, *system, scene.options);
   if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);

@@ -270,7 +270,9 @@ std::optional<HeadMethod> head_method(const Scene& scene) {
 }
 
 std::optional<NoHead> no_lanes(const Scene& scene, models::HeadNumber number) {
-  if (SceneSupports(scene).any()) return NoHead{"[supports]", "leave out [supports]"};
+  if (const SceneSupports supports(scene); supports.any()) {
+    return NoHead{supports.table_name(), "leave out " + supports.table_name()};
+  }
   if (auto no = no_model(scene)) return no;
   if (auto no = no_method(scene)) return no;
   if (auto no = no_number(scene, number)) return no;

@@ -296,6 +296,11 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
 
 void SceneJoints::check(const Scene& scene) const {
   if (!any()) return;
+  if (tables_->driven.any()) {
+    const std::string drive = tables_->driven.first().name();
+    throw InputError("joints next to " + drive + ", whose work is not counted there",
+                     place(), "leave out " + drive + ", or the joints");
+  }
   refuse_if(scene.rest == RestStrains::inverse,
             "joints with rest = \"inverse\", which balances strands without their forces",
             place(), "leave out rest, or the joints");

@@ -119,18 +119,20 @@ EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double 
   return now;
 }
 
-/// Power of the supports in the clamp's frame, in which those at rest in space move.
+/// Power of supports and moments in the clamp's frame, in which supports at rest in space
+/// move, and of natural strains that move.
 double Guard::power_of(SupportForces& supports, double t, In q, In v) {
   const std::size_t numbers = 3 * supports.supports();
   std::vector<double> forces(numbers), moments(numbers), x(numbers), u(numbers),
       omega(numbers);
   if (supports.support_forces(t, q, v, forces, moments) != Status::ok) return 0;
   supports.support_motion(t, x, u, omega);
-  double power = 0;
+  const auto& clamp = strands_.front().root;
+  double power = supports.driven_power(t, q, v, clamp ? clamp->at(t).omega : Vec{});
   for (std::size_t i = 0; i < numbers; i += 3) {
     Vec velocity = load3(&u[i]), turning = load3(&omega[i]);
-    if (const auto& root = strands_.front().root) {
-      const RootPose pose = root->at(t);
+    if (clamp) {
+      const RootPose pose = clamp->at(t);
       velocity = velocity - pose.v - cross(pose.omega, load3(&x[i]) - pose.x);
       turning = turning - pose.omega;
     }

@@ -59,8 +59,8 @@ SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) c
   SteppedSystem made(metered(strand, meters));
   made.meters = std::move(meters);
   hold(*made.system, {&strand, 1});
+  made.system = supports_.on(std::move(made.system), strand.strand, number);
   if (supports_.hold(number)) {
-    made.system = supports_.on(std::move(made.system), strand.strand, number);
     made.supported = begin_on_supports(*made.system, supports_.place(number));
   }
   add_guard(made, {&strand, 1}, number);

@@ -79,19 +79,9 @@ class Reader {
     return read_table(*given, declared, "[" + name + "]", file_);
   }
 
-  /// [name] as one, [[name]] as all of them.
   std::vector<const toml::table*> each(const toml::node& node, const std::string& name,
                                        bool many) const {
-    const toml::array* list = node.as_array();
-    if (list == nullptr) return {&as_table(node, name, file_)};
-    const std::string place = place_of(node.source(), file_);
-    if (!many) {
-      throw InputError(fmt::format("several [[{}]]", name), place,
-                       fmt::format("give one [{}]", name));
-    }
-    std::vector<const toml::table*> all;
-    for (const toml::node& one : *list) all.push_back(&as_table(one, name, file_));
-    return all;
+    return tables_of(node, name, many, file_);
   }
 
   void read_top() {
@@ -227,8 +217,11 @@ class Reader {
         tables.joints.push_back(read_joint(*one, file_));
       }
     }
+    if (const toml::table* all = table("effects")) {
+      tables.driven = read_driven(*all, file_);
+    }
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
-    if ((SceneSupports(scene_).any() || SceneJoints(scene_).any()) &&
+    if ((SceneSupports(scene_).constrain() || SceneJoints(scene_).any()) &&
         scene_.options.formulation == Formulation::parametric) {
       scene_.options.formulation = formulation_of_supports(scene_);
     }
@@ -284,10 +277,23 @@ class Reader {
     // The keys are in alphabetical order, in which tether and wind would follow it.
     for (const bool between : {false, true}) {
       for (const auto& [key, node] : *all) {
+        if (is_driven(key.str())) continue;
+        refuse_misspelt(key.str(), place_of(key.source(), file_));
         const EffectEntry& entry = find_effect(key.str(), place_of(key.source(), file_));
         if ((entry.make == nullptr) == between) read_effect(entry, node);
       }
     }
+  }
+
+  /// Refuses a name that is no effect, but nearly that of a table of driven_kinds().
+  static void refuse_misspelt(std::string_view name, const std::string& place) {
+    if (std::ranges::count(models::effects(), name, &EffectEntry::id) > 0) return;
+    std::vector<std::string_view> ids;
+    for (const DrivenKind& kind : driven_kinds()) ids.push_back(kind.id);
+    for (const EffectEntry& entry : models::effects()) ids.push_back(entry.id);
+    const std::string_view near = nearest(name, ids);
+    refuse_if(is_driven(near), fmt::format("unknown effect '{}'", name), place,
+              fmt::format("did you mean '{}'?", near));
   }
 
   void read_effect(const EffectEntry& entry, const toml::node& node) {

@@ -109,9 +109,10 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
   }
   throw InputError(
       fmt::format("{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
-                  SceneSupports(scene).any() ? " with [supports]"
-                  : SceneJoints(scene).any() ? " with [joints]"
-                                             : "",
+                  SceneSupports(scene).any()
+                      ? " with " + SceneSupports(scene).table_name()
+                  : SceneJoints(scene).any() ? std::string(" with [joints]")
+                                             : std::string(),
                   name(options.formulation), reason),
       places.integrator,
       able.empty() ? "give another formulation: ./tress list shows what can drive what"
@@ -224,7 +225,7 @@ void check(const Scene& scene, const ScenePlaces& places) {
   for (std::size_t i = 0; i < scene.strands.size(); ++i) {
     const std::string& place = places.strands[i];
     const std::size_t number = places.numbers[i];
-    const bool held = supports.hold(number);
+    const bool held = supports.change(number);
     // Of the same groom.
     if (before != nullptr && *before == place && !held) continue;
     Effects effects = effects_of(scene, places);

@@ -193,6 +193,14 @@ std::vector<TableEntry> table_entries() {
     entry.many = effect.many;
     all.push_back(std::move(entry));
   }
+  for (const DrivenKind& kind : driven_kinds()) {
+    TableEntry entry;
+    entry.name = fmt::format("effects.{}", kind.id);
+    entry.summary = fmt::format("{} ({})", kind.summary, kind.source);
+    entry.parameters = kind.parameters;
+    entry.many = true;
+    all.push_back(std::move(entry));
+  }
   all.push_back({.name = "supports",
                  .summary = "a point of a strand that is held, in addition to a clamped "
                             "root. The strand begins at rest in an equilibrium if its "

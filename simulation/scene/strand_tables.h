@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/strand/strand.h"
+#include "simulation/driven/driven_tables.h"
 #include "simulation/groom/fitted_groom.h"
 #include "simulation/scene/groom.h"
 #include "simulation/table/table.h"
@@ -23,13 +24,15 @@ struct StrandSource {
 };
 
 /// The tables, as read, from which the strands of a scene are made, [gradient], which
-/// names numbers of them, and [supports] and [joints], which hold their points.
+/// names numbers of them, [supports] and [joints], which hold their points, and tables
+/// that drive their sections.
 struct StrandTables {
   Table material, root;                   // the scene's [material] and [root]
   std::vector<StrandSource> sources;      // each [strand], then each [groom]
   std::optional<Table> gradient = {};     // the scene's [gradient], if it has one
   std::vector<Table> supports = {};       // each [[supports]]
   std::vector<Table> joints = {};         // each [[joints]]
+  DrivenTables driven = {};               // moments, and natural shapes over time
   std::shared_ptr<const Skin> skin = {};  // surface that carries roots, or null
 };
 

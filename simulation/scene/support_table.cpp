@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "contract/decimal.h"
@@ -14,10 +13,11 @@
 #include "models/strand/arc_lengths.h"
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
+#include "simulation/driven/strand_drives.h"
+#include "simulation/driven/support_keys.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_path.h"
 #include "simulation/scene/support_reach.h"
-#include "simulation/table/read_table.h"
 
 namespace tress::simulation {
 
@@ -27,69 +27,6 @@ using models::Support;
 using models::SupportedSystem;
 
 namespace {
-
-constexpr double farthest_place = 1e6;
-
-constexpr Parameter support_parameters[] = {
-    {.name = "strand",
-     .help = "number of the strand, the first is 0",
-     .number = 0,
-     .min = 0,
-     .max = 1e6,
-     .whole = true},
-    {.name = "at",
-     .help =
-         "point that is held: \"tip\", \"root\" (motion = \"free\"), or a number such as "
-         "0.5. The number is the arc length from the root over the length, 0 to 1, of "
-         "an element's end",
-     .text = true,
-     .fallback = "tip"},
-    {.name = "kind",
-     .help =
-         "held part. `ball`: the position. `clamp`: position, direction and twist (if "
-         "the model has a frame there). `direction`: the direction alone. `hinge`: as "
-         "`clamp`, but free to turn about `axis`",
-     .choices = "ball|clamp|direction|hinge"},
-    {.name = "axis",
-     .help = "axis of a hinge in the world, across the direction of the strand at the "
-             "start, of any length",
-     .min = -farthest_place,
-     .max = farthest_place,
-     .components = 3,
-     .fallback = "0,0,0"},
-    {.name = "keyframes",
-     .help =
-         "rows of t, x, y, z (s, m): places of the support in the world, t ascending. "
-         "It moves in straight lines, quintic in time, and rests at each. One row: a "
-         "fixed place. None: the place of the point at the start",
-     .min = -farthest_place,
-     .max = farthest_place,
-     .components = 4,
-     .rows = true},
-    {.name = "directions",
-     .help = "rows of t, x, y, z: directions of the strand at the support in the world, "
-             "of any length, t (s) ascending. It turns on the shortest way, quintic in "
-             "time, and rests at each. None: the direction at the start",
-     .min = -farthest_place,
-     .max = farthest_place,
-     .components = 4,
-     .rows = true},
-    {.name = "twist_rad",
-     .help = "rows of t, angle (s, rad): twist of a clamp about its direction, relative "
-             "to the section at the start, t ascending. Quintic in time, at rest at each",
-     .min = -farthest_place,
-     .max = farthest_place,
-     .components = 2,
-     .rows = true},
-    {.name = "slide",
-     .help =
-         "direction in which the point slides freely, in the world, of any length; 0, "
-         "0, 0: none",
-     .min = -farthest_place,
-     .max = farthest_place,
-     .components = 3,
-     .fallback = "0,0,0"},
-};
 
 /// Index of the material point that `at` names.
 int point_of(const Table& table, const Strand& strand) {
@@ -117,78 +54,41 @@ Vec hinge_axis(const Table& table, const Frame& section) {
   return (1 / norm(across)) * across;
 }
 
-/// Refuses keys that the kind of a support does not read.
-void check_keys(const Table& table) {
-  const std::string_view kind = table.values().word("kind");
-  const auto refuse = [&](const char* key, const char* why, const char* remedy) {
-    if (!table.given(key)) return;
-    throw InputError(
-        fmt::format("{} of a support with kind = \"{}\", {}", key, kind, why),
-        table.place(key), remedy);
-  };
-  const char* const leave = "leave it out, or give kind = \"clamp\"";
-  if (kind == "ball") refuse("directions", "which holds no direction", leave);
-  if (kind == "hinge") refuse("directions", "which follows no directions", leave);
-  if (kind != "hinge" && norm(table.values().vec("axis")) > 0) {
-    refuse("axis", "which turns about no axis", "leave it out, or give kind = \"hinge\"");
-  }
-  if (kind != "clamp") refuse("twist_rad", "which holds no twist", leave);
-  if (kind == "direction") {
-    refuse("keyframes", "which holds no position", leave);
-    refuse("slide", "which holds no position", leave);
-  }
-}
-
 }  // namespace
 
 int point_at(std::string_view at, const Strand& strand, const std::string& name,
              const std::string& place) {
-  const std::vector<double> s = models::arc_lengths(strand);
-  const auto last = static_cast<int>(s.size()) - 1;
-  if (at == "tip") return last;
+  constexpr const char* remedy = "give \"tip\", \"root\" or a number of 0 to 1";
+  if (at == "tip") return static_cast<int>(strand.segments.size());
   if (at == "root") return 0;
-  const double share = decimal(at).value_or(-1);
-  const double arc = share * s.back();
-  const auto nearest = std::ranges::min_element(
-      s, {}, [arc](double other) { return std::abs(other - arc); });
-  const auto point = static_cast<std::size_t>(nearest - s.begin());
-  if (share >= 0 && share <= 1 && std::abs(*nearest - arc) <= 1e-9 * s.back()) {
-    return static_cast<int>(point);
-  }
-  throw InputError(
-      fmt::format("no point at {} of {}", at, name), place,
-      share >= 0 && share <= 1
-          ? fmt::format("give at = {:.9g}, the nearest end of an element, or other "
-                        "elements",
-                        *nearest / s.back())
-          : "give \"tip\", \"root\" or a number of 0 to 1");
-}
-
-std::span<const Parameter> support_table_parameters() { return support_parameters; }
-
-Table read_support(const toml::table& table, const std::string& file) {
-  constexpr std::string_view own[] = {"at"};
-  Table read = read_table(table, support_parameters, "[supports]", file, own);
-  if (const toml::node* at = table.get("at")) {
-    const std::string place = place_of(at->source(), file);
-    if (!at->is_string() && !at->is_number()) {
-      throw InputError("at: expected a string or a number", place,
-                       "give \"tip\", \"root\" or a number of 0 to 1");
-    }
-    read.set("at", scalar_text(*at), place);
-  }
-  check_keys(read);
-  return read;
+  const auto share = decimal(at);
+  refuse_if(!share, fmt::format("no point at {} of {}", at, name), place, remedy);
+  return end_of_element(*share, strand, name, place, remedy);
 }
 
 SceneSupports::SceneSupports(const Scene& scene)
     : tables_(scene.tables),
+      model_(scene.model),
       model_options_(scene.model_options),
       duration_(scene.duration) {}
 
 const std::vector<Table>& SceneSupports::tables() const {
   static const std::vector<Table> none;
   return tables_ == nullptr ? none : tables_->supports;
+}
+
+bool SceneSupports::drive() const { return tables_ != nullptr && tables_->driven.any(); }
+
+bool SceneSupports::constrain() const {
+  return !std::ranges::all_of(tables(), compliant);
+}
+
+std::string SceneSupports::table_name() const {
+  return tables().empty() ? tables_->driven.first().name() : tables().front().name();
+}
+
+const std::string& SceneSupports::first_place() const {
+  return tables().empty() ? tables_->driven.first().place() : tables().front().place();
 }
 
 std::vector<const Table*> SceneSupports::of(std::size_t strand) const {
@@ -220,6 +120,11 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
   Support support;
   support.point = point;
   support.path = support_path(table, start);
+  const Parameters& values = table.values();
+  support.compliance = {values.number("stiffness_n_per_m"),
+                        values.number("damping_n_s_per_m"),
+                        values.number("turn_stiffness_n_m_per_rad"),
+                        values.number("turn_damping_n_m_s_per_rad")};
   const std::string_view kind = table.values().word("kind");
   if (kind == "direction") support.axes.clear();
   if (kind != "ball") {
@@ -242,9 +147,9 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
 std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
                                           const Strand& strand,
                                           std::size_t number) const {
+  if (!change(number)) return system;
   const std::vector<const Table*> tables = of(number);
-  if (tables.empty()) return system;
-  const std::string& place = tables.front()->place();
+  const std::string& place = tables.empty() ? first_place() : tables.front()->place();
   models::check_unbranched(strand, place);
   const auto n = static_cast<std::size_t>(system->layout().coordinates);
   std::vector<double> q(n), v(n), zero(n), x(3 * (strand.segments.size() + 1));
@@ -277,7 +182,7 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
       start.frame = sections(*system)->section(0, q, v, zero, at).frame;
     }
     supports.push_back(support(*system, strand, *table, start, at));
-    if (supports.back().axes.empty() || norm(table->values().vec("slide")) > 0) {
+    if (supports.back().rigid_axes().empty() || norm(table->values().vec("slide")) > 0) {
       continue;
     }
     const SupportedEnd end{fmt::format("support at {}", table->values().word("at")),
@@ -287,8 +192,11 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
     }
     ends.push_back(end);
   }
+  models::StrandDrives drives =
+      drives_of(tables_->driven, *system, strand, number, *model_, model_options_);
   try {
-    return std::make_unique<SupportedSystem>(std::move(system), std::move(supports));
+    return std::make_unique<SupportedSystem>(std::move(system), std::move(supports),
+                                             std::move(drives));
   } catch (const InputError& error) {
     throw InputError(error.what(), place, "change the scene there");
   }
@@ -326,18 +234,20 @@ void SceneSupports::check_strands(std::size_t strands) const {
 
 void SceneSupports::check(const Scene& scene) const {
   if (!any()) return;
-  const std::string& place = tables().front().place();
+  const std::string& place = first_place();
   refuse_if(scene.rest == RestStrains::inverse,
-            "supports with rest = \"inverse\", which balances strands without their "
-            "forces",
-            place, "leave out rest, or the supports");
+            fmt::format("{} with rest = \"inverse\", which balances strands without its "
+                        "forces",
+                        table_name()),
+            place, "leave out rest, or this table");
   const Parameters* interaction = scene.interaction();
   refuse_if(interaction != nullptr && interaction->word("coupling") == "monolithic",
-            "supports of strands that are one system", place,
+            fmt::format("{} of strands that are one system", table_name()), place,
             "use [effects.strand_interaction] coupling = \"lagged\"");
   refuse_if(scene.friction() != nullptr,
-            "supports of strands that rub, whose impulses leave supports out", place,
-            "leave out [effects.strand_friction], or the supports");
+            fmt::format("{} of strands that rub, whose impulses leave its forces out",
+                        table_name()),
+            place, "leave out [effects.strand_friction], or this table");
 }
 
 }  // namespace tress::simulation

@@ -32,25 +32,35 @@ struct NamedSupport {
 int point_at(std::string_view at, const Strand& strand, const std::string& name,
              const std::string& place);
 
-/// The supports of a scene. Keeps no reference to it.
+/// The supports of a scene, and the moments and natural shapes that drive its strands.
+/// Keeps no reference to it.
 class SceneSupports {
  public:
-  /// Reads the scene's tables, model options and duration.
+  /// Reads the scene's tables, model, model options and duration.
   explicit SceneSupports(const Scene& scene);
 
-  /// Returns true if the scene has supports.
-  bool any() const { return !tables().empty(); }
+  /// Returns true if the scene has supports, moments or natural shapes over time.
+  bool any() const { return !tables().empty() || drive(); }
+  /// Returns true if the scene has moments or natural shapes over time.
+  bool drive() const;
+  /// Returns true if some support is a constraint, not a spring.
+  bool constrain() const;
+  /// Returns the name of the first of these tables, such as "[supports]".
+  std::string table_name() const;
   /// Returns the names of all supports, strand after strand.
   std::vector<NamedSupport> named() const;
   /// Returns true if a strand has supports.
   bool hold(std::size_t strand) const { return !of(strand).empty(); }
+  /// Returns true if on() changes a strand.
+  bool change(std::size_t strand) const { return drive() || hold(strand); }
   /// Returns the location of the first support of a strand, which must have one.
   const std::string& place(std::size_t strand) const {
     return of(strand).front()->place();
   }
-  /// Returns the strand with its supports, as a system; `system` itself if it has none. A
-  /// support without keyframes holds its point where `system` begins. Throws InputError
-  /// with the location of a support that the strand or its model does not admit.
+  /// Returns the strand with its supports, moments and natural shapes, as a system;
+  /// `system` itself if it has none. A support without keyframes holds its point where
+  /// `system` begins. Throws InputError with the location of a support that the strand or
+  /// its model does not admit.
   std::unique_ptr<System> on(std::unique_ptr<System> system, const Strand& strand,
                              std::size_t number) const;
   /// Throws InputError with its location if a support refers to a strand beyond this
@@ -65,8 +75,11 @@ class SceneSupports {
                           const models::StrandPlace& start, int point) const;
   const std::vector<Table>& tables() const;
   std::vector<const Table*> of(std::size_t strand) const;
+  /// Returns the location of the first of all tables.
+  const std::string& first_place() const;
 
   std::shared_ptr<const StrandTables> tables_;
+  const ModelEntry* model_;
   Parameters model_options_;
   double duration_;
 };

@@ -149,6 +149,8 @@ void add_strands(std::string& text, const StrandTables& tables) {
   };
   add_each("[[supports]]", tables.supports);
   add_each("[[joints]]", tables.joints);
+  add_each("[[effects.point_moment]]", tables.driven.moments);
+  add_each("[[effects.natural_shape]]", tables.driven.shapes);
   if (!tables.gradient) return;
   add_header(text, "[gradient]");
   add_given(text, *tables.gradient);

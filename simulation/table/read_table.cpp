@@ -153,6 +153,19 @@ void read_key(const toml::table& table, std::string_view key, const std::string&
   read.set(key, value_text(*p, *value, file), place_of(value->source(), file));
 }
 
+std::vector<const toml::table*> tables_of(const toml::node& node, const std::string& name,
+                                          bool many, const std::string& file) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return {&as_table(node, name, file)};
+  if (!many) {
+    throw InputError(fmt::format("several [[{}]]", name), place_of(node.source(), file),
+                     fmt::format("give one [{}]", name));
+  }
+  std::vector<const toml::table*> all;
+  for (const toml::node& one : *list) all.push_back(&as_table(one, name, file));
+  return all;
+}
+
 const toml::table& as_table(const toml::node& node, const std::string& name,
                             const std::string& file) {
   if (const toml::table* table = node.as_table()) return *table;

@@ -34,6 +34,11 @@ std::array<std::vector<double>, count> columns(std::span<const double> rows) {
   return all;
 }
 
+/// Returns [name] as one table, [[name]] as all of them. Throws InputError if several are
+/// given and not `many` are admitted.
+std::vector<const toml::table*> tables_of(const toml::node& node, const std::string& name,
+                                          bool many, const std::string& file);
+
 /// Throws InputError unless the node is a table.
 const toml::table& as_table(const toml::node& node, const std::string& name,
                             const std::string& file);

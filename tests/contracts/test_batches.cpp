@@ -391,6 +391,28 @@ TEST(ReplicatedHead, TakesRotationVectorsThatLanesDoNotHave) {
   }
 }
 
+TEST(ReplicatedHead, DrivesStrandsAsAWorldDoes) {
+  for (const std::string model : {"super_helix", "der"}) {
+    const std::string text =
+        "title = \"b\"\nduration_s = 0.02\nframes_per_s = 100\n"
+        "failed_strands = \"stay\"\n[model]\nid = \"" +
+        model +
+        "\"\n[integrator]\nid = \"backward_euler\"\ndt_s = 0.005\n"
+        "[groom]\ncount = 3\nlength_m = 0.05\nelements = 6\n[effects.gravity]\n"
+        "[[effects.point_moment]]\nfollower_n_m = [1e-9, 1e-9, 0]\n"
+        "[[effects.natural_shape]]\ncurvature_per_m = [[0, 0], [0.02, 20]]\n"
+        "[[supports]]\nstrand = 1\nstiffness_n_per_m = 1e-3\n";
+    SCOPED_TRACE(model);
+    const SceneOutline outline = parse_outline(text, "batch.toml");
+    const auto run = batch(outline);
+    const Scene scene = parse_scene(text, "batch.toml");
+    const Course strands = of_strands(scene), together = of_batch(*run, scene);
+    EXPECT_EQ(together.frames, strands.frames);
+    EXPECT_TRUE(together.lost.empty());
+    EXPECT_TRUE(strands.lost.empty());
+  }
+}
+
 TEST(BatchMatrix, PrintsEveryCellAndItsReason) {
   const std::string text = batch_matrix();
   for (const ModelEntry* model : strand_models()) {

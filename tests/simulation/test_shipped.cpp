@@ -32,8 +32,10 @@ TEST_P(ShippedSceneTest, IsReadBuiltAndTakesAStep) {
                     ? scene.model->make(scene.model_options)
                     : scene.model->on_strand(scene.strands.front(), scene.model_options,
                                              make_effects(scene));
-  if (const SceneSupports supports(scene); supports.hold(0)) {
+  if (const SceneSupports supports(scene); supports.change(0)) {
     system = supports.on(std::move(system), scene.strands.front(), 0);
+  }
+  if (const SceneSupports supports(scene); supports.hold(0)) {
     EXPECT_TRUE(begin_on_supports(*system, supports.place(0)).held);
   }
   const State start = initial_state(*system);

@@ -223,7 +223,7 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
       << refused(method);
   Text rest;
   rest.top = "rest = \"inverse\"\n";
-  EXPECT_NE(refused(rest).find("supports with rest = \"inverse\""), std::string::npos);
+  EXPECT_NE(refused(rest).find("[supports] with rest = \"inverse\""), std::string::npos);
 }
 
 }  // namespace tress::test_supports

@@ -55,6 +55,14 @@ Settings lively(std::string_view id) {
             {"follower_n", "0.7"},
             {"factor_over_time", "0,0.5;1,2"}};
   }
+  if (id == "distributed_load") {
+    return {{"from", "0.2"},
+            {"to", "0.8"},
+            {"force_n_per_m", "1,-2,0.5"},
+            {"along_n_per_m", "0.7"},
+            {"turned_n_per_m", "0.4,1,-0.6"},
+            {"factor_over_time", "0,0.5;1,2"}};
+  }
   if (id == "body") {
     setenv("XDG_CACHE_HOME", TRESS_BINARY_DIR "/mesh_cache/contract", 1);
     return {{"centre_m", "0.1,-0.05,0.08"},
@@ -103,12 +111,13 @@ struct Case {
 
 void PrintTo(const Case& one, std::ostream* out) { *out << one.name(); }
 
-/// Every effect with every combination of words. Not the two whose points act on each
-/// other: test_self_contact.cpp and test_strand_interaction.cpp.
+/// Every effect with every combination of words. Not those whose points act on each
+/// other: test_self_contact.cpp, test_strand_interaction.cpp and test_ring.cpp.
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const EffectEntry& entry : testing_support::tested_effects()) {
-    if (entry.id == "self_contact" || entry.make == nullptr) continue;
+    if (entry.id == "self_contact" || entry.id == "ring" || entry.make == nullptr)
+      continue;
     std::vector<Case> of_entry{{&entry, {}}};
     for (const Parameter& parameter : entry.parameters) {
       if (parameter.choices.empty()) continue;
@@ -268,7 +277,8 @@ void expect_blocks(const Effect& effect, const Cloud& cloud, Member member,
 
 /// An effect acts on a point alone, but for those that choose a place along the strand.
 Cloud crowd(const Effect& effect) {
-  const bool chooses = effect.name() == "tether" || effect.name() == "point_force";
+  const bool chooses = effect.name() == "tether" || effect.name() == "point_force" ||
+                       effect.name() == "distributed_load";
   return Cloud(chooses ? 1 : 200);
 }
 

@@ -19,10 +19,12 @@ namespace tress::testing_support {
 
 /// Returns the order with which the work of prescribed motion in 0.05 s, by the
 /// trapezoidal rule in time, comes to what the energy gains. `steps` are in s. The rule
-/// and generalized_alpha, which moves the strand, have order 2.
+/// and generalized_alpha, which moves the strand, have order 2. `relative` receives the
+/// errors over the work that is moved.
 inline double order_of_work(const std::string& name,
                             const std::function<std::unique_ptr<System>()>& make,
-                            const std::vector<double>& steps) {
+                            const std::vector<double>& steps,
+                            std::vector<double>* relative = nullptr) {
   std::vector<double> errors;
   for (const double step : steps) {
     const auto system = make();
@@ -52,6 +54,7 @@ inline double order_of_work(const std::string& name,
     std::printf("%s, step %g s: work off by %.2e of %.2e J\n", name.c_str(), step,
                 errors.back(), moved);
   }
+  if (relative != nullptr) *relative = errors;
   return experiments::log_log_slope(steps, errors);
 }
 
