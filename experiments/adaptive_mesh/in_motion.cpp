@@ -7,7 +7,7 @@
 #include "simulation/errors/error_bars.h"
 #include "simulation/errors/pilot.h"
 #include "simulation/run/tip_paths.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::adaptive_mesh {
 namespace {

@@ -6,7 +6,7 @@
 #include "simulation/groom/helix_fit.h"
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::adaptive_mesh {
 namespace {

@@ -12,7 +12,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/fit/record_runs.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::experiments::calibrate {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/problems/strand_models.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::experiments::cost_of_accuracy {
 namespace {

@@ -15,7 +15,7 @@
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
 #include "simulation/run/tip_paths.h"
-#include "simulation/scene/typical_strands.h"
+#include "simulation/scene_changes/typical_strands.h"
 
 namespace tress::experiments::cost_of_accuracy {
 namespace {

@@ -11,7 +11,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/files/run_key.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::experiments::cost_of_accuracy {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::cost_of_accuracy {
 

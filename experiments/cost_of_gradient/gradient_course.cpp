@@ -8,8 +8,8 @@
 #include "contract/forms/material_points.h"
 #include "contract/jacobian_choice.h"
 #include "simulation/run/timing.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/gradient_table.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::cost_of_gradient {
 namespace {

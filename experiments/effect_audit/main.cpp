@@ -17,7 +17,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/run/numbers.h"
 #include "simulation/run/tip_paths.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::effect_audit {
 namespace {

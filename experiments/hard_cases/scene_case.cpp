@@ -9,7 +9,7 @@
 #include "experiments/problems/scene_files.h"
 #include "simulation/files/parse.h"
 #include "simulation/run/timing.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::hard_cases {
 namespace {

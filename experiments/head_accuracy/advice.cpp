@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "experiments/head_accuracy/head_accuracy.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_changes/changes.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::experiments::head_accuracy {
 namespace {

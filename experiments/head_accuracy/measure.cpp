@@ -18,8 +18,8 @@
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/timing.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::head_accuracy {
 namespace {

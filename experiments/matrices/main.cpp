@@ -19,7 +19,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::matrices {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
-#include "simulation/joints/joint_table.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::matrices {
 namespace {

@@ -8,7 +8,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments {
 

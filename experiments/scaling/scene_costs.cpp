@@ -7,8 +7,8 @@
 #include "experiments/scaling/scaling.h"
 #include "models/catalogue.h"
 #include "simulation/run/tip_paths.h"
-#include "simulation/scene/changes.h"
-#include "simulation/scene/typical_strands.h"
+#include "simulation/scene_changes/changes.h"
+#include "simulation/scene_changes/typical_strands.h"
 
 namespace tress::experiments::scaling {
 namespace {

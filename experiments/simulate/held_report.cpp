@@ -11,7 +11,7 @@
 #include "experiments/run/message.h"
 #include "simulation/files/files.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::scene_runs {
 namespace {

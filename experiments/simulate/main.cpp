@@ -34,10 +34,10 @@
 #include "simulation/head/head_classes.h"
 #include "simulation/head/ranks.h"
 #include "simulation/head/scene_head.h"
-#include "simulation/joints/joint_table.h"
 #include "simulation/plugin/load_plugin.h"
-#include "simulation/scene/schema.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_text/schema.h"
 
 namespace tress::experiments::scene_runs {
 namespace {

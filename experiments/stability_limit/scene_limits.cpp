@@ -8,7 +8,7 @@
 #include "experiments/stability_limit/stability_limit.h"
 #include "integrators/catalogue.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::stability_limit {
 namespace {

@@ -20,7 +20,7 @@
 #include "experiments/statics/static_claims.h"
 #include "simulation/files/files.h"
 #include "simulation/files/parse.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::statics {
 namespace {

@@ -11,9 +11,9 @@
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
 #include "experiments/numerics/dense_form.h"
-#include "simulation/joints/joint_table.h"
 #include "simulation/rest/held_shape.h"
 #include "simulation/rest/supported_start.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::experiments::statics {

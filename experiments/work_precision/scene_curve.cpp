@@ -7,8 +7,8 @@
 #include "experiments/numerics/tip_track.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/tip_paths.h"
-#include "simulation/scene/changes.h"
-#include "simulation/scene/typical_strands.h"
+#include "simulation/scene_changes/changes.h"
+#include "simulation/scene_changes/typical_strands.h"
 
 namespace tress::experiments::work_precision {
 namespace {

@@ -6,7 +6,7 @@
 #include "contract/parameters.h"
 #include "models/effects/air_law.h"
 #include "models/effects/effect.h"
-#include "models/effects/wind_field.h"
+#include "models/motion/wind_field.h"
 
 namespace tress::models {
 

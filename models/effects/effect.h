@@ -10,7 +10,7 @@
 #include "contract/basics.h"
 #include "math/frame.h"
 #include "math/vec3.h"
-#include "models/effects/coupling.h"
+#include "models/coupling/coupling.h"
 
 namespace tress::models {
 

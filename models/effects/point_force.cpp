@@ -6,7 +6,7 @@
 #include "contract/input_error.h"
 #include "math/mat3.h"
 #include "math/vec3.h"
-#include "models/effects/loads/place.h"
+#include "models/effects/place.h"
 
 namespace tress::models {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "contract/parameters.h"
 #include "models/contact/contact_law.h"
+#include "models/coupling/piece_contact.h"
 #include "models/effects/effect.h"
-#include "models/effects/piece_contact.h"
 #include "models/motion/root_motion.h"
 
 namespace tress::models {

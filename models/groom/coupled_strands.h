@@ -10,7 +10,7 @@
 #include "contract/forms/stress_form.h"
 #include "contract/parameters.h"
 #include "contract/system.h"
-#include "models/effects/coupled_solver.h"
+#include "models/coupling/coupled_solver.h"
 #include "models/groom/strand_block.h"
 #include "models/groom/strand_contacts.h"
 

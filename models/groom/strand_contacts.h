@@ -6,7 +6,7 @@
 
 #include "models/contact/contact_law.h"
 #include "models/contact/segment_cells.h"
-#include "models/effects/piece_contact.h"
+#include "models/coupling/piece_contact.h"
 
 namespace tress::models {
 

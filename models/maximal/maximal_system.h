@@ -23,7 +23,7 @@
 #include "linear/kkt.h"
 #include "linear/linear_solver.h"
 #include "models/constrained/constraint_set.h"
-#include "models/effects/coupled_solver.h"
+#include "models/coupling/coupled_solver.h"
 #include "models/effects/effect.h"
 #include "models/held/held_contacts.h"
 #include "models/maximal/elasticity.h"

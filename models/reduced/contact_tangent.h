@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "models/effects/coupling.h"
+#include "models/coupling/coupling.h"
 #include "models/reduced/mass_tangent.h"
 
 namespace tress::models {

@@ -9,13 +9,13 @@
 #include "simulation/head/head_classes.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
-#include "simulation/joints/joint_table.h"
 #include "simulation/rest/supported_start.h"
 #include "simulation/run/readout.h"
-#include "simulation/scene/schema.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/schema.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::python {
 namespace {

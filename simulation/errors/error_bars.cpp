@@ -12,7 +12,7 @@
 #include "simulation/run/remedy.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::simulation {
 namespace {

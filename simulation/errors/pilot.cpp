@@ -8,8 +8,8 @@
 
 #include "contract/input_error.h"
 #include "simulation/errors/error_bars.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::simulation {
 namespace {

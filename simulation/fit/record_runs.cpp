@@ -9,8 +9,8 @@
 
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::simulation {
 namespace {

@@ -8,7 +8,7 @@
 #include "integrators/gradient/gradient_run.h"
 #include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/scene_gradient.h"
-#include "simulation/joints/joint_table.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 

@@ -1,5 +1,7 @@
 #include "simulation/gradient/scene_gradient.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -92,6 +94,12 @@ class StrandRun {
       found_.moved =
           std::max(found_.moved, farthest(found_.points[f], accepted_.points[f - first]) /
                                      scene_.strands[strand_].length());
+    }
+    if (found_.unfinished.empty() && found_.moved > scene_.options.tolerance) {
+      found_.unfinished = fmt::format(
+          "with its steps frozen, the run ends {:.2g} of the length away from that with "
+          "error control: give dt_s, or a smaller position_tol_rel",
+          found_.moved);
     }
     return std::move(found_);
   }

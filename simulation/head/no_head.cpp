@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "models/head/head.h"
-#include "simulation/joints/joint_table.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 #include "simulation/table/along.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "models/effects/effect.h"
-#include "simulation/joints/joint_table.h"
 #include "simulation/run/line_curvature.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 
 namespace tress::simulation {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "contract/forms/natural_strains.h"
-#include "simulation/joints/joined_start.h"
+#include "simulation/scene/joined_start.h"
 
 namespace tress::simulation {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "simulation/joints/joint_table.h"
 #include "simulation/rest/held_shape.h"
 #include "simulation/run/stepped_system.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/support_table.h"
 

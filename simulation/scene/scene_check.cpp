@@ -8,7 +8,7 @@
 #include "integrators/catalogue.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
-#include "simulation/joints/joint_table.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 

@@ -14,8 +14,8 @@
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
 #include "simulation/driven/strand_drives.h"
-#include "simulation/driven/support_keys.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_keys.h"
 #include "simulation/scene/support_path.h"
 #include "simulation/scene/support_reach.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "simulation/errors/error_bars.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 #include "tests/control/hairs.h"
 
 namespace tress::test_error_bound {

@@ -14,7 +14,7 @@
 #include "math/frame.h"
 #include "math/vec3.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/schema.h"
+#include "simulation/scene_text/schema.h"
 
 namespace tress::test_field_cases {
 

@@ -7,7 +7,7 @@
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/numerics/tip_track.h"
-#include "simulation/scene/typical_strands.h"
+#include "simulation/scene_changes/typical_strands.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_scene_reference {

@@ -8,7 +8,7 @@
 #include "contract/input_error.h"
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 #include "tests/cost_of_accuracy/scratch.h"
 
 namespace tress::test_trial_scene {

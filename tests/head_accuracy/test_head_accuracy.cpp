@@ -12,7 +12,7 @@
 #include "experiments/head_accuracy/grooms.h"
 #include "experiments/head_accuracy/head_accuracy.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_head_accuracy {

@@ -10,9 +10,9 @@
 #include "contract/input_error.h"
 #include "integrators/integrator_options.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/scene_tables.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_changes/changes.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::test_changes {
 

@@ -10,8 +10,8 @@
 #include "contract/input_error.h"
 #include "models/cut/graded_cut.h"
 #include "models/strand/geometry.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/scene.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::test_cuts {
 

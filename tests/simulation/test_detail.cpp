@@ -14,8 +14,8 @@
 #include "simulation/head/head_classes.h"
 #include "simulation/head/head_run.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_changes/changes.h"
 #include "tests/harness/toy_process.h"
 
 namespace tress::test_detail {

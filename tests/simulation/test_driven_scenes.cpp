@@ -13,7 +13,7 @@
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/support_table.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 #include "tests/support/refusal.h"
 #include "tests/support/small_motion.h"
 

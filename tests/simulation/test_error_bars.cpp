@@ -9,7 +9,7 @@
 #include "experiments/simulate/outcome.h"
 #include "simulation/errors/error_bars.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::test_error_bars {
 

@@ -17,8 +17,8 @@
 #include "simulation/groom/random.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/changes.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_changes/changes.h"
+#include "simulation/scene_text/write_scene.h"
 #include "tests/support/groom_bytes.h"
 #include "tests/support/made_groom.h"
 

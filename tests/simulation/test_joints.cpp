@@ -12,7 +12,7 @@
 
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 #include "tests/support/refusal.h"
 
 namespace tress::test_joints {

@@ -6,8 +6,8 @@
 #include "contract/input_error.h"
 #include "simulation/errors/error_bars.h"
 #include "simulation/errors/pilot.h"
-#include "simulation/scene/changes.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_changes/changes.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::test_pilot {
 

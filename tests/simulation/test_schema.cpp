@@ -11,8 +11,8 @@
 #include "simulation/run/world.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/scene_tables.h"
-#include "simulation/scene/schema.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_text/schema.h"
 
 namespace tress::test_schema {
 

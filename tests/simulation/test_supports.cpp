@@ -11,7 +11,7 @@
 #include "contract/input_error.h"
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 #include "tests/support/refusal.h"
 
 namespace tress::test_supports {

@@ -12,7 +12,7 @@
 #include "experiments/statics/equilibrium_path.h"
 #include "experiments/statics/path_words.h"
 #include "models/catalogue.h"
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 #include "tests/statics/static_scenes.h"
 
 namespace tress::test_column {

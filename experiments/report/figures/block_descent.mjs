@@ -44,7 +44,9 @@ const drawn = (rows) =>
     }));
 
 const all_sweeps = (tables) =>
-  drawn(descent_rows(tables, 'sweeps')).map((row) => ({ ...row, way: way_of(row) }));
+  drawn(descent_rows(tables, 'sweeps'))
+    .filter((row) => !(row.anderson > 0)) // in the table of the page
+    .map((row) => ({ ...row, way: way_of(row) }));
 
 const coincide = 2; // lines that differ by less than this factor everywhere are drawn as one
 const label = ([leader, ...rest]) =>

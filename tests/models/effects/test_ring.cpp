@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "models/effects/loads/ring.h"
+#include "models/effects/ring.h"
 #include "models/motion/signals.h"
 #include "tests/models/reduced/work_of_motion.h"
 #include "tests/support/refusal.h"

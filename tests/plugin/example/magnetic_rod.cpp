@@ -3,7 +3,7 @@
 
 #include "contract/basics.h"
 #include "example.h"
-#include "models/effects/loads/place.h"
+#include "models/effects/place.h"
 
 namespace example {
 namespace {

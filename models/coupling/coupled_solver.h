@@ -10,7 +10,7 @@
 #include "contract/pattern.h"
 #include "linear/block_matrix.h"
 #include "linear/linear_solver.h"
-#include "models/effects/coupling.h"
+#include "models/coupling/coupling.h"
 
 namespace tress::models {
 

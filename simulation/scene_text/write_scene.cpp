@@ -1,4 +1,4 @@
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 
 #include <fmt/format.h>
 

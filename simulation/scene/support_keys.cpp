@@ -1,4 +1,4 @@
-#include "simulation/driven/support_keys.h"
+#include "simulation/scene/support_keys.h"
 
 #include <fmt/format.h>
 

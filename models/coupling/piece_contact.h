@@ -6,7 +6,7 @@
 
 #include "math/closest.h"
 #include "models/contact/contact_law.h"
-#include "models/effects/coupling.h"
+#include "models/coupling/coupling.h"
 
 namespace tress::models {
 

@@ -1,4 +1,4 @@
-#include "simulation/scene/changes.h"
+#include "simulation/scene_changes/changes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "simulation/groom/guide_choice.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/typical_strands.h"
+#include "simulation/scene_changes/typical_strands.h"
 
 namespace tress::simulation {
 namespace {

@@ -1,4 +1,4 @@
-#include "models/effects/coupled_solver.h"
+#include "models/coupling/coupled_solver.h"
 
 #include <algorithm>
 #include <utility>

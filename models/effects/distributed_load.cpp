@@ -1,4 +1,4 @@
-#include "models/effects/loads/distributed_load.h"
+#include "models/effects/distributed_load.h"
 
 #include <algorithm>
 #include <cmath>

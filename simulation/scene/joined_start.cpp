@@ -1,4 +1,4 @@
-#include "simulation/joints/joined_start.h"
+#include "simulation/scene/joined_start.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/scene/schema.h"
+#include "simulation/scene_text/schema.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "simulation/scene/material_table.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/write_scene.h"
+#include "simulation/scene_text/write_scene.h"
 
 namespace tress::simulation {
 namespace {

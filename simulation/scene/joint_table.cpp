@@ -1,4 +1,4 @@
-#include "simulation/joints/joint_table.h"
+#include "simulation/scene/joint_table.h"
 
 #include <fmt/format.h>
 

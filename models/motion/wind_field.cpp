@@ -1,4 +1,4 @@
-#include "models/effects/wind_field.h"
+#include "models/motion/wind_field.h"
 
 #include <random>
 

@@ -1,4 +1,4 @@
-#include "models/effects/loads/place.h"
+#include "models/effects/place.h"
 
 #include <cmath>
 

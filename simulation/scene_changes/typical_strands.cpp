@@ -1,4 +1,4 @@
-#include "simulation/scene/typical_strands.h"
+#include "simulation/scene_changes/typical_strands.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "models/effects/loads/ring.h"
+#include "models/effects/ring.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "models/effects/piece_contact.h"
+#include "models/coupling/piece_contact.h"
 
 namespace tress::models {
 
