@@ -9,8 +9,9 @@ namespace {
 
 constexpr Column columns[] = {
     {"part",
-     "time: a curl that swings, errors by steps; space: the same by elements; contact: "
-     "straight hair that falls on a plane, errors by steps; fit: parameters of the curl "
+     "time: errors by steps on a curl that swings. space: the same by elements. contact: "
+     "errors by steps of straight hair that falls on a plane. fit: parameters of the "
+     "curl "
      "fitted to the tip of a much finer run"},
     {"law", "part = contact: law of contact"},
     {"model", "catalogue id"},
@@ -26,9 +27,9 @@ constexpr Column columns[] = {
      "root mean square error of the tip at ten frames, over the length; part = fit: of "
      "the fitted run"},
     {"gradient_error_rel",
-     "error of the derivative of the tip at ten frames over its size, root mean squares; "
-     "part = fit: error of the fitted value over the true one; the largest of the four "
-     "parameters"},
+     "largest of the errors of the four parameters: of the derivative of the tip at ten "
+     "frames over its size, root mean squares. part = fit: of the fitted value over the "
+     "true one"},
     {"modulus_error_rel", "error of the derivative by Young's modulus, or of its fit"},
     {"friction_error_rel", "error of the derivative by the internal friction"},
     {"drag_error_rel", "error of the derivative by the drag"},

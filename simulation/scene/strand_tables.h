@@ -23,9 +23,9 @@ struct StrandSource {
   std::shared_ptr<const PlacedGroom> file = {};
 };
 
-/// The tables, as read, from which the strands of a scene are made, [gradient], which
-/// names numbers of them, [supports] and [joints], which hold their points, and tables
-/// that drive their sections.
+/// The tables, as read, from which the strands of a scene are made. [gradient] names
+/// numbers of them, [supports] and [joints] hold their points, and other tables drive
+/// their sections.
 struct StrandTables {
   Table material, root;                   // the scene's [material] and [root]
   std::vector<StrandSource> sources;      // each [strand], then each [groom]
