@@ -10,9 +10,15 @@
 namespace tress::testing_support {
 
 /// What may drive a strand in a test.
-enum class Drive { compliant_ball, compliant_clamp, dead_moment, follower, natural };
+enum class StrandDrive {
+  compliant_ball,
+  compliant_clamp,
+  dead_moment,
+  follower,
+  natural
+};
 
-inline std::string name_of(Drive drive) {
+inline std::string name_of(StrandDrive drive) {
   constexpr const char* names[] = {"CompliantBall", "CompliantClamp", "DeadMoment",
                                    "Follower", "Natural"};
   return names[static_cast<int>(drive)];
@@ -27,20 +33,21 @@ inline double typical_moment(const std::string& model, const ModelSettings& sett
 /// A drive of the tip of a model, strong enough to bend the strand, that changes in
 /// `time`. Damping is `damped` over that of the time of a typical motion.
 inline std::unique_ptr<SupportedSystem> driven(const std::string& model,
-                                               const ModelSettings& settings, Drive drive,
-                                               double time, bool damped = true) {
+                                               const ModelSettings& settings,
+                                               StrandDrive drive, double time,
+                                               bool damped = true) {
   auto strand = make_model(model, settings);
   const Strand of = models::strand(parameters_of(model, settings));
   const double length = of.length(), moment = typical_moment(model, settings);
   const int tip = static_cast<int>(of.segments.size());
   std::vector<Support> supports;
   StrandDrives drives;
-  if (drive == Drive::compliant_ball || drive == Drive::compliant_clamp) {
+  if (drive == StrandDrive::compliant_ball || drive == StrandDrive::compliant_clamp) {
     const Vec way = (0.1 * length) * Vec{-1, 1, 2};
-    Support one = drive == Drive::compliant_clamp
+    Support one = drive == StrandDrive::compliant_clamp
                       ? clamp_of_tip(*strand, model, settings, HeldPart::frame, way, time)
                       : support(tip, places_at_start(*strand).back(), way, time);
-    if (drive == Drive::compliant_clamp) {
+    if (drive == StrandDrive::compliant_clamp) {
       one.path.rotations.push_back({{0, 1, 1}, rests({0, time}, {0, 0.4})});
     }
     one.compliance = {3 * moment / (length * length), 0, 2 * moment, 0};
@@ -51,13 +58,13 @@ inline std::unique_ptr<SupportedSystem> driven(const std::string& model,
     supports.push_back(std::move(one));
   }
   const FactorOverTime factor({{0.0, 0.0}, {time, 1.0}}, "test");
-  if (drive == Drive::dead_moment) {
+  if (drive == StrandDrive::dead_moment) {
     drives.moments.push_back({tip, moment * Vec{0.3, -0.8, 0.5}, {}, factor});
   }
-  if (drive == Drive::follower) {
+  if (drive == StrandDrive::follower) {
     drives.moments.push_back({tip, {}, moment * Vec{0.3, -0.8, 0.5}, factor});
   }
-  if (drive == Drive::natural) {
+  if (drive == StrandDrive::natural) {
     const std::vector<double> from = natural_strains(*strand)->natural();
     std::vector<double> to = from;
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = 0.3 * from[i];

@@ -20,7 +20,7 @@ struct Case {
   std::string name;
   std::string model;
   ModelSettings settings;
-  Drive drive;
+  StrandDrive drive;
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
@@ -47,10 +47,11 @@ std::vector<Case> cases() {
       {"lifted_curls", "lifted_curls", {}, false, false}};
   std::vector<Case> made;
   for (const Of& of : all) {
-    for (const Drive drive : {Drive::compliant_ball, Drive::compliant_clamp,
-                              Drive::dead_moment, Drive::follower, Drive::natural}) {
-      if (drive == Drive::natural && !of.natural) continue;
-      if (drive == Drive::follower && !of.frame) continue;
+    for (const StrandDrive drive :
+         {StrandDrive::compliant_ball, StrandDrive::compliant_clamp,
+          StrandDrive::dead_moment, StrandDrive::follower, StrandDrive::natural}) {
+      if (drive == StrandDrive::natural && !of.natural) continue;
+      if (drive == StrandDrive::follower && !of.frame) continue;
       made.push_back(
           {std::string(of.name) + name_of(drive), of.model, of.settings, drive});
     }
@@ -112,8 +113,9 @@ std::vector<Case> cases_of_work() {
   std::vector<Case> made;
   for (const char* model :
        {"super_helix", "super_clothoid", "articulated_chain", "der"}) {
-    for (const Drive drive : {Drive::compliant_ball, Drive::compliant_clamp,
-                              Drive::dead_moment, Drive::follower, Drive::natural}) {
+    for (const StrandDrive drive :
+         {StrandDrive::compliant_ball, StrandDrive::compliant_clamp,
+          StrandDrive::dead_moment, StrandDrive::follower, StrandDrive::natural}) {
       made.push_back({std::string(model) + name_of(drive), model, {}, drive});
     }
   }
@@ -127,9 +129,9 @@ INSTANTIATE_TEST_SUITE_P(Models, WorkOfDrive, testing::ValuesIn(cases_of_work())
 /// drives it with them. Methods of position-based dynamics take no joints.
 TEST(DrivenStrands, TakeEveryMethodThatDrivesTheStrand) {
   for (const char* model : {"super_helix", "der", "mass_spring", "xpbd_cosserat"}) {
-    for (const Drive drive :
-         {Drive::compliant_ball, Drive::dead_moment, Drive::natural}) {
-      if (drive == Drive::natural && std::string(model) == "mass_spring") continue;
+    for (const StrandDrive drive :
+         {StrandDrive::compliant_ball, StrandDrive::dead_moment, StrandDrive::natural}) {
+      if (drive == StrandDrive::natural && std::string(model) == "mass_spring") continue;
       const auto alone = make_model(model, soft);
       const auto system = driven(model, soft, drive, 0.05);
       for (const IntegratorEntry& entry : integrators::integrator_catalogue()) {
