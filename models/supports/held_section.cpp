@@ -17,7 +17,9 @@ Sections::Kind section_to_hold(System& strand, int point, const std::string& whe
       at_end ? "the model has no section at this end whose direction could be held"
              : "the direction of the model jumps at this point and cannot be held",
       where,
-      at_end ? "use kind = \"ball\", or another model"
+      at_end ? "use kind = \"ball\", another model, or, at a clamped root, a free root "
+               "with a "
+               "clamp of [[supports]]"
              : "hold an end, or use [model] id = \"super_helix\" or \"super_clothoid\"");
 }
 

@@ -24,7 +24,7 @@ SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
             "supports or moments of a strand with exact contact: the response of "
             "contacts to their forces leaves these out",
             rows_.supports().empty() ? "moment 0" : "support 0",
-            "use law = \"regularised\" for bodies");
+            "use friction_law = \"regularised\" for bodies");
   refuse_if(drives_.natural.any() && strains_ == nullptr,
             "the model lacks a natural strain for each direction in which it bends",
             "natural shape", "use a model such as \"super_helix\" or \"der\"");

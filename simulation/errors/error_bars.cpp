@@ -305,9 +305,10 @@ void check_error_bars(const Scene& scene) {
 
 void check_verifiable(const Scene& scene) {
   if (scene.options.tolerance > 0) return;
-  throw InputError("nothing to verify in scene " + scene.name, "--verify",
-                   "give [integrator] tolerance to a method that controls its error, or "
-                   "take --error-bars");
+  throw InputError(
+      "nothing to verify in scene " + scene.name, "--verify",
+      "give [integrator] position_tol_rel to a method that controls its error, or "
+      "take --error-bars");
 }
 
 }  // namespace tress::simulation

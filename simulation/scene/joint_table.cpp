@@ -246,7 +246,7 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
     refuse_if(systems[k]->contact_form() != nullptr,
               "joints of a strand with exact contact: the response of contacts to their "
               "forces leaves joints out",
-              places(group).front(), "use law = \"regularised\" for bodies");
+              places(group).front(), "use friction_law = \"regularised\" for bodies");
     const auto n = static_cast<std::size_t>(systems[k]->layout().coordinates);
     std::vector<double> q(n), v(n);
     systems[k]->initial_state(q, v);
