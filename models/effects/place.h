@@ -11,8 +11,9 @@ namespace tress::models {
 /// through them. At the tip this is exact for nodes, cubic splines and rigid links, and
 /// of fourth order in the element for helices and clothoids.
 struct PlaceShares {
-  std::size_t first = 0, count = 0;
-  std::array<double, 4> weight{};
+  std::size_t first = 0;           // index of the first point
+  std::size_t count = 0;           // number of points
+  std::array<double, 4> weight{};  // w_k of the points
 
   /// Returns the sum of w_k values_k, three numbers each.
   Vec mean(In values) const noexcept;

@@ -53,7 +53,8 @@ WRITTEN_BY_HAND = [
 def is_manual(page):
     """Pages of the manual: definitions, formulas, commands and what these print. They have no
     result of a table; a page with results is made from a template."""
-    return page in ("CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md", "docs/index.md") or re.match(
+    return page in ("CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md", "docs/index.md",
+                    "docs/reproduce.md") or re.match(
         r"docs/(theory|start|reference|about)/|paper/|\.github/", page) is not None
 
 
