@@ -65,10 +65,7 @@ std::unique_ptr<const Effect> make_distributed_load(const Parameters& parameters
   settings.force = parameters.vec("force_n_per_m");
   settings.along = parameters.number("along_n_per_m");
   settings.turned = parameters.vec("turned_n_per_m");
-  const In rows = parameters.numbers("factor_over_time");
-  for (std::size_t i = 0; i < rows.size(); i += 2) {
-    settings.rows.push_back({rows[i], rows[i + 1]});
-  }
+  settings.rows = FactorOverTime::rows_of(parameters.numbers("factor_over_time"));
   return std::make_unique<DistributedLoad>(std::move(settings));
 }
 

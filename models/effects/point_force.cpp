@@ -48,10 +48,7 @@ std::unique_ptr<const Effect> make_point_force(const Parameters& parameters,
   settings.at = parameters.number("at");
   settings.force = parameters.vec("force_n");
   settings.follower = parameters.number("follower_n");
-  const In rows = parameters.numbers("factor_over_time");
-  for (std::size_t i = 0; i < rows.size(); i += 2) {
-    settings.rows.push_back({rows[i], rows[i + 1]});
-  }
+  settings.rows = FactorOverTime::rows_of(parameters.numbers("factor_over_time"));
   return std::make_unique<PointForce>(std::move(settings));
 }
 

@@ -12,9 +12,9 @@ namespace tress::models {
 /// Returns the parameters of the effect.
 std::span<const Parameter> ring_parameters();
 
-/// An elastic ring of no width through which the strand slides without friction. X(t) is
-/// the place of the ring. x(s) is the strand between its points, a polynomial through
-/// four points. s* is the arc length of the place that is closest to the ring. With
+/// An elastic ring of no width through which the strand slides without friction. Its
+/// place is X(t). Between its points the strand is x(s), a polynomial through four of
+/// them. The place that is closest to the ring has the arc length s*. With
 ///
 ///     d = x(s*) - X,   f = -k d - c P (u - X'),   E = k |d|^2/2,
 ///

@@ -16,6 +16,9 @@ class FactorOverTime {
   struct Row {
     double time, factor;  // s, and the factor there
   };
+  /// Returns the rows of numbers that alternate between time and factor.
+  static std::vector<Row> rows_of(In numbers);
+
   FactorOverTime() = default;
   /// Takes rows in order of time. Throws InputError naming `key` and `where` on numbers
   /// that are not finite and on times that do not increase.
@@ -38,8 +41,6 @@ class FactorOverTime {
   std::vector<double> times() const;
 
  private:
-  static std::vector<Row> rows_of(In numbers);
-
   std::vector<Row> rows_;
 };
 

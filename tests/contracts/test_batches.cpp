@@ -338,6 +338,16 @@ TEST(ReplicatedHead, HoldsStrandsAtRestAsAWorldDoes) {
   EXPECT_TRUE(together.lost.empty());
 }
 
+/// As a batch and as strands: the same frames, and no strand fails.
+void expect_a_batch_as_a_world(const std::string& text) {
+  const auto run = batch(parse_outline(text, "batch.toml"));
+  const Scene scene = parse_scene(text, "batch.toml");
+  const Course strands = of_strands(scene), together = of_batch(*run, scene);
+  EXPECT_EQ(together.frames, strands.frames);
+  EXPECT_TRUE(together.lost.empty());
+  EXPECT_TRUE(strands.lost.empty());
+}
+
 TEST(ReplicatedHead, HoldsStrandsBySupportsAsAWorldDoes) {
   for (const std::string model : {"super_helix", "der"}) {
     const std::string text =
@@ -350,13 +360,7 @@ TEST(ReplicatedHead, HoldsStrandsBySupportsAsAWorldDoes) {
         "keyframes = [[0, 0.02, 0, 0.01]]\n[[supports]]\nstrand = 2\n"
         "kind = \"direction\"\n";
     SCOPED_TRACE(model);
-    const SceneOutline outline = parse_outline(text, "batch.toml");
-    const auto run = batch(outline);
-    const Scene scene = parse_scene(text, "batch.toml");
-    const Course strands = of_strands(scene), together = of_batch(*run, scene);
-    EXPECT_EQ(together.frames, strands.frames);
-    EXPECT_TRUE(together.lost.empty());
-    EXPECT_TRUE(strands.lost.empty());
+    expect_a_batch_as_a_world(text);
   }
 }
 
@@ -403,13 +407,7 @@ TEST(ReplicatedHead, DrivesStrandsAsAWorldDoes) {
         "[[effects.natural_shape]]\ncurvature_per_m = [[0, 0], [0.02, 20]]\n"
         "[[supports]]\nstrand = 1\nstiffness_n_per_m = 1e-3\n";
     SCOPED_TRACE(model);
-    const SceneOutline outline = parse_outline(text, "batch.toml");
-    const auto run = batch(outline);
-    const Scene scene = parse_scene(text, "batch.toml");
-    const Course strands = of_strands(scene), together = of_batch(*run, scene);
-    EXPECT_EQ(together.frames, strands.frames);
-    EXPECT_TRUE(together.lost.empty());
-    EXPECT_TRUE(strands.lost.empty());
+    expect_a_batch_as_a_world(text);
   }
 }
 

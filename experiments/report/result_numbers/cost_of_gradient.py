@@ -132,16 +132,20 @@ def over_tip(tables):
             f"the error of the tip over the length. The median over their methods and steps is {number(ratio.median())}.")
 
 
-def by_steps(tables):
-    """Errors of `super_helix`: a row for each method, a column for each number of steps, tip over length and gradient."""
-    rows = _smooth(tables)
-    rows = rows[rows["model"] == "super_helix"]
+def _by_method_and_steps(rows):
+    """Returns a row for each method, a column for each number of steps: error of the tip over the length, largest other error."""
     steps = sorted(rows["steps"].unique())
     lines = []
     for method, members in groups(rows, "integrator"):
         cells = {row["steps"]: f"{percent(row['tip_error_rel'])}, {percent(row['gradient_error_rel'])}" for row in records(members)}
         lines.append([f"`{method}`", *(cells.get(one, "") for one in steps)])
     return table(["method", *(f"{one} steps" for one in steps)], lines)
+
+
+def by_steps(tables):
+    """Errors of `super_helix`: of the tip over the length, and of the gradient."""
+    rows = _smooth(tables)
+    return _by_method_and_steps(rows[rows["model"] == "super_helix"])
 
 
 def in_space(tables):
@@ -248,11 +252,5 @@ def fit_by_backward_euler(tables):
 
 
 def fits(tables):
-    """Largest error of the four fitted values: a row for each method, a column for each number of steps."""
-    rows = _fits(tables)
-    steps = sorted(rows["steps"].unique())
-    lines = []
-    for method, members in groups(rows, "integrator"):
-        cells = {row["steps"]: f"{percent(row['tip_error_rel'])}, {percent(row['gradient_error_rel'])}" for row in records(members)}
-        lines.append([f"`{method}`", *(cells.get(one, "") for one in steps)])
-    return table(["method", *(f"{one} steps" for one in steps)], lines)
+    """Errors of fits: of the tip over the length, and the largest of the four fitted values."""
+    return _by_method_and_steps(_fits(tables))
