@@ -407,7 +407,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"threads", "good.toml --threads 0", "threads"},
         Wrong{"no_scenes", "--out out", "scene"},
         Wrong{"second_is_bad", "good.toml typo.toml --out out", "linear_drag"},
-        Wrong{"verify", "good.toml --verify --out out", "tolerance"},
+        Wrong{"verify", "good.toml --verify --out out", "position_tol_rel"},
         Wrong{"error_bars_of_sweeps", "sweeps.toml --error-bars --out out",
               "stable_cosserat_rods ends a step after a number of sweeps"},
         Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
