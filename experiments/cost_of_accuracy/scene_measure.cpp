@@ -114,7 +114,7 @@ SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
     return tip_paths(run, 0, limit);
   };
   TipPaths fine = of(elements);
-  Outcome made{std::move(fine.x), fine.once_s, fine.indicator,
+  Outcome made{std::move(fine.x), fine.once_s, fine.work, fine.indicator,
                static_cast<double>(fine.stats.steps) / strands()};
   if (!method.extrapolated) return made;
   const int few = coarser(elements);
@@ -127,6 +127,7 @@ SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
     made.tips[i] += factor * (made.tips[i] - coarse.x[i]);
   }
   made.once_s += coarse.once_s;
+  made.work += coarse.work;
   made.indicator = std::max(made.indicator, coarse.indicator);
   return made;
 }
@@ -153,6 +154,7 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
             : run.once_s;
     Trial made{0, elements, substeps, tip_error(run.tips, reference_, comparison_.length),
                wall_s};
+    made.work = run.work;
     made.indicator = run.indicator;
     made.steps = run.steps;
     return made;

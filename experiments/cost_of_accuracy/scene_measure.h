@@ -84,7 +84,7 @@ class SceneMeasure {
   /// Results of one run, or of two whose tips are extrapolated.
   struct Outcome {
     std::vector<double> tips;
-    double once_s = 0, indicator = 0, steps = 0;
+    double once_s = 0, work = 0, indicator = 0, steps = 0;
   };
   Scene scene(const Method& method, int elements, int substeps) const;
   Outcome outcome(const Method& method, int elements, int substeps, double most_s = never,

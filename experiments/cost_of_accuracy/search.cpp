@@ -120,7 +120,25 @@ const Trial* Search::run(std::size_t method, int elements, int substeps) {
   }
   seen_.emplace(place, runs_.size());
   runs_.push_back(*found);
+  price(runs_.back());
   return &runs_.back();
+}
+
+void Search::price(Trial& measured) {
+  if (measured.work <= 0) return;
+  const auto key = [](const Trial& run) {
+    return std::pair(run.method, std::ilogb(run.elements));
+  };
+  const double now = measured.wall_s / measured.work;
+  const auto [known, first] = price_.try_emplace(key(measured), now);
+  if (first || now >= known->second) {
+    measured.wall_s = known->second * measured.work;
+    return;
+  }
+  known->second = now;
+  for (Trial& run : runs_) {
+    if (key(run) == known->first) run.wall_s = now * run.work;
+  }
 }
 
 double Search::neighbour_error(const Trial& own, Neighbour which) {
@@ -385,7 +403,7 @@ void Search::sweep(std::size_t method, int elements, double target) {
   // The last that may cost no more than the best, by the run nearest to one with `like`.
   const auto affordable = [&](int like) {
     const double one_s = expected_s(method, elements, like) / like;
-    const double most = one_s > 0 ? best->wall_s / one_s : 0;
+    const double most = one_s > 0 ? noise * best->wall_s / one_s : 0;
     return std::ranges::upper_bound(tried, most) - tried.begin() - 1;
   };
   // Where a tolerance chooses the steps, each run corrects what the next one may take.

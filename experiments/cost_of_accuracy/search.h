@@ -60,6 +60,10 @@ double ladder_slack(const SearchPlan& plan, double noise);
 /// Wherever a best run decides what is tried next, its neighbours must hold: accidentally
 /// accurate runs are passed over. `stop` decides how far the search goes; the search
 /// itself uses no clock except to compare times of runs.
+///
+/// One time of a short run scatters by tens of per cent, its count of work does not. Runs
+/// are compared by work x price. The price of a method (s for a unit of work) is the
+/// least that was measured with similar elements, within a power of two.
 class Search {
  public:
   /// A run and its time; empty if it fails.
@@ -124,6 +128,7 @@ class Search {
   int most_substeps(std::size_t method, int elements) const;
   double expected_s(std::size_t method, int elements, int substeps) const;
   double neighbour_error(const Trial& run, Neighbour which);
+  void price(Trial& measured);
   bool stopped();
   std::vector<std::size_t> promising_first();
   void climb(std::size_t method);
@@ -141,6 +146,7 @@ class Search {
   Changed changed_;
   std::function<bool()> stop_;
   std::vector<Trial> runs_;
+  std::map<std::pair<std::size_t, int>, double> price_;       // method, log2 of elements
   std::map<Place, std::optional<std::size_t>> seen_;          // of runs_; none: failed
   std::set<std::tuple<std::size_t, double, Bound>> refined_;  // methods and targets
   std::vector<std::size_t> order_;                            // methods, promising first

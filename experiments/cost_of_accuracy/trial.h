@@ -48,7 +48,9 @@ struct Trial {
   int elements = 0;
   int substeps = 0;  // steps per frame
   double error = 0;
+  /// Measured, or of a search the work at the least price of it (Search).
   double wall_s = 0;
+  double work = 0;  // total_work(); 0: not counted
   // Number of neighbours examined (see Neighbour), their largest error, and which has it.
   int examined = 0;
   double neighbours = 0;

@@ -52,6 +52,7 @@ TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
   paths.once_s = timer.seconds();
   paths.indicator = world.error_indicator();
   paths.stats = world.stats();
+  paths.work = world.work();
   if (repeat == 0) return paths;
   if (paths.once_s > long_run_s) {
     paths.wall_s = paths.once_s;

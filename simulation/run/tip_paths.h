@@ -15,6 +15,7 @@ struct TipPaths {
   double wall_s = 0;      // once_s if that is long, else the median of repeats
   double indicator = 0;   // World::error_indicator at the end
   Stats stats;            // World::stats at the end
+  double work = 0;        // World::work at the end
 };
 
 /// Limits at which a run is abandoned, checked after every frame.
