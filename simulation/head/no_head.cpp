@@ -50,6 +50,12 @@ std::optional<NoHead> no_integrator(const Scene& scene) {
                 "\"tr_bdf2\""};
 }
 
+/// Lanes eliminate along the strand.
+std::optional<NoHead> no_solver(const Parameters& p) {
+  if (p.word("solver") == "auto") return {};
+  return no_option(p, "solver", "leave out [model] solver");
+}
+
 std::optional<NoHead> no_springs(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (auto no = no_integrator(scene)) return no;
@@ -59,7 +65,30 @@ std::optional<NoHead> no_springs(const Scene& scene) {
   if (p.word("torsion") != "none") {
     return no_option(p, "torsion", "give [model] torsion = \"none\"");
   }
+  if (auto no = no_solver(p)) return no;
   return no_jacobian(scene, "filtered");
+}
+
+std::optional<NoHead> no_rods(const Scene& scene) {
+  const Parameters& p = scene.model_options;
+  if (auto no = no_integrator(scene)) return no;
+  if (p.word("stretch") != "extensible") {
+    return no_option(p, "stretch", "give [model] stretch = \"extensible\"");
+  }
+  if (p.word("twist") != "dynamic") {
+    return no_option(p, "twist", "give [model] twist = \"dynamic\"");
+  }
+  if (auto no = no_solver(p)) return no;
+  // Lanes leave out how friction changes with lengthening (DerForces::ByLengthening):
+  // iterations mend that, a single correction does not.
+  if (scene.integrator == "linearly_implicit_midpoint") {
+    return NoHead{
+        "der by linearly_implicit_midpoint, whose single correction needs "
+        "all derivatives of the internal friction",
+        "use [integrator] id = \"linearly_implicit_euler\" or "
+        "\"backward_euler\""};
+  }
+  return no_jacobian(scene, "elastic");
 }
 
 std::optional<NoHead> no_quaternions(const Scene& scene) {
@@ -89,12 +118,13 @@ std::optional<NoHead> no_quaternions(const Scene& scene) {
 std::optional<NoHead> no_model(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (steps_springs(scene)) return no_springs(scene);
+  if (steps_rods(scene)) return no_rods(scene);
   if (steps_quaternions(scene)) return no_quaternions(scene);
   if (scene.model->id != "super_helix" && !steps_chains(scene) &&
       !steps_clothoids(scene)) {
     return NoHead{std::string(scene.model->id),
                   "use [model] id = \"super_helix\", \"super_clothoid\", "
-                  "\"articulated_chain\", \"mass_spring\", \"corde\" or "
+                  "\"articulated_chain\", \"mass_spring\", \"der\", \"corde\" or "
                   "\"xpbd_cosserat\""};
   }
   if (auto no = no_integrator(scene)) return no;
@@ -256,8 +286,9 @@ bool steps_springs(const Scene& scene) { return scene.model->id == "mass_spring"
 bool steps_quaternions(const Scene& scene) {
   return scene.model->id == "corde" || scene.model->id == "xpbd_cosserat";
 }
+bool steps_rods(const Scene& scene) { return scene.model->id == "der"; }
 bool steps_edges(const Scene& scene) {
-  return steps_springs(scene) || steps_quaternions(scene);
+  return steps_springs(scene) || steps_rods(scene) || steps_quaternions(scene);
 }
 bool steps_chains(const Scene& scene) { return scene.model->id == "articulated_chain"; }
 bool steps_clothoids(const Scene& scene) { return scene.model->id == "super_clothoid"; }

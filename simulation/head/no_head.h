@@ -27,9 +27,11 @@ std::optional<NoHead> no_lanes(const Scene& scene,
 std::optional<NoHead> no_head(const SceneOutline& outline,
                               models::HeadNumber number = models::HeadNumber::float64);
 
-/// Returns whether a scene in lanes has springs; the next two: rods with a quaternion for
-/// every edge, rigid links. Otherwise it has super-helices.
+/// Returns whether a scene in lanes has springs. Where none of these functions is true it
+/// has super-helices.
 bool steps_springs(const Scene& scene);
+/// Returns whether a scene in lanes has discrete elastic rods.
+bool steps_rods(const Scene& scene);
 /// Returns whether a scene in lanes has rods with a quaternion for every edge.
 bool steps_quaternions(const Scene& scene);
 /// Returns whether a scene in lanes has rigid links.

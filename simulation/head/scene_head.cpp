@@ -57,6 +57,7 @@ HeadOptions options_of(const Scene& scene) {
 std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
                                  const HeadPack& pack) {
   if (steps_springs(scene)) return spring_head(options, pack);
+  if (steps_rods(scene)) return der_head(options, pack);
   if (scene.model->id == "corde") return corde_head(options, pack);
   if (steps_quaternions(scene)) return cosserat_head(options, pack);
   if (steps_clothoids(scene)) return clothoid_head(options, pack);

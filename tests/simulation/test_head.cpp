@@ -139,7 +139,7 @@ constexpr const char* models_in_all[] = {"super_helix", "super_clothoid",
 constexpr const char* models_by_all[] = {"super_helix", "super_clothoid",
                                          "articulated_chain", "mass_spring", "corde"};
 std::string exact(const std::string& model, int points) {
-  return model == "mass_spring" || model == "corde"
+  return model == "mass_spring" || model == "corde" || model == "der"
              ? fmt::format("id = \"{}\"\n", model)
              : fmt::format("id = \"{}\"\nquadrature = {}\n", model, points);
 }
@@ -386,6 +386,14 @@ INSTANTIATE_TEST_SUITE_P(More, HeadBy,
                                                           "mass_spring"),
                                           testing::ValuesIn(exact_methods),
                                           testing::Values(false)),
+                         name_of);
+
+// By one correction der is replicated.
+INSTANTIATE_TEST_SUITE_P(Rods, HeadBy,
+                         testing::Combine(testing::Values("der"),
+                                          testing::Values(exact_methods[0],
+                                                          exact_methods[2]),
+                                          testing::Bool()),
                          name_of);
 
 Hair controlled(const char* model, double tolerance) {
@@ -968,7 +976,15 @@ TEST_P(HeadReplicated, WithTheReasonInOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     Heads, HeadReplicated,
     testing::Values(
-        Replicated{"Der", {.model = "id = \"der\"\n"}, "der", "\"mass_spring\""},
+        Replicated{"Der",
+                   {.model = "id = \"der\"\ntwist = \"quasi_static\"\n"},
+                   "twist = \"quasi_static\"",
+                   "\"dynamic\""},
+        Replicated{"DerByOneCorrection",
+                   {.model = "id = \"der\"\n",
+                    .integrator = "id = \"linearly_implicit_midpoint\"\ndt_s = 1e-3\n"},
+                   "der by linearly_implicit_midpoint",
+                   "\"backward_euler\""},
         Replicated{"RodsOfQuaternionsOnce",
                    {.model = "id = \"corde\"\n"},
                    "linearly_implicit_euler with an exact Jacobian",

@@ -19,8 +19,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   using Base = EdgeModel<Real, Kernel::per_element>;
   using Base::clamp, Base::elements;
   using V = Vec3<Real>;
-  static constexpr bool iterates = exact, takes_bodies = false, takes_stresses = false;
-  static constexpr double newton_part = 1e-2;
+  static constexpr bool iterates = exact, takes_stresses = exact;
   struct Strand {
     LaneRoot<Real> root;
     DerMaterial<Real> material;
@@ -29,13 +28,21 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   using Clamp = LaneClamp<Real>;
   struct Scratch {
     explicit Scratch(const DerModel& model)
-        : placed(model.elements()), now(model.elements()), factors(model.elements()) {}
+        : placed(model.elements()),
+          now(model.elements()),
+          factors(model.elements()),
+          loads(model.elements()),
+          tensions(exact ? model.elements() : 0) {}
     std::vector<typename Kernel::Placed> placed, now;
     std::vector<typename Kernel::Factor> factors;
+    EdgeLoads<Real, exact> loads;
+    std::vector<Real> tensions;  // of take_stresses()
   };
 
+  /// `units`, which are whole with the first strand, must outlive it.
   DerModel(const LaneOptions& options, const HeadUnits& units)
       : Base(options),
+        units_(units),
         turning_(options.rotary_inertia),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -79,26 +86,42 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   Real renew(Element* elements, const Clamp& clamp, Real* q, Real* v) const {
     return kernel_.renew(elements, clamp, q, v);
   }
+  /// Exact ones are found at the states of newton() and again().
+  void find_loads(const Strand& strand, std::span<const NearBody> bodies,
+                  const RootPose& pose, const HeadUnits& /*units*/, double h,
+                  const Real* q, const Real* v, Scratch& scratch) const {
+    scratch.loads.meet(bodies, units_, h, Base::root_at(strand, pose.frame),
+                       strand.material, q, v, Kernel::per_element);
+  }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
+    const auto* loads = loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
-      size = kernel_.newton(strand.material, elements, clamp, w, q, v, a, correction,
-                            scratch.placed.data(), scratch.factors.data());
+      size = kernel_.newton(strand.material, elements, clamp, w, q, v, a, loads,
+                            correction, scratch.placed.data(), scratch.factors.data(),
+                            scratch.tensions.data());
     });
     return size;
   }
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
+    const auto* loads = loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
-      size = kernel_.again(strand.material, elements, clamp, w, q, v, a, correction,
-                           scratch.placed.data(), scratch.factors.data(),
+      size = kernel_.again(strand.material, elements, clamp, w, q, v, a, loads,
+                           correction, scratch.placed.data(), scratch.factors.data(),
                            scratch.now.data());
     });
     return size;
+  }
+
+  void take_stresses(const Strand& strand, const Element* /*edges*/, const Real* q,
+                     const Real& which, Scratch& scratch) const {
+    take_tensions<Kernel::per_element>(strand.material, elements(), q, which,
+                                       scratch.tensions.data());
   }
 
   LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
@@ -108,6 +131,12 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   }
 
  private:
+  const typename Kernel::Load* loads_at(const Strand& strand, const Real* q,
+                                        const Real* v, Scratch& scratch) const {
+    return scratch.loads.at(units_, strand.material, q, v, Kernel::per_element);
+  }
+
+  const HeadUnits& units_;
   bool turning_;
   Kernel kernel_;
 };

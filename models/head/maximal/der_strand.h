@@ -9,6 +9,7 @@
 #include "math/lanes.h"
 #include "models/head/lane_energies.h"
 #include "models/head/lane_root.h"
+#include "models/head/maximal/edge_loads.h"
 #include "models/maximal/kernel/der_forces.h"
 
 namespace tress::models {
@@ -90,6 +91,8 @@ class DerStrand {
   /// Elimination by the kind of Jacobian.
   using Elimination =
       std::conditional_t<exact, DerExactElimination<T>, DerStiffElimination<T>>;
+  /// Load of bodies by the kind of Jacobian.
+  using Load = typename EdgeLoads<T, exact>::Load;
   /// Forces of edges and joints.
   using Forces = DerForces<T, exact>;
   /// An edge with the residual of its node.
@@ -106,23 +109,36 @@ class DerStrand {
   /// Returns the number of unknowns.
   int unknowns() const { return per_element * n_; }
 
-  /// correction = S^-1 r at (q, v, a). Returns its size per lane: the largest of
-  /// displacements over edges, angles, speeds over rate times edges, angular speeds over
-  /// rate; NaN unless all are finite. `placed` and `factors` (edges) then serve again().
+  /// correction = S^-1 r at (q, v, a), with the loads of effects on the ends of edges, or
+  /// null. If it is `exact`, edges resist turns by these `tensions`, which the correction
+  /// replaces by those that it found (StressForm); else they are not used. Returns its
+  /// size per lane: the largest of displacements over edges, angles, speeds over rate
+  /// times edges, angular speeds over rate; NaN unless all are finite. `placed` and
+  /// `factors` (edges) then serve again().
   TRESS_FLATTEN T newton(const DerMaterial<T>& m, const DerEdge<T>* edges,
                          const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
-                         const T* a, T* correction, Placed* placed,
-                         Factor* factors) const {
-    place<true>(m, edges, clamp, w, q, v, a, placed);
+                         const T* a, const Load* loads, T* correction, Placed* placed,
+                         Factor* factors, [[maybe_unused]] T* tensions) const {
+    place<true>(m, edges, clamp, w, q, v, a, loads, placed);
     const T pos(w.pos), along = pos * m.stretch, turning = T(w.acc) * m.inertia;
     typename Elimination::Beyond beyond;
     Vec f_x{}, f_omega{}, moment_behind{};
     for (int i = n_ - 1; i >= 0; --i) {
       const Placed& e = placed[i];
       beyond.add_inertia(m.inertia_of_node(w, i, n_));
+      if (loads != nullptr) [[unlikely]] {
+        const auto& load = loads[i].load;
+        if constexpr (exact) {
+          beyond.xx =
+              where_less(T(0), loads[i].some,
+                         beyond.xx + pos * load.by_x + T(w.vel) * load.by_u, beyond.xx);
+        } else {
+          beyond.xx = where_less(T(0), loads[i].some, beyond.xx + load.block, beyond.xx);
+        }
+      }
       if constexpr (exact) {
         Elimination::eliminate(e, i == 0, pos, along, turning, e.moment - moment_behind,
-                               e.tension, beyond, factors[i], AnyPivots{});
+                               tensions[i], beyond, factors[i], AnyPivots{});
       } else {
         Elimination::eliminate(e, i == 0, along, turning, beyond, factors[i],
                                AnyPivots{});
@@ -136,16 +152,23 @@ class DerStrand {
         f_omega = e.turn * (f_omega - e.moment);
       }
     }
-    return substitute(m, w, placed, factors, correction);
+    const T size = substitute(m, w, placed, factors, correction);
+    if constexpr (exact) {
+      for (int i = 0; i < n_; ++i) {
+        const Placed& e = placed[i];
+        tensions[i] = e.tension - along * dot(e.frame.e0, load3(correction + 4 * i));
+      }
+    }
+    return size;
   }
 
   /// Computes a correction with the matrix of the last newton() at another state. `now`
   /// (edges): scratch.
   TRESS_FLATTEN T again(const DerMaterial<T>& m, const DerEdge<T>* edges,
                         const LaneClamp<T>& clamp, Weights w, const T* q, const T* v,
-                        const T* a, T* correction, const Placed* placed, Factor* factors,
-                        Placed* now) const {
-    place<false>(m, edges, clamp, w, q, v, a, now);
+                        const T* a, const Load* loads, T* correction,
+                        const Placed* placed, Factor* factors, Placed* now) const {
+    place<false>(m, edges, clamp, w, q, v, a, loads, now);
     Vec f_x{}, f_omega{}, from_behind{};
     for (int i = n_ - 1; i >= 0; --i) {
       // The residual in terms of nodes and angles: it acts where the matrix was taken.
@@ -223,7 +246,8 @@ class DerStrand {
  private:
   template <bool with_tangent>
   void place(const DerMaterial<T>& m, const DerEdge<T>* edges, const LaneClamp<T>& clamp,
-             Weights w, const T* q, const T* v, const T* a, Placed* placed) const {
+             Weights w, const T* q, const T* v, const T* a, const Load* loads,
+             Placed* placed) const {
     Vec node_v{}, node_a{};
     DerMotion<T> before{clamp.frame.back(clamp.omega), T(0)};
     FrameOf<T> frame_before = clamp.frame;
@@ -243,6 +267,9 @@ class DerStrand {
       e.turning = m.inertia * a[4 * i + 3];
       const T part(i + 1 < n_ ? 1 : 0.5);
       e.force = part * (m.mass * (node_a - gravity_) + m.drag * node_v);
+      if (loads != nullptr) [[unlikely]] {
+        e.force = where_less(T(0), loads[i].some, e.force - loads[i].load.force, e.force);
+      }
       frame_before = e.frame;
       before = own;
     }

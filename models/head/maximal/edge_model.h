@@ -15,6 +15,19 @@
 
 namespace tress::models {
 
+/// Writes the tensions of `n` edges at q, of `per_element` numbers each, in lanes with
+/// `which` > 0. Material: their stretch (force per lengthening) and length at rest.
+template <int per_element, class Material, class T>
+void take_tensions(const Material& m, std::size_t n, const T* q, const T& which,
+                   T* tensions) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3<T> edge = load3(q + per_element * i);
+    const T square = dot(edge, edge);
+    tensions[i] = where_less(
+        T(0), which, m.stretch * (square * inverse_sqrt(square) - m.length), tensions[i]);
+  }
+}
+
 /// Common code of LaneModels (models/head/lane_model.h) whose strands are chains of
 /// edges. Edges are numbered from the root. An edge has `per_element` numbers: the vector
 /// along it (3) in axes of the world, then numbers without unit. The rate of the first
@@ -29,6 +42,9 @@ class EdgeModel {
   /// Frame and motion of the root.
   using Clamp = LaneClamp<Real>;
   static constexpr bool straight = true;  // whether elements are straight
+  static constexpr bool takes_bodies = true;
+  static constexpr double most_stretched = 1.5;  // runs end where an edge is longer
+  static constexpr double newton_part = 1e-2;    // as Block::newton_part()
   /// Remedy of errors.
   static constexpr const char* use_others =
       "use super_helix, or run the strands one by one";
@@ -64,6 +80,11 @@ class EdgeModel {
     return static_cast<double>(n_) * lane_of(strand.material.mass, lane);
   }
 
+  /// Returns the length of a strand.
+  template <class Strand>
+  Real length(const Strand& strand) const {
+    return Real(static_cast<double>(n_)) * strand.material.length;
+  }
   /// Returns the length of an edge.
   template <class Strand>
   Real element_length(const Strand& strand) const {

@@ -19,9 +19,7 @@ class QuaternionModel
   using V = Vec3<Real>;
   using Element = typename Kernel::Element;
   using Clamp = typename Kernel::Clamp;
-  static constexpr bool iterates = true, takes_bodies = true, takes_stresses = true;
-  static constexpr double most_stretched = 1.5;  // runs end where an edge is longer
-  static constexpr double newton_part = 1e-2;
+  static constexpr bool iterates = true, takes_stresses = true;
 
   struct Strand {
     LaneRoot<Real> root;
@@ -33,14 +31,11 @@ class QuaternionModel
         : factors(model.elements()),
           forces(model.elements()),
           stresses(model.elements()),
-          node_loads(model.elements()) {}
+          loads(model.elements()) {}
     std::vector<typename Kernel::Factor> factors;
     std::vector<V> forces;
     std::vector<typename Kernel::Stresses> stresses;  // of take_stresses()
-    NodeLoads<Real, ExactLoad> node_loads;
-    // Of find_loads(): what may touch the strands, and where their roots are.
-    std::span<const NearBody> bodies;
-    V root;
+    EdgeLoads<Real, true> loads;
   };
 
   /// `units`, which are whole with the first strand, must outlive it.
@@ -104,15 +99,12 @@ class QuaternionModel
              Real* /*v*/) const {
     return Real(0);
   }
-  Real length(const Strand& strand) const {
-    return Real(static_cast<double>(this->elements())) * strand.material.length;
-  }
   /// They are found at the states of newton() and again().
   void find_loads(const Strand& strand, std::span<const NearBody> bodies,
                   const RootPose& pose, const HeadUnits& /*units*/, double /*h*/,
-                  const Real* /*q*/, const Real* /*v*/, Scratch& scratch) const {
-    scratch.bodies = bodies;
-    scratch.root = Base::root_at(strand, pose.frame);
+                  const Real* q, const Real* v, Scratch& scratch) const {
+    scratch.loads.meet(bodies, units_, 0, Base::root_at(strand, pose.frame),
+                       strand.material, q, v, Kernel::per_element);
   }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
@@ -149,10 +141,9 @@ class QuaternionModel
   }
 
  private:
-  auto loads(const Strand& strand, const Real* q, const Real* v, Scratch& scratch) const {
-    return scratch.node_loads.find(scratch.bodies, units_, 0, scratch.root,
-                                   strand.material.length, strand.material.drag, q, v,
-                                   Kernel::per_element);
+  const auto* loads(const Strand& strand, const Real* q, const Real* v,
+                    Scratch& scratch) const {
+    return scratch.loads.at(units_, strand.material, q, v, Kernel::per_element);
   }
 
   const HeadUnits& units_;

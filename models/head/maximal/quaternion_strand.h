@@ -7,7 +7,7 @@
 #include "math/instructions.h"
 #include "math/lane_choice.h"
 #include "models/head/lane_energies.h"
-#include "models/head/maximal/node_loads.h"
+#include "models/head/maximal/edge_loads.h"
 #include "models/maximal/strained.h"
 #include "models/quaternion_rods/quaternion_elimination.h"
 #include "models/quaternion_rods/quaternion_joint.h"
@@ -70,7 +70,7 @@ class QuaternionStrand {
   /// Factors of an element.
   using Factor = typename Elimination::Factor;
   /// Load of effects on a point.
-  using Load = NodeLoad<T, ExactLoad>;
+  using Load = typename EdgeLoads<T, true>::Load;
   static constexpr int per_element = Elimination::size;  // unknowns of an edge
 
   /// Elastic stresses of an edge and the joint before it.

@@ -3,7 +3,6 @@
 
 #include "models/head/lane_block.h"
 #include "models/head/maximal/edge_model.h"
-#include "models/head/maximal/node_loads.h"
 #include "models/head/maximal/spring_strand.h"
 #include "models/maximal/nodal_strand.h"
 
@@ -19,9 +18,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   using Base = EdgeModel<Real, Kernel::per_element>;
   using Base::clamp, Base::elements;
   using V = Vec3<Real>;
-  static constexpr bool iterates = exact, takes_bodies = true, takes_stresses = exact;
-  static constexpr double most_stretched = 1.5;  // runs end where an edge is longer
-  static constexpr double newton_part = 1e-2;
+  static constexpr bool iterates = exact, takes_stresses = exact;
 
   struct Strand {
     LaneRoot<Real> root;
@@ -29,29 +26,19 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   };
   using Element = SpringEdge<Real>;
   using Clamp = LaneClamp<Real>;
-  using Load = typename Kernel::Load;
-  using Loads =
-      std::conditional_t<exact, NodeLoads<Real, ExactLoad>, NodeLoads<Real, PointLoad>>;
-  struct StiffScratch {
-    explicit StiffScratch(const SpringModel& model)
+  struct Scratch {
+    explicit Scratch(const SpringModel& model)
         : placed(model.elements()),
           factors(model.elements()),
-          node_loads(model.elements()) {}
+          loads(model.elements()),
+          now(exact ? model.elements() : 0),
+          tensions(now.size()) {}
     std::vector<typename Kernel::Placed> placed;
     std::vector<typename Kernel::Factor> factors;
-    Loads node_loads;
-    const Load* loads = nullptr;  // of find_loads()
-  };
-  struct ExactScratch : StiffScratch {
-    explicit ExactScratch(const SpringModel& model)
-        : StiffScratch(model), now(model.elements()), tensions(model.elements()) {}
+    EdgeLoads<Real, exact> loads;
     std::vector<typename Kernel::Placed> now;
     std::vector<Real> tensions;  // of take_stresses()
-    // Of find_loads(): which may touch the strands, and where their roots are.
-    std::span<const NearBody> bodies;
-    V root;
   };
-  using Scratch = std::conditional_t<exact, ExactScratch, StiffScratch>;
 
   /// `units`, which are whole with the first strand, must outlive it.
   SpringModel(const LaneOptions& options, const HeadUnits& units)
@@ -97,29 +84,21 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
     return Real(0);
   }
 
-  Real length(const Strand& strand) const {
-    return Real(static_cast<double>(this->elements())) * strand.material.length;
-  }
   /// Exact ones are found at the states of newton() and again().
   void find_loads(const Strand& strand, std::span<const NearBody> bodies,
                   const RootPose& pose, const HeadUnits& /*units*/, double h,
                   const Real* q, const Real* v, Scratch& scratch) const {
-    const V root = Base::root_at(strand, pose.frame);
-    if constexpr (exact) {
-      scratch.bodies = bodies;
-      scratch.root = root;
-    } else {
-      find_loads(strand, bodies, root, h, q, v, scratch);
-    }
+    scratch.loads.meet(bodies, units_, h, Base::root_at(strand, pose.frame),
+                       strand.material, q, v, Kernel::per_element);
   }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
-    if constexpr (exact) find_loads(strand, q, v, scratch);
+    const auto* loads = loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
       const auto solve = [&](auto*... tensions) {
-        return kernel_.newton(strand.material, elements, clamp, w, q, v, a, scratch.loads,
+        return kernel_.newton(strand.material, elements, clamp, w, q, v, a, loads,
                               correction, scratch.placed.data(), scratch.factors.data(),
                               tensions...);
       };
@@ -134,18 +113,19 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
-    find_loads(strand, q, v, scratch);
+    const auto* loads = loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
-      size = kernel_.again(strand.material, elements, clamp, w, q, v, a, scratch.loads,
+      size = kernel_.again(strand.material, elements, clamp, w, q, v, a, loads,
                            correction, scratch.placed.data(), scratch.factors.data(),
                            scratch.now.data());
     });
     return size;
   }
-  void take_stresses(const Strand& strand, const Element* /*elements*/, const Real* q,
+  void take_stresses(const Strand& strand, const Element* /*edges*/, const Real* q,
                      const Real& which, Scratch& scratch) const {
-    kernel_.take_tensions(strand.material, q, which, scratch.tensions.data());
+    take_tensions<Kernel::per_element>(strand.material, elements(), q, which,
+                                       scratch.tensions.data());
   }
 
   LaneEnergies<Real> energies(const Strand& strand, const Element* elements,
@@ -155,17 +135,9 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   }
 
  private:
-  void find_loads(const Strand& strand, std::span<const NearBody> bodies, const V& root,
-                  double h, const Real* q, const Real* v, StiffScratch& scratch) const {
-    by_registers_of<Real>([&] {
-      scratch.loads =
-          scratch.node_loads.find(bodies, units_, h, root, strand.material.length,
-                                  strand.material.drag, q, v, Kernel::per_element);
-    });
-  }
-  void find_loads(const Strand& strand, const Real* q, const Real* v,
-                  ExactScratch& scratch) const {
-    find_loads(strand, scratch.bodies, scratch.root, 0, q, v, scratch);
+  const typename Kernel::Load* loads_at(const Strand& strand, const Real* q,
+                                        const Real* v, Scratch& scratch) const {
+    return scratch.loads.at(units_, strand.material, q, v, Kernel::per_element);
   }
 
   const HeadUnits& units_;

@@ -9,7 +9,7 @@
 #include "math/lanes.h"
 #include "models/head/lane_energies.h"
 #include "models/head/lane_root.h"
-#include "models/head/maximal/node_loads.h"
+#include "models/head/maximal/edge_loads.h"
 #include "models/maximal/kernel/spring_forces.h"
 
 namespace tress::models {
@@ -76,7 +76,7 @@ class SpringStrand {
   /// Factors of an element.
   using Factor = typename Elimination::Factor;
   /// Load of bodies by the kind of Jacobian.
-  using Load = std::conditional_t<exact, NodeLoad<T, ExactLoad>, NodeLoad<T, PointLoad>>;
+  using Load = typename EdgeLoads<T, exact>::Load;
   /// Forces of edges and joints.
   using Forces = SpringForces<T, exact>;
 
@@ -152,18 +152,6 @@ class SpringStrand {
     }
     return substitute(m, w, placed, factors, correction);
   }
-  /// Writes the tensions of the edges at q, in lanes with `which` > 0.
-  void take_tensions(const SpringMaterial<T>& m, const T* q, const T& which,
-                     T* tensions) const {
-    for (int i = 0; i < n_; ++i) {
-      const Vec edge = load3(q + 3 * i);
-      const T square = dot(edge, edge);
-      tensions[i] =
-          where_less(T(0), which, m.stretch * (square * inverse_sqrt(square) - m.length),
-                     tensions[i]);
-    }
-  }
-
   /// Computes the energies at (q, v); `at`: position of the root seen from the head's
   /// position.
   TRESS_FLATTEN LaneEnergies<T> energies(const SpringMaterial<T>& m,

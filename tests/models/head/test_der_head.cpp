@@ -9,7 +9,6 @@
 #include "tests/models/head/exact_methods.h"
 #include "tests/models/head/mixed_hairs.h"
 #include "tests/support/apart.h"
-#include "tests/support/bare_system.h"
 
 namespace tress::test_der_head {
 
@@ -65,10 +64,7 @@ Alone alone(const RodCase& c, const Method& method, std::size_t k, int steps, do
   }
   Options options;
   options.step = h;
-  // Lanes have no stresses of corrections: with them, a step of a strand without friction
-  // ends at another of its solutions.
-  BareSystem iterated(*system);
-  const auto method_of = make_integrator(method.id, iterated, options);
+  const auto method_of = make_integrator(method.id, *system, options);
   EXPECT_EQ(method_of->start(0, q, v), Status::ok);
   EXPECT_EQ(method_of->advance(steps * h), Status::ok) << method_of->failure();
   Alone end;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "models/head/maximal/der_strand.h"
+#include "models/head/maximal/edge_model.h"
 #include "models/maximal/joint_strain.h"
 #include "models/maximal/nodal_strand.h"
 #include "tests/models/head/der_strands.h"
@@ -86,7 +87,7 @@ void compare(const RodCase& c, double h, bool unstretched, double off) {
   const DerStrand<One, exact> kernel(c.elements, Vec3<One>(rod_options(c).gravity));
   std::vector<typename DerStrand<One, exact>::Placed> placed(rod.n()), now(rod.n());
   std::vector<typename DerStrand<One, exact>::Factor> factors(rod.n());
-  std::vector<One> correction(4 * rod.n());
+  std::vector<One> correction(4 * rod.n()), tensions(rod.n());
   const auto of = [&](const BentState& s) {
     return std::array{packed(as_edges(s.q, rod.root)), packed(as_edges(s.v, {})),
                       packed(as_edges(s.a, {}))};
@@ -109,14 +110,15 @@ void compare(const RodCase& c, double h, bool unstretched, double off) {
     EXPECT_NEAR(size, scale * std::max(most / length, typical), off * size);
   };
   const auto [q, v, a] = of(first);
-  double size =
-      kernel.newton(rod.m, rod.edges.data(), rod.clamp, w, q.data(), v.data(), a.data(),
-                    correction.data(), placed.data(), factors.data())[0];
+  take_tensions<4>(rod.m, rod.n(), q.data(), One(1), tensions.data());
+  double size = kernel.newton(rod.m, rod.edges.data(), rod.clamp, w, q.data(), v.data(),
+                              a.data(), nullptr, correction.data(), placed.data(),
+                              factors.data(), tensions.data())[0];
   check(wanted(*system, w, first, first), size);
   const auto [q2, v2, a2] = of(second);
-  size =
-      kernel.again(rod.m, rod.edges.data(), rod.clamp, w, q2.data(), v2.data(), a2.data(),
-                   correction.data(), placed.data(), factors.data(), now.data())[0];
+  size = kernel.again(rod.m, rod.edges.data(), rod.clamp, w, q2.data(), v2.data(),
+                      a2.data(), nullptr, correction.data(), placed.data(),
+                      factors.data(), now.data())[0];
   check(wanted(*system, w, first, second), size);
 }
 

@@ -2,6 +2,7 @@
 // step of Newton's.
 #include <gtest/gtest.h>
 
+#include "models/head/maximal/edge_model.h"
 #include "models/head/maximal/spring_strand.h"
 #include "models/maximal/nodal_strand.h"
 #include "tests/models/head/kernel_strand.h"
@@ -72,7 +73,8 @@ class Corrections {
 
   /// Stresses from there.
   void hold(const BentState& s) {
-    kernel_.take_tensions(springs_.m, edges(s.q).data(), One(1), tensions_.data());
+    take_tensions<3>(springs_.m, tensions_.size(), edges(s.q).data(), One(1),
+                     tensions_.data());
   }
   double newton(const BentState& s) {
     const auto q = edges(s.q), v = packed(spring_edges(s.v, {})),
