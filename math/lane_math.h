@@ -72,6 +72,17 @@ SineCosine<PackOf<Number, width>> sine_cosine(const PackOf<Number, width>& x) {
   return {T(below ? -sine.v : sine.v), T(left ? -cosine.v : cosine.v)};
 }
 
+/// Returns the angle plus the whole turns that bring it nearest to `near`, which is less
+/// than 10^6 turns away: unchanged, to the bit, within half a turn.
+template <class Number, int width>
+PackOf<Number, width> wound(const PackOf<Number, width>& angle,
+                            const PackOf<Number, width>& near) {
+  using T = PackOf<Number, width>;
+  const T rounding(sizeof(Number) == sizeof(double) ? 6755399441055744.0 : 12582912.0);
+  const T shifted = T(0.15915494309189535) * (near - angle) + rounding;
+  return angle + T(6.2831853071795865) * (shifted - rounding);
+}
+
 /// The angle of (x, y) from the x axis, -pi to pi, within 2^-51 (2^-22). In (-0.66, 0.66)
 /// the rational function of [Moshier 1989, Methods and Programs for Mathematical
 /// Functions]; other ratios are reduced to it by pi/4 and pi/2.

@@ -21,8 +21,7 @@ namespace {
 /// between the clamp's frame and edge 0 makes the scheme second order. Rest strains are
 /// those between the chords of the natural shape. Mass is lumped at the nodes, rho (I1 +
 /// I2) l at the angles. A joint's twist starts within half a turn of its rest and counts
-/// whole turns from then on (wound(), joint_strain.h). The twist of a batch's strand
-/// (models/head/maximal/der_strand.h) stays between -pi and pi.
+/// whole turns from then on (wound(), joint_strain.h).
 ///
 /// Frames are functions of q relative to reference frames. A reference frame is fixed
 /// until its edge has turned by more than 60 degrees from it. The function accept() then

@@ -67,7 +67,9 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     const Vec spin = tau * nodal.root.spin;
     for (std::size_t i = 0; i < this->elements(); ++i) {
       const Frame& before = i > 0 ? nodal.natural[i - 1] : nodal.root.place.frame;
-      set_lane(elements[i].rest, lane, joint_strain(before, nodal.natural[i]));
+      const Vec rest = joint_strain(before, nodal.natural[i]);
+      set_lane(elements[i].rest, lane, rest);
+      set_lane(elements[i].twist, lane, rest.x);
       const Frame& frame = nodal.initial[i];
       set_lane(elements[i].tangent, lane, frame.e0);
       set_lane(elements[i].direction, lane, frame.e1);

@@ -36,20 +36,23 @@ template <class T>
 struct DerEdge {
   Vec3<T> rest;                // strain of the joint before it
   Vec3<T> tangent, direction;  // reference frame: e0, e1
+  T twist;  // of that joint at the start of the step, with whole turns (wound())
 
   /// Number of values per lane that steps change.
-  static constexpr std::size_t kept = 6;
+  static constexpr std::size_t kept = 7;
   /// Writes what steps change, of a lane.
   void keep(int lane, double* to) const {
     for (const Vec3<T>* x : {&tangent, &direction}) {
       store3(lane_of(*x, lane), to);
       to += 3;
     }
+    *to = lane_of(twist, lane);
   }
   /// Restores what keep() wrote.
   void recall(int lane, const double* from) {
     set_lane(tangent, lane, load3(from));
     set_lane(direction, lane, load3(from + 3));
+    set_lane(twist, lane, from[6]);
   }
 };
 
@@ -185,14 +188,19 @@ class DerStrand {
     return substitute(m, w, placed, factors, correction);
   }
 
-  /// Takes the present frame of an edge as its reference if it has turned by more than 60
-  /// degrees, as renew_reference() in models/maximal/rod_edge.h; a second call changes
-  /// nothing. Returns > 0 in lanes where some has.
+  /// Begins a step: counts the turns of the twists, and takes the present frame of an
+  /// edge as its reference if it has turned by more than 60 degrees, as renew_reference()
+  /// in models/maximal/rod_edge.h. A second call changes nothing. Returns > 0 in lanes
+  /// where some has.
   T renew(DerEdge<T>* edges, const LaneClamp<T>& clamp, T* q, T* v) const {
     T some(0);
+    FrameOf<T> before = clamp.frame;
     for (int i = 0; i < n_; ++i) {
-      const Vec e = load3(q + 4 * i);
-      const T far = T(0.5) - dot(edges[i].tangent, e) * inverse_sqrt(dot(e, e));
+      const Vec e = load3(q + 4 * i), t = inverse_sqrt(dot(e, e)) * e;
+      const FrameOf<T> now = frame(edges[i], t, q[4 * i + 3]);
+      edges[i].twist = wound(strains(before, now).x, edges[i].twist);
+      before = now;
+      const T far = T(0.5) - dot(edges[i].tangent, t);
       if (all_up_to(far, 0)) [[likely]]
         continue;
       Vec rate = load3(v + 4 * i);
@@ -226,12 +234,10 @@ class DerStrand {
       sum.kinetic += moves(mass, node_v) + T(0.5) * m.inertia * rate * rate;
       sum.first = sum.first + mass * at;
       sum.passes(node_v);
-      const FrameOf<T> now =
-          der_frame(edges[i].tangent, edges[i].direction, t,
-                    T(1) / (T(1) + dot(edges[i].tangent, t)), q[4 * i + 3]);
-      const Matrix turn{{now.back(before.e0), now.back(before.e1), now.back(before.e2)}};
-      const DerJoint<T> joint(turn);
-      const Vec strain = joint.value - edges[i].rest;
+      const FrameOf<T> now = frame(edges[i], t, q[4 * i + 3]);
+      Vec strain = strains(before, now);
+      strain.x = wound(strain.x, edges[i].twist);
+      strain = strain - edges[i].rest;
       const T longer = dot(edge, t) - m.length, half(i == 0 ? 1 : 0.5);
       sum.elastic += T(0.5) * m.stretch * longer * longer +
                      half * (m.stiffness.x * strain.x * strain.x +
@@ -244,6 +250,16 @@ class DerStrand {
   }
 
  private:
+  /// Returns the frame of an edge along t.
+  static FrameOf<T> frame(const DerEdge<T>& edge, const Vec& t, const T& theta) {
+    return der_frame(edge.tangent, edge.direction, t,
+                     T(1) / (T(1) + dot(edge.tangent, t)), theta);
+  }
+  /// Returns the strains of the joint between two frames.
+  static Vec strains(const FrameOf<T>& before, const FrameOf<T>& now) {
+    const Matrix turn{{now.back(before.e0), now.back(before.e1), now.back(before.e2)}};
+    return DerJoint<T>(turn).value;
+  }
   template <bool with_tangent>
   void place(const DerMaterial<T>& m, const DerEdge<T>* edges, const LaneClamp<T>& clamp,
              Weights w, const T* q, const T* v, const T* a, const Load* loads,
@@ -259,7 +275,8 @@ class DerStrand {
       const DerMotion<T> own = Forces::edge(
           edges[i].tangent, edges[i].direction, q[4 * i + 3], edge,
           i == 0 ? given - clamp.v : given, v[4 * i + 3], m.stretch, m.length, e);
-      const DerJoint<T> joint = Forces::strain(frame_before, e);
+      DerJoint<T> joint = Forces::strain(frame_before, e);
+      joint.value.x = wound(joint.value.x, edges[i].twist);
       const T half(i == 0 ? 2 : 1);
       Forces::template joint<with_tangent>(
           joint, joint.value - edges[i].rest, half * m.stiffness, half * m.friction, true,

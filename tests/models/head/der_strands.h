@@ -22,6 +22,7 @@ struct RodCase {
   double friction = 2e-11;      // N m^2 s
   double youngs_modulus = 3e9;  // Pa
   double speed = 1;             // of the head's motion
+  double twist = 0;             // of all shapes, 1/m
 };
 inline void PrintTo(const RodCase& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
@@ -54,8 +55,9 @@ inline models::Strand rod(const RodCase& c, std::size_t k) {
   models::Strand made = models::make_strand(
       material, {4e-5 + 2e-6 * x, 5e-5},
       {.elements = c.elements, .length = 0.25 / (1 + x / 20), .grading = 1},
-      models::uniform_shape(c.curl * natural),
-      models::uniform_shape(c.curl * (c.sprung ? initial : natural)));
+      models::uniform_shape(c.curl * natural + Vec{c.twist, 0, 0}),
+      models::uniform_shape(c.curl * (c.sprung ? initial : natural) +
+                            Vec{c.twist, 0, 0}));
   const simulation::HeadOptions o = rod_options(c);
   made.root = o.motion;
   made.root.centre = o.motion.position;

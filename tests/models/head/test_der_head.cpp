@@ -220,8 +220,9 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, DerHead,
     testing::Values(RodCase{"Curly"}, RodCase{.name = "Moved", .moves = true},
                     RodCase{.name = "Straight", .curl = 0},
-                    // Within half a turn, beyond which a strand alone counts turns.
                     RodCase{.name = "OneEdge", .elements = 1, .curl = 0.3},
+                    // Joints are twisted by more than half a turn.
+                    RodCase{.name = "Wound", .elements = 5, .twist = 80},
                     RodCase{.name = "Fine", .elements = 40, .moves = true},
                     RodCase{.name = "Tight", .curl = 4},
                     RodCase{.name = "InVacuum", .drag = 0, .mass_damping = 0},
@@ -297,12 +298,12 @@ TEST(DerHeadWithLosses, OtherStrandsGoOn) {
 }
 
 TEST(DerHeadMemory, IsTheState) {
-  // q, v, a, rest strain, reference axes of each edge; root and material. With two
-  // accelerations, when they were.
+  // q, v, a, rest strain, reference axes and twist of each edge; root and material. With
+  // two accelerations, when they were.
   EXPECT_LE(head({""}, newton, longest_doubles(), 16)->bytes(),
-            16U * (10 * (3 * 4 + 9) + 25) * sizeof(double));
+            16U * (10 * (3 * 4 + 10) + 25) * sizeof(double));
   EXPECT_LE(head({""}, tr_bdf2, longest_doubles(), 16)->bytes(),
-            16U * (10 * (4 * 4 + 9) + 27) * sizeof(double));
+            16U * (10 * (4 * 4 + 10) + 27) * sizeof(double));
 }
 
 TEST(DerHeadInput, IsRefusedWithTheReason) {

@@ -32,8 +32,9 @@ struct Rod {
     m.rate = typical_rate(strand);
     for (std::size_t i = 0; i < n(); ++i) {
       const Frame& before = i > 0 ? nodal.natural[i - 1] : nodal.root.place.frame;
-      edges[i] = {Vec3<One>(joint_strain(before, nodal.natural[i])),
-                  Vec3<One>(nodal.initial[i].e0), Vec3<One>(nodal.initial[i].e1)};
+      const Vec rest = joint_strain(before, nodal.natural[i]);
+      edges[i] = {Vec3<One>(rest), Vec3<One>(nodal.initial[i].e0),
+                  Vec3<One>(nodal.initial[i].e1), One(rest.x)};
     }
     const RootPose pose = strand.root.at(t);
     root = pose.x;
