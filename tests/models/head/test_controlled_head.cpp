@@ -97,12 +97,12 @@ TEST(ControlledRods, RenewTheirFramesAtTheirOwnSteps) {
   const auto rods = der_head(mixed_options(1e-3), wide);
   rods->add(calm_hair());
   const std::size_t state =
-      rods->kept() - 6 * mixed_elements - 3;  // frames, loss, length
+      rods->kept() - 7 * mixed_elements - 3;  // frames and twists, loss, length
   const auto before = kept_of(*rods)[0];
   advance(*rods, 0, intervals);
   const auto after = kept_of(*rods)[0];
   double turned = 1;  // cosine
-  for (std::size_t i = state; i < state + 6 * mixed_elements; i += 6) {
+  for (std::size_t i = state; i < state + 7 * mixed_elements; i += 7) {
     turned = std::min(turned, dot(load3(&before[i]), load3(&after[i])));
     EXPECT_NEAR(norm(load3(&after[i])), 1, 1e-12);
   }
