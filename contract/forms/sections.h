@@ -32,6 +32,9 @@ class Sections {
     /// True if the frame is that of the middle of the last edge, turned rigidly to the
     /// section: the model does not bend over the half edge between them.
     bool half_edge = false;
+    /// True if that turn is the one of the natural shape. False: the frame is that of the
+    /// middle of the edge.
+    bool natural_half = false;
   };
 
   /// Returns the kind of the section at a point; fixed for life.

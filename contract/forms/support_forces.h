@@ -7,6 +7,12 @@
 
 namespace tress {
 
+/// Work of natural strains that move over a step, at the places of its start and of its
+/// end, J. The mean of both is exact where strains move linearly.
+struct NaturalWork {
+  double at_start = 0, at_end = 0;
+};
+
 /// Forces of the supports that hold points of a strand, an optional capability of
 /// systems.
 class SupportForces {
@@ -21,10 +27,17 @@ class SupportForces {
   /// Writes the places (m), the velocities (m/s) and the angular velocities (rad/s) of
   /// the supports, (3 supports) each.
   virtual void support_motion(double t, Out x, Out u, Out omega) const = 0;
-  /// Computes the power (W) of moments on sections and of natural strains that move. The
-  /// moments are seen from a frame that turns with the angular velocity `turning`
-  /// (rad/s).
-  virtual double driven_power(double t, In q, In v, const Vec& turning) = 0;
+  /// Computes the power (W) of moments on sections, seen from a frame that turns with the
+  /// angular velocity `turning` (rad/s).
+  virtual double moment_power(double t, In q, In v, const Vec& turning) = 0;
+  /// Returns true if natural strains move in some interval.
+  virtual bool natural_moves() const = 0;
+  /// Computes the power (W) of natural strains that move. It is part of
+  /// Energetics::power.
+  virtual double natural_power(double t, In q) = 0;
+  /// Computes the work of natural strains that move over a step from one state to
+  /// another.
+  virtual NaturalWork natural_work(double from, In q_from, double to, In q_to) = 0;
 };
 
 /// Returns the support forces of a system; null if it has no supports.

@@ -1,4 +1,5 @@
 // Energy of joined strands, and the forces of supports and joints at a state.
+#include <algorithm>
 #include <cmath>
 
 #include "contract/forms/energetics.h"
@@ -77,10 +78,42 @@ Status JoinedSystem::joint_forces(double t, In q, In v, Out forces, Out moments)
   return Status::ok;
 }
 
+double JoinedSystem::moment_power(double t, In q, In v, const Vec& turning) {
+  double sum = 0;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    sum += held_[k]->moment_power(t, part(q, k), part(v, k), turning);
+  }
+  return sum;
+}
+
+bool JoinedSystem::natural_moves() const {
+  return std::ranges::any_of(held_, &SupportedSystem::natural_moves);
+}
+
+/// Of the natural strains that were set last.
+double JoinedSystem::potential_as_set(double t, In q) {
+  double sum = 0;
+  for (std::size_t k = 0; k < strands(); ++k) {
+    sum += held_[k]->potential_as_set(t, part(q, k));
+  }
+  for (JointPair& joint : joints_) sum += joint.energy(t, q);
+  return sum;
+}
+
+double JoinedSystem::natural_power(double t, In q) {
+  return power_of_natural(held_, t, [&] { return potential_as_set(t, q); });
+}
+
+NaturalWork JoinedSystem::natural_work(double from, In q_from, double to, In q_to) {
+  return work_of_natural(held_, from, to, [&](bool end) {
+    return potential_as_set(end ? to : from, end ? q_to : q_from);
+  });
+}
+
 /// As that of SupportedSystem: what supports and joints change of the strands'
 /// accelerations changes the kinetic energy, and halves and springs store energy.
 double JoinedSystem::power(double t, In q, In v) {
-  double sum = 0;
+  double sum = natural_power(t, q);
   if (hold(t, q, v) != Status::ok) return std::nan("");
   for (std::size_t k = 0; k < strands(); ++k) {
     const In q_k = part(q, k), v_k = part(v, k);

@@ -66,20 +66,29 @@ void JoinedSystem::make_joints(const std::vector<Joint>& joints,
   std::vector<double> q(static_cast<std::size_t>(StrandBlock::layout().coordinates)),
       v(q.size());
   initial_state(q, v);
+  prepare(0);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const auto end = [&](const StrandPoint& at) {
       SupportedSystem& strand = *held_[at.strand];
       refuse_if(strand.rows().own() > 0,
                 "a joint of a model that has constraints of its own", where[j],
                 "use a model without them, such as super_helix, super_clothoid or der");
-      refuse_if(!strand.traits().regular_mass,
-                "a joint of a model whose mass matrix is singular", where[j],
-                "use super_helix, super_clothoid or der, or a clamped root");
+      refuse_if(
+          !strand.traits().regular_mass,
+          "a joint of a model whose mass matrix is singular", where[j],
+          "use super_helix or super_clothoid; der with twist = \"dynamic\"; or, for "
+          "articulated_chain, a clamped root");
       refuse_if(strand.strand().sparse_form() == nullptr && !strand.takes_springs(),
                 "a joint of a model without the exact Jacobian", where[j],
                 "use [model] jacobian = \"exact\", or another model");
       ends_.push_back(at);
-      return JointEnd(strand.strand(), first_of(at.strand), at.point, where[j]);
+      JointEnd made(strand.strand(), first_of(at.strand), at.point, where[j]);
+      const bool half =
+          tress::sections(strand.strand()) != nullptr &&
+          tress::sections(strand.strand())->section_kind(at.point).half_edge;
+      if (half && strand.natural().any())
+        made.follow(strand.natural().turn(at.point > 0));
+      return made;
     };
     for (std::size_t i = 0; i < j; ++i) {
       const bool hold =
@@ -96,6 +105,10 @@ void JoinedSystem::make_joints(const std::vector<Joint>& joints,
 
 void JoinedSystem::begin_at(In q, In v) {
   for (std::size_t k = 0; k < strands(); ++k) held_[k]->begin_at(part(q, k), part(v, k));
+}
+
+void JoinedSystem::prepare(double t) {
+  for (SupportedSystem* strand : held_) strand->prepare(t);
 }
 
 Status JoinedSystem::residual(double t, In q, In v, In a, Out r) noexcept {
@@ -156,6 +169,7 @@ Status JoinedSystem::factor_strand(std::size_t k, double t, In q, In v, In a, In
 }
 
 Status JoinedSystem::factor(double t, In q, In v, In a, In lambda, Weights w) noexcept {
+  prepare(t);
   const bool moving = w.vel != 0 || w.pos != 0;
   for (auto& own : loads_) own.clear();
   if (moving) hang_loads(t, q, v, lambda);

@@ -72,8 +72,10 @@ class JoinedSystem final : public StrandBlock,
   std::size_t supports() const override;
   Status support_forces(double t, In q, In v, Out forces, Out moments) override;
   void support_motion(double t, Out x, Out u, Out omega) const override;
-  /// Returns 0: nothing drives joined strands.
-  double driven_power(double, In, In, const Vec&) override { return 0; }
+  double moment_power(double t, In q, In v, const Vec& turning) override;
+  bool natural_moves() const override;
+  double natural_power(double t, In q) override;
+  NaturalWork natural_work(double from, In q_from, double to, In q_to) override;
   std::size_t joints() const override { return joints_.size(); }
   Status joint_forces(double t, In q, In v, Out forces, Out moments) override;
 
@@ -115,7 +117,10 @@ class JoinedSystem final : public StrandBlock,
   Status couple(double t, In q, In v, In lambda, Weights w) noexcept;
   Status solve_strands(InOut x) noexcept;
   Status solve_factored(InOut x) noexcept;
+  /// Sets the natural strains of time t.
+  void prepare(double t);
   Status hold(double t, In q, In v) noexcept;
+  double potential_as_set(double t, In q);
 
   std::vector<SupportedSystem*> held_;
   std::vector<JointPair> joints_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "math/frame.h"
 #include "models/strand/rod_joint.h"
@@ -36,6 +37,10 @@ struct Joint {
   double rest_length = 0;  // m
   /// Joints of half an edge at both ends, of models whose edges do not bend.
   RodJoint half_a{}, half_b{};
+  /// Sections of the rod at both ends at the start, seen from those that the model has
+  /// where half an edge is natural. None: the halves begin in their natural shape at
+  /// t = 0.
+  std::optional<Frame> begin_a{}, begin_b{};
 };
 
 }  // namespace tress::models

@@ -23,6 +23,9 @@ class JointEnd {
   /// `where` if the model has no frame there.
   void hold_section(const std::string& where);
 
+  /// Lets a half edge follow a natural turn (NaturalMotion::turn) that must outlive this.
+  void follow(const Frame& turn) { natural_ = &turn; }
+
   /// Returns the first coordinate of the strand.
   std::size_t first() const { return first_; }
   /// Returns the number of coordinates of the strand.
@@ -39,10 +42,15 @@ class JointEnd {
   /// Returns the acceleration of the point, m/s^2.
   Vec acceleration(double t, In q, In v, In a);
   /// Returns the frame of the section.
-  Frame frame(double t, In q) { return sections_->section_frame(t, part(q), point_); }
+  Frame frame(double t, In q) { return naturally(of_model(t, q)); }
+  /// Returns the frame of the section where half an edge has the natural shape of the
+  /// model, whatever it has at t.
+  Frame of_model(double t, In q) { return sections_->section_frame(t, part(q), point_); }
   /// Returns the motion of the section.
   SectionMotion section(double t, In q, In v, In a) {
-    return sections_->section(t, part(q), part(v), part(a), point_);
+    SectionMotion m = sections_->section(t, part(q), part(v), part(a), point_);
+    m.frame = naturally(m.frame);
+    return m;
   }
 
   /// b += J^T force.
@@ -55,6 +63,9 @@ class JointEnd {
   void add_curvature(double t, In q, const Vec& moment, double factor, InOut s);
 
  private:
+  Frame naturally(const Frame& section) const {
+    return natural_ == nullptr ? section : section * *natural_;
+  }
   template <class Span>
   Span part(Span all) const {
     return all.subspan(first_, size_);
@@ -66,6 +77,7 @@ class JointEnd {
   Sections* sections_;
   std::size_t first_, size_;
   int point_;
+  const Frame* natural_ = nullptr;  // turn of a half edge whose natural shape moves
   std::optional<HeldSection> section_;
   std::vector<double> x_;  // scratch
 };

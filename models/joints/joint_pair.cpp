@@ -76,7 +76,10 @@ void JointPair::hold(const Joint& joint, In q, const std::string& where) {
   turning_ = true;
   a_.hold_section(where);
   b_.hold_section(where);
-  const Frame of_a = a_.frame(0, q), of_b = b_.frame(0, q);
+  const auto at_start = [q](JointEnd& end, const std::optional<Frame>& begin) {
+    return begin ? end.of_model(0, q) * *begin : end.frame(0, q);
+  };
+  const Frame of_a = at_start(a_, joint.begin_a), of_b = at_start(b_, joint.begin_b);
   const Frame turn = relative(of_a, of_b);
   if (hinge) {
     refuse_if(!(norm(joint.axis) > 0), "a hinge without an axis", where, "give axis");

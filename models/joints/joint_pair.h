@@ -21,9 +21,10 @@ struct JointLoad {
 ///
 ///     g = x_b - x_a   (ball, weld, hinge),      g = c_k   (weld: all k; hinge: two).
 ///
-/// The place on a is that of the start. A hinge measures the angle between the axes that
-/// the two sections carry. Where an elastic half edge lies before a section, both halves
-/// are one elastic joint with the stress of c, in series, in place of rows of c:
+/// The place on a is that of the start. Elastic halves are natural where c = 0. A hinge
+/// measures the angle between the axes that the two sections carry. Where an elastic half
+/// edge lies before a section, both halves are one elastic joint with the stress of c, in
+/// series, in place of rows of c:
 ///
 ///     stress = k c + d c',    1/k = 1/k_a + 1/k_b
 ///

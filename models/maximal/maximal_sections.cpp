@@ -45,7 +45,7 @@ Sections::Kind MaximalSystem::section_kind(int point) const {
   const std::optional<EndTurn> turn = end_turn(point);
   if (!turn) return {};
   const bool whole = turn->angle >= 0 || turn->quaternion >= 0;
-  return {whole ? Turning::frame : Turning::tangent, !strand_.edges.empty()};
+  return {whole ? Turning::frame : Turning::tangent, !strand_.edges.empty(), whole};
 }
 
 std::vector<int> MaximalSystem::section_coordinates(int point) const {

@@ -331,7 +331,10 @@ class ReducedSystem : public System,
     const bool tip = point == kinematics_.count();
     if (!chain_ || (rigid_links_ ? !tip : point == 0 && !kinematics_.free())) return {};
     using enum Turning;
-    return {modes == 3 ? frame : modes == 2 ? tangent : in_plane, rigid_links_};
+    return {modes == 3   ? frame
+            : modes == 2 ? tangent
+                         : in_plane,
+            rigid_links_, rigid_links_};
   }
   std::vector<int> section_coordinates(int) const override {
     std::vector<int> all(zero_.size());

@@ -1,5 +1,7 @@
 #include "models/strand/geometry.h"
 
+#include <cmath>
+
 #include "contract/input_error.h"
 #include "math/helix.h"
 
@@ -38,6 +40,31 @@ Frame helix_turn(const Vec& darboux, double s) {
   const HelixFunctions<double> f = functions(darboux, s);
   const Turned turned{darboux};
   return {turned(1, f.S, f.A, e0), turned(1, f.S, f.A, e1), turned(1, f.S, f.A, e2)};
+}
+
+StrandPlace root_place(const Strand& strand) {
+  if (strand.free_root) return {strand.free_root->position, strand.free_root->frame};
+  const RootPose pose = strand.root.at(0);
+  return {pose.x, pose.frame};
+}
+
+Frame half_turn(const Segment& segment, ShapeOf shape, bool tip) {
+  return helix_turn(darboux(segment, shape), (tip ? 0.5 : -0.5) * segment.length);
+}
+
+Frame strain_of_half(const Segment& segment, bool tip) {
+  if (norm(segment.initial - segment.natural) == 0) return {};
+  return inverse(half_turn(segment, ShapeOf::natural, tip)) *
+         half_turn(segment, ShapeOf::initial, tip);
+}
+
+Frame chord_at_end(const Segment& segment, ShapeOf shape, bool tip) {
+  const StrandPlace end = along({}, darboux(segment, shape), segment.length);
+  const Vec chord = (1 / norm(end.x)) * (tip ? end.frame.back(end.x) : end.x);
+  const Vec axis = cross(e0, chord);
+  const double sine = norm(axis);
+  if (sine == 0) return {};
+  return rotation((1 / sine) * axis, std::atan2(sine, chord.x));
 }
 
 std::vector<StrandPlace> joints(const Strand& strand, ShapeOf shape,

@@ -36,7 +36,7 @@ RodJoint joint_of(const Support& support, bool half_edge) {
 }  // namespace
 
 AddedForces::AddedForces(System& strand, const std::vector<Support>& supports,
-                         std::vector<PointMoment> moments) {
+                         std::vector<PointMoment> moments, const NaturalMotion& natural) {
   SparseForm* const matrix = strand.sparse_form();
   for (std::size_t i = 0; i < supports.size(); ++i) {
     const Support& support = supports[i];
@@ -49,8 +49,10 @@ AddedForces::AddedForces(System& strand, const std::vector<Support>& supports,
                         support.section == HeldPart::frame, support.hinge, matrix, where);
     const bool half_edge = section.half_edge();
     if (!half_edge && !support.turn_sprung()) continue;
-    joints_.push_back({i, support.turn_sprung(),
-                       HalfJoint(std::move(section), joint_of(support, half_edge))});
+    if (half_edge && natural.any()) section.follow(natural.turn(support.point > 0));
+    joints_.push_back(
+        {i, support.turn_sprung(),
+         HalfJoint(std::move(section), joint_of(support, half_edge), support.begin)});
   }
   for (std::size_t i = 0; i < moments.size(); ++i) {
     moments_.emplace_back(strand, std::move(moments[i]), matrix,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/supports/half_joint.h"
+#include "models/supports/natural_motion.h"
 #include "models/supports/point_moment.h"
 #include "models/supports/point_spring.h"
 
@@ -14,10 +15,10 @@ namespace tress::models {
 /// clamps, springs of compliant supports, and moments.
 class AddedForces {
  public:
-  /// `strand` must outlive them. Throws InputError naming the support, or the moment, if
-  /// the strand cannot bear it.
+  /// `strand` must outlive them, and so must `natural`, which half edges follow. Throws
+  /// InputError naming the support, or the moment, if the strand cannot bear it.
   AddedForces(System& strand, const std::vector<Support>& supports,
-              std::vector<PointMoment> moments);
+              std::vector<PointMoment> moments, const NaturalMotion& natural);
 
   /// Returns true if there are forces.
   bool any() const { return !joints_.empty() || !springs_.empty() || !moments_.empty(); }
@@ -40,8 +41,8 @@ class AddedForces {
   double next_breakpoint(double t) const;
 
   // For searches that lead the strand onto its supports.
-  /// Writes the rotations (rad) of the half joints from their walls, (3 joints); 0 for
-  /// joints of compliant supports, which may be strained at the start.
+  /// Writes the rotations (rad) of the half joints less those of the start, (3 joints).
+  /// Joints of compliant supports have 0: they may begin away from their walls.
   void joint_rotations(double t, In q, Out c);
   /// Returns the number of joints.
   std::size_t joints() const { return joints_.size(); }

@@ -1,5 +1,6 @@
 #include "models/supports/dense_tangent.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tress::models {
@@ -21,7 +22,9 @@ DenseTangent::DenseTangent(System& system)
   typical_.resize(n);
   system.scale({typical_.data(), count}, a_typ_);
   for (std::size_t i = 0; i < count; ++i) {
-    a_typ_[i] *= a_typ_[i] / typical_[static_cast<Eigen::Index>(i)];
+    const double rate = a_typ_[i] / typical_[static_cast<Eigen::Index>(i)];
+    rate_ = std::max(rate_, rate);
+    a_typ_[i] *= rate;
   }
   compliance_.resize(n, n);
   lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(n);
@@ -47,8 +50,23 @@ Status DenseTangent::mass(double t, In q, double factor, Out s) noexcept {
   return Status::ok;
 }
 
+/// A free strand has no stiffness against motions as one body: its matrix without inertia
+/// has no inverse. Inertia as large as the stiffness at the typical rate is added, and
+/// taken away from the entries.
+Status DenseTangent::without_mass(double t, In q, In v, In a, Weights w, Out s) noexcept {
+  w.acc = std::abs(w.pos) * rate_ * rate_ + std::abs(w.vel) * rate_;
+  if (const Status status = values(t, q, v, a, w, s); status != Status::ok) return status;
+  inertia_.resize(s.size());
+  if (const Status status = mass(t, q, w.acc, inertia_); status != Status::ok) {
+    return status;
+  }
+  for (std::size_t i = 0; i < s.size(); ++i) s[i] -= inertia_[i];
+  return Status::ok;
+}
+
 Status DenseTangent::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
   if (w.vel == 0 && w.pos == 0) return mass(t, q, w.acc, s);
+  if (w.acc == 0) return without_mass(t, q, v, a, w, s);
   if (const Status status = system_.linearize(t, q, v, a, w); status != Status::ok) {
     return status;
   }

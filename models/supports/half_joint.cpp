@@ -19,7 +19,9 @@ Vec HalfJoint::stress(const SectionGap& gap) const {
               entrywise(joint_.friction, gap.rate));
 }
 
-Vec HalfJoint::rotation(double t, In q) { return held(section_.gap(t, q).value); }
+Vec HalfJoint::rotation(double t, In q) {
+  return held(section_.gap(t, q).value - section_.seen(begin_).value);
+}
 
 void HalfJoint::add_force(double t, In q, In v, InOut r) {
   zero_.resize(q.size());
@@ -42,7 +44,7 @@ void HalfJoint::add_tangent(double t, In q, In v, Weights w, InOut s) {
 }
 
 double HalfJoint::energy(double t, In q) {
-  const Vec c = rotation(t, q) - held(lead_);
+  const Vec c = held(section_.gap(t, q).value - lead_);
   return dot(joint_.stiffness, entrywise(c, c)) / 2;
 }
 

@@ -14,15 +14,17 @@ namespace tress::models {
 /// With a hinge, the joint has no stress about the axis of the hinge. Its stiffness is
 /// that of a section as stiff in every direction across the tangent.
 ///
-/// A clamp with this joint is accurate to second order in the length of the edges. To
-/// hold the direction of the last edge itself would be accurate to first order.
+/// c is 0 where the half edge has its natural shape. A clamp with this joint is accurate
+/// to second order in the length of the edges. To hold the direction of the last edge
+/// itself would be accurate to first order.
 class HalfJoint {
  public:
-  /// Takes the coefficients of the joint; its rest value is not used.
-  HalfJoint(HeldSection section, const RodJoint& joint)
-      : section_(std::move(section)), joint_(joint) {}
+  /// Takes the coefficients of the joint; its rest value is not used. `begin`: the
+  /// section at the start, seen from the wall (Support::begin).
+  HalfJoint(HeldSection section, const RodJoint& joint, const Frame& begin = {})
+      : section_(std::move(section)), joint_(joint), begin_(begin) {}
 
-  /// Returns the held components of the rotation c, rad; others are 0.
+  /// Returns the held components of c less those of the start, rad; others are 0.
   Vec rotation(double t, In q);
   /// Moves the rest value of c, for searches that approach the wall.
   void lead(const Vec& by) { lead_ = by; }
@@ -46,6 +48,7 @@ class HalfJoint {
 
   HeldSection section_;
   RodJoint joint_;
+  Frame begin_;
   Vec lead_;
   std::vector<double> zero_;
 };

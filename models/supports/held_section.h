@@ -36,9 +36,18 @@ class HeldSection {
   const std::vector<int>& coordinates() const { return coordinates_; }
   /// Returns true if an elastic half edge lies between the model's frame and the section.
   bool half_edge() const { return half_edge_; }
+  /// Lets the half edge follow a natural turn (NaturalMotion::turn) that must outlive
+  /// this.
+  void follow(const Frame& turn) { natural_ = &turn; }
   /// Returns the path whose frame holds the section.
   const RootMotion& path() const { return path_; }
 
+  /// Returns the rotation of a section that the wall's frame sees in this frame.
+  SectionGap seen(const Frame& section) {
+    RootPose wall;
+    wall.frame = axes_;
+    return {turning_, wall, {naturally(section) * axes_, {}, {}}};
+  }
   /// Returns the rotation, without its derivatives.
   SectionGap gap(double t, In q) { return {turning_, path_.at(t), at_rest(t, q)}; }
   /// Returns the rotation and its derivatives at a state.
@@ -98,12 +107,15 @@ class HeldSection {
     return made;
   }
   SectionMotion at_rest(double t, In q) {
-    return {sections_->section_frame(t, q, point_) * axes_, {}, {}};
+    return {naturally(sections_->section_frame(t, q, point_)) * axes_, {}, {}};
   }
   SectionMotion moving(double t, In q, In v, In a) {
     SectionMotion all = sections_->section(t, q, v, a, point_);
-    all.frame = all.frame * axes_;
+    all.frame = naturally(all.frame) * axes_;
     return all;
+  }
+  Frame naturally(const Frame& section) const {
+    return natural_ == nullptr ? section : section * *natural_;
   }
   void find_entries(const Pattern& matrix, const std::string& where);
   void find_steps(double t, In q);
@@ -114,6 +126,7 @@ class HeldSection {
   Frame axes_;  // in components of the section, and of the path's frame before
   Sections::Turning turning_;
   bool half_edge_;
+  const Frame* natural_ = nullptr;  // turn of a half edge whose natural shape moves
   std::vector<int> components_, coordinates_;
   // Of the coordinates' block in S, by columns; empty: S is full.
   std::vector<std::size_t> entries_;

@@ -33,7 +33,10 @@ struct Support {
   /// Axis of a hinge, in the components of the path's frame and across its e0: the held
   /// part turns freely about it. 0: no hinge.
   Vec hinge{};
-  RodJoint half_edge{};     // joint of half an edge to the path's frame (HalfJoint)
+  RodJoint half_edge{};  // joint of half an edge to the path's frame (HalfJoint)
+  /// The model's section at the start, seen from the path's frame. It differs from that
+  /// frame if the half edge begins strained. Read by half joints only.
+  Frame begin{};
   Compliance compliance{};  // springs in place of constraints
 
   /// Returns true if a spring holds the place.

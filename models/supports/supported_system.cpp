@@ -17,8 +17,8 @@ SupportedSystem::SupportedSystem(std::unique_ptr<System> strand,
     : strand_(std::move(strand)),
       rows_(*strand_, std::move(supports)),
       loaded_(strand_->sparse_form() == nullptr ? loaded_tangent(*strand_) : nullptr),
-      forces_(*strand_, rows_.supports(), std::move(drives.moments)),
       drives_{{}, std::move(drives.natural)},
+      forces_(*strand_, rows_.supports(), std::move(drives.moments), drives_.natural),
       strains_(natural_strains(*strand_)) {
   refuse_if(strand_->contact_form() != nullptr,
             "supports or moments of a strand with exact contact: the response of "
@@ -54,6 +54,12 @@ void SupportedSystem::begin_at(In q, In v) {
   begin_q_.assign(q.begin(), q.end());
   begin_v_.assign(v.begin(), v.end());
   if (History* const past = strand_->history()) begin_memory_ = past->memory();
+}
+
+bool SupportedSystem::begins_elsewhere() const {
+  std::vector<double> q(begin_q_.size()), v(q.size());
+  if (!q.empty()) strand_->initial_state(q, v);
+  return q != begin_q_;
 }
 
 void SupportedSystem::initial_state(Out q, Out v) const {
@@ -238,32 +244,30 @@ void SupportedSystem::support_motion(double t, Out x, Out u, Out omega) const {
   }
 }
 
-/// Power of natural strains that move: the derivative of the elastic energy by time. A
-/// central difference of a quadratic function is exact.
-double SupportedSystem::power_of_natural(double t, In q, In v) {
-  if (!drives_.natural.any() || strand_->energetics() == nullptr) return 0;
-  prepare(t);
-  std::vector<double> values, change;
-  const double time = drives_.natural.slope(t, values, change);
-  if (time == 0) return 0;
-  const auto potential = [&](double part) {
-    std::vector<double> moved = values;
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += part * change[i];
-    strains_->set_natural(moved);
-    return strand_->energetics()->energy(t, q, v).potential;
-  };
-  const double power = (potential(1) - potential(-1)) / (2 * time);
-  strains_->set_natural(values);
-  return power;
+double SupportedSystem::natural_power(double t, In q) {
+  SupportedSystem* const self = this;
+  return power_of_natural({&self, 1}, t, [&] { return potential_as_set(t, q); });
 }
 
-double SupportedSystem::driven_power(double t, In q, In v, const Vec& turning) {
-  return forces_.power_of_moments(t, q, v, turning) + power_of_natural(t, q, v);
+NaturalWork SupportedSystem::natural_work(double from, In q_from, double to, In q_to) {
+  SupportedSystem* const self = this;
+  return work_of_natural({&self, 1}, from, to, [&](bool end) {
+    return potential_as_set(end ? to : from, end ? q_to : q_from);
+  });
+}
+
+double SupportedSystem::potential_as_set(double t, In q) {
+  if (strand_->energetics() == nullptr) return 0;
+  return strand_->energetics()->energy(t, q, zero_).potential + forces_.energy(t, q);
+}
+
+double SupportedSystem::moment_power(double t, In q, In v, const Vec& turning) {
+  return forces_.power_of_moments(t, q, v, turning);
 }
 
 double SupportedSystem::power(double t, In q, In v) {
   prepare(t);
-  double alone = strand_->energetics()->power(t, q, v) + power_of_natural(t, q, v);
+  double alone = strand_->energetics()->power(t, q, v) + natural_power(t, q);
   if (hold(t, q, v) != Status::ok) return std::nan("");
   std::vector<double> lambda, own, change(q.size());
   multipliers(rows_.rows(), lambda);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,6 +27,17 @@ struct StrandDrives {
   std::vector<PointMoment> moments{};  // moments on its sections
   NaturalMotion natural{};             // natural strains over time
 };
+
+class SupportedSystem;
+
+/// Returns the power (W) of natural strains that move: the derivative of the potential
+/// energy by time at fixed places. `potential`() is that of the strains set last.
+double power_of_natural(std::span<SupportedSystem* const> strands, double t,
+                        const std::function<double()>& potential);
+/// Returns the work of natural strains between two times. `potential`(end) is that of the
+/// strains set last at the places of the start or of the end.
+NaturalWork work_of_natural(std::span<SupportedSystem* const> strands, double from,
+                            double to, const std::function<double(bool)>& potential);
 
 /// A strand whose points and sections are held by supports or loaded by moments: the
 /// strand's own equations with AddedForces and the constraints of SupportRows. Its
@@ -65,10 +77,22 @@ class SupportedSystem final : public System,
   /// The state from which runs begin, and what the strand remembers of its way there.
   /// Without it: that of the strand.
   void begin_at(In q, In v);
+  /// Returns true if begin_at() has moved the strand from its own start.
+  bool begins_elsewhere() const;
   /// Returns the strand without its supports.
   System& strand() { return *strand_; }
   /// Returns the constraints.
   SupportRows& rows() { return rows_; }
+  /// Returns the natural strains over time.
+  const NaturalMotion& natural() const { return drives_.natural; }
+  /// Sets the natural strains of time t.
+  void prepare(double t) {
+    if (drives_.natural.any()) drives_.natural.set(*strains_, t);
+  }
+  /// Sets those of time t, continued by `ahead` (s) as they change at t.
+  void prepare_beyond(double t, double ahead) {
+    if (drives_.natural.any()) drives_.natural.set_beyond(*strains_, t, ahead);
+  }
 
   Layout layout() const override { return {strand_->layout().coordinates, rows_.rows()}; }
   Traits traits() const override { return strand_->traits(); }
@@ -118,11 +142,19 @@ class SupportedSystem final : public System,
   void loads_of(double t, In q, In v, In lambda, Out forces, Out moments);
   /// Returns the rate of the elastic energy of half joints and springs, W.
   double added_energy_rate(double t, In q, In v) { return forces_.energy_rate(t, q, v); }
-  double driven_power(double t, In q, In v, const Vec& turning) override;
+  double moment_power(double t, In q, In v, const Vec& turning) override;
+  bool natural_moves() const override { return drives_.natural.any(); }
+  double natural_power(double t, In q) override;
+  NaturalWork natural_work(double from, In q_from, double to, In q_to) override;
+  /// Returns the potential energy at the natural strains that were set last, J.
+  double potential_as_set(double t, In q);
 
   // For searches that lead the strand onto its supports.
-  /// Writes the rotations (rad) of the half joints from their walls, (3 joints).
-  void joint_rotations(double t, In q, Out c) { forces_.joint_rotations(t, q, c); }
+  /// Writes the rotations (rad) of the half joints less those of the start, (3 joints).
+  void joint_rotations(double t, In q, Out c) {
+    prepare(t);
+    forces_.joint_rotations(t, q, c);
+  }
   /// Returns the number of half joints.
   std::size_t joints() const { return forces_.joints(); }
   /// Moves the rest values of the half joints, (3 joints) rad; 0 at first.
@@ -166,11 +198,6 @@ class SupportedSystem final : public System,
 
   /// Whether the matrix or the residual is not the strand's own.
   bool changed() const { return forces_.any() || drives_.natural.any(); }
-  /// Sets the natural strains of time t.
-  void prepare(double t) {
-    if (drives_.natural.any()) drives_.natural.set(*strains_, t);
-  }
-  double power_of_natural(double t, In q, In v);
   Status factor(double t, In q, In v, In a, In lambda, Weights w, In springs,
                 std::span<const SectionLoad> loads) noexcept;
   Status solve_factored(In b, Out x) noexcept {
@@ -184,8 +211,8 @@ class SupportedSystem final : public System,
   SupportRows rows_;
   LoadedTangent* loaded_;              // null: the strand takes no loads
   std::optional<DenseTangent> dense_;  // made when of_strand() is needed
+  StrandDrives drives_;                // the moments move to forces_
   AddedForces forces_;
-  StrandDrives drives_;  // the moments have moved to forces_
   NaturalStrains* strains_;
   std::optional<SupportedCompliance> compliant_;  // made by compliance_form()
   std::optional<AssembledSolver> assembled_;  // of forces on a strand that takes no loads

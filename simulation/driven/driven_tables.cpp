@@ -179,10 +179,19 @@ NaturalMotion natural_motion(std::span<const Table> tables, System& system,
   for (const double t : times) {
     Strand changed = strand;
     for (const ShapeChange& change : changes) change.apply(t, changed);
-    const auto made = model.on_strand(changed, model_options, {});
-    rows.push_back({t, natural_strains(*made)->natural()});
+    const auto made = [&] {
+      try {
+        return model.on_strand(changed, model_options, {});
+      } catch (const InputError& error) {
+        throw InputError(
+            fmt::format("the natural shape at t = {:g} s: {}", t, error.what()), where,
+            "give less curvature and twist, or more elements");
+      }
+    }();
+    rows.push_back(
+        {t, natural_strains(*made)->natural(), NaturalMotion::halves(changed)});
   }
-  return NaturalMotion(std::move(rows));
+  return NaturalMotion(std::move(rows), NaturalMotion::halves(strand));
 }
 
 PointMoment moment_of(const Table& table, const Strand& strand, std::size_t number) {

@@ -93,17 +93,8 @@ std::vector<std::size_t> middles(const std::vector<Features>& all,
 }  // namespace
 
 std::vector<Vec> initial_points(const Strand& strand) {
-  StrandPlace root{};
-  if (strand.free_root) {
-    root.x = strand.free_root->position;
-    root.frame = strand.free_root->frame;
-  } else {
-    const auto at = strand.root.at(0);
-    root.x = at.x;
-    root.frame = at.frame;
-  }
   std::vector<Vec> all;
-  for (const StrandPlace& place : joints(strand, ShapeOf::initial, root)) {
+  for (const StrandPlace& place : joints(strand, ShapeOf::initial, root_place(strand))) {
     all.push_back(place.x);
   }
   return all;

@@ -30,16 +30,27 @@ bool has_exact_tangent(const Scene& scene) {
   return method && *method != HeadMethod::linearly_implicit_euler;
 }
 
+/// Whether lanes support an effect only in a step of one correction.
+bool needs_one_correction(const Scene& scene, const EffectChoice& choice) {
+  const auto effect = make_effect(scene, choice);
+  return effect == nullptr ||
+         (models::depends_on_place(*effect) && effect->rigid_contact() == nullptr);
+}
+
 /// The Jacobian of the scene's method: all derivatives, or `of_one` for one correction.
 std::optional<NoHead> no_jacobian(const Scene& scene, const char* of_one) {
   const bool exact = has_exact_tangent(scene);
   const std::string_view needed = exact ? "exact" : of_one,
                          given = scene.model_options.word("jacobian");
   if (given == needed) return {};
+  const bool other = std::ranges::any_of(scene.effects, [&](const EffectChoice& choice) {
+    return needs_one_correction(scene, choice);
+  });
   return NoHead{fmt::format("jacobian = \"{}\" with {}", given, scene.integrator),
                 fmt::format("give [model] jacobian = \"{}\"{}", needed,
-                            exact ? " to " + scene.integrator
-                                  : ", or [integrator] id = \"backward_euler\"")};
+                            exact   ? " to " + scene.integrator
+                            : other ? ""
+                                    : ", or [integrator] id = \"backward_euler\"")};
 }
 
 std::optional<NoHead> no_integrator(const Scene& scene) {
@@ -197,9 +208,9 @@ std::string only_with_bodies(const Scene& scene) {
   return has_exact_tangent(scene) ? scene.integrator : "";
 }
 std::string with_others(const Scene& scene) {
-  return steps_edges(scene) ? "leave it out, or use [model] id = \"super_helix\""
-                            : "leave it out, or use [integrator] id = "
-                              "\"linearly_implicit_euler\"";
+  return std::string("leave it out, or use [model] ") +
+         (steps_edges(scene) ? "id = \"super_helix\" with " : "") +
+         "jacobian = \"elastic\" and [integrator] id = \"linearly_implicit_euler\"";
 }
 
 std::optional<NoHead> no_effects(const Scene& scene) {
@@ -211,8 +222,7 @@ std::optional<NoHead> no_effects(const Scene& scene) {
         return NoHead{fmt::format("[effects.{}], as {}", choice.entry->id, no->reason),
                       "leave it out"};
       }
-      if (!bodies.empty() && models::depends_on_place(*effect) &&
-          effect->rigid_contact() == nullptr) {
+      if (!bodies.empty() && needs_one_correction(scene, choice)) {
         return NoHead{fmt::format("[effects.{}] with {}", choice.entry->id, bodies),
                       with_others(scene)};
       }

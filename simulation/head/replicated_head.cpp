@@ -251,7 +251,7 @@ void ReplicatedHead::recall(std::size_t block, std::span<const double> x) {
   const std::vector<double> gathered = take(run.guard ? Guard::remembered : 0);
   run.take_method(maker_.method().id, maker_.options());
   run.start(x[0], std::move(state));
-  if (run.guard) run.guard->recall(gathered);
+  if (run.guard) run.guard->recall(gathered, run.integrator->time(), run.integrator->q());
   one.known = x[1] != 0;
   if (run.status != Status::ok && !one.known) one.failure = run.failure();
   if (run.status != Status::ok || one.known) run.stay(run.begun());

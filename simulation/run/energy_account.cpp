@@ -39,7 +39,7 @@ void EnergyAccount::start(double t, const EnergyMeasure& begin, double slack) {
 }
 
 void EnergyAccount::gather(double t, const EnergyMeasure& now) {
-  work_ += std::max({0.0, power_, now.power}) * (t - seen_);
+  work_ += std::max({0.0, power_, now.power}) * (t - seen_) + now.work;
   seen_ = t;
   power_ = now.power;
   frame_ = std::max(frame_, now.frame);

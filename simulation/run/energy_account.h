@@ -15,6 +15,7 @@ struct EnergyMeasure {
   double kinetic = 0, potential = 0;  // J, in the moving frame
   double power = 0;                   // W, into it
   double frame = 0;                   // J, of the frame's own motion
+  double work = 0;                    // J, into it since the last measure, next to power
 
   /// Transforms points under a load (3 numbers each, N) from the world's frame to the
   /// clamp's. Writes the relative velocities to `u`.

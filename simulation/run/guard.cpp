@@ -7,8 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "simulation/run/remedy.h"
-
 namespace tress::simulation {
 namespace {
 
@@ -41,7 +39,9 @@ Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t fir
       energetics_(system.energetics()),
       points_(system.material_points()),
       strands_(std::move(strands)),
-      first_(first) {
+      first_(first),
+      supports_(support_forces(system)),
+      natural_moves_(supports_ != nullptr && supports_->natural_moves()) {
   const auto count = points_ == nullptr ? 0 : static_cast<std::size_t>(points_->count());
   for (auto* list : {&x_, &u_, &tangent_, &load_}) list->resize(3 * count);
   for (int i = 0; i < static_cast<int>(count); ++i) {
@@ -52,11 +52,13 @@ Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t fir
 void Guard::start(double t, In q, In v) {
   breach_.reset();
   steps_ = 0;
+  remember(t, q);
+  natural_ = {};
   account_.start(t, {}, 0);
   if (energetics_ == nullptr) return;
   const Energy energy = energetics_->energy(t, q, v);
   const double power = energetics_->power(t, q, v);
-  meter_.start(energy, power);
+  meter_.start(energy, sampled(power, t, q));
   const EnergyMeasure begin = measure(t, q, v, energy, power);
   account_.start(t, begin, slack(t, q, v, begin));
 }
@@ -78,7 +80,30 @@ double Guard::slack(double t, In q, In, const EnergyMeasure& begin) {
   return sum + EnergyAccount::share(begin.kinetic, begin.potential - uniform);
 }
 
+/// Keeps the state from which the next step begins.
+void Guard::remember(double t, In q) {
+  if (!natural_moves_) return;
+  t_before_ = t;
+  q_before_.assign(q.begin(), q.end());
+}
+
+/// Adds the work of natural strains since the last step, however short it was.
+void Guard::gather_natural(double t, In q) {
+  if (!natural_moves_ || t == t_before_ || !finite(q)) return;
+  const NaturalWork step = supports_->natural_work(t_before_, q_before_, t, q);
+  natural_.put_in += std::max({0.0, step.at_start, step.at_end});
+  natural_.work += (step.at_start + step.at_end) / 2;
+  natural_.uncertain += std::abs(step.at_end - step.at_start);
+  remember(t, q);
+}
+
+/// The power without that of natural strains, whose work is gathered in every step.
+double Guard::sampled(double power, double t, In q) {
+  return natural_moves_ ? power - supports_->natural_power(t, q) : power;
+}
+
 bool Guard::operator()(double t, In q, In v) {
+  gather_natural(t, q);
   if (++steps_ < guarded_every && t - account_.seen() < guarded_for) return true;
   return judge(t, q, v);
 }
@@ -91,10 +116,14 @@ bool Guard::judge(double t, In q, In v) {
   }
   if (stretched(t, q)) return false;
   if (energetics_ == nullptr) return true;
+  gather_natural(t, q);
   const Energy energy = energetics_->energy(t, q, v);
   const double power = energetics_->power(t, q, v);
-  meter_.gather(t - account_.seen(), energy, power);
-  const EnergyMeasure now = measure(t, q, v, energy, power);
+  meter_.gather(t - account_.seen(), energy, sampled(power, t, q), natural_.work,
+                natural_.uncertain);
+  EnergyMeasure now = measure(t, q, v, energy, power);
+  now.work = natural_.put_in;
+  natural_ = {};
   account_.gather(t, now);
   return !gained(t, now) && !too_fast(t);
 }
@@ -113,22 +142,20 @@ EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double 
     if (strand.root) move_with(t, strand, p, first, now);
     first += strand.rest.size();
   }
-  if (SupportForces* const supports = support_forces(system_)) {
-    now.power += power_of(*supports, t, q, v);
-  }
+  if (supports_ != nullptr) now.power += power_of(t, q, v);
   return now;
 }
 
 /// Power of supports and moments in the clamp's frame, in which supports at rest in space
-/// move, and of natural strains that move.
-double Guard::power_of(SupportForces& supports, double t, In q, In v) {
-  const std::size_t numbers = 3 * supports.supports();
+/// move.
+double Guard::power_of(double t, In q, In v) {
+  const std::size_t numbers = 3 * supports_->supports();
   std::vector<double> forces(numbers), moments(numbers), x(numbers), u(numbers),
       omega(numbers);
-  if (supports.support_forces(t, q, v, forces, moments) != Status::ok) return 0;
-  supports.support_motion(t, x, u, omega);
+  if (supports_->support_forces(t, q, v, forces, moments) != Status::ok) return 0;
+  supports_->support_motion(t, x, u, omega);
   const auto& clamp = strands_.front().root;
-  double power = supports.driven_power(t, q, v, clamp ? clamp->at(t).omega : Vec{});
+  double power = supports_->moment_power(t, q, v, clamp ? clamp->at(t).omega : Vec{});
   for (std::size_t i = 0; i < numbers; i += 3) {
     Vec velocity = load3(&u[i]), turning = load3(&omega[i]);
     if (clamp) {
@@ -268,38 +295,20 @@ Guard::Memory Guard::memory() const {
   Memory all{};
   const auto account = account_.memory();
   const auto dissipation = meter_.memory();
-  std::ranges::copy(dissipation, std::ranges::copy(account, all.begin()).out);
+  const auto rest =
+      std::ranges::copy(dissipation, std::ranges::copy(account, all.begin()).out).out;
+  std::ranges::copy(std::array{natural_.put_in, natural_.work, natural_.uncertain}, rest);
   return all;
 }
 
-void Guard::recall(In memory) {
+void Guard::recall(In memory, double t, In q) {
   account_.recall(memory.first(EnergyAccount::remembered));
   meter_.recall(memory.subspan(EnergyAccount::remembered));
+  const In natural = memory.last(3);
+  natural_ = {natural[0], natural[1], natural[2]};
+  remember(t, q);
   steps_ = 0;
   breach_.reset();
-}
-
-void conclude(Guard& guard, std::string_view integrator, const Options& options,
-              Simulation& run) {
-  if (run.status == Status::ok && !guard.judge(run.t, run.state.q, run.state.v)) {
-    run.status = Status::fatal;
-  }
-  if (guard.breach()) {
-    run.failure = guard.breach()->message() + ": " + remedy(integrator, options);
-  }
-}
-
-Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& system,
-                            const Options& options, const State& start, double t_end,
-                            const Observer& each_step) {
-  system.reset();
-  guard.start(0, start.q, start.v);
-  Simulation run =
-      simulate(integrator, system, options, start, t_end, [&](double t, In q, In v) {
-        return guard(t, q, v) && (!each_step || each_step(t, q, v));
-      });
-  conclude(guard, integrator, options, run);
-  return run;
 }
 
 }  // namespace tress::simulation

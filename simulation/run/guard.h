@@ -64,17 +64,24 @@ class Guard {
   /// All data gathered since start(); recall() lets another guard of an identically
   /// constructed system continue from there.
   static constexpr std::size_t remembered =  // numbers
-      EnergyAccount::remembered + DissipationMeter::remembered;
+      EnergyAccount::remembered + DissipationMeter::remembered + 3;
   /// Numbers of a guard.
   using Memory = std::array<double, remembered>;
   /// Returns all data gathered since start().
   Memory memory() const;
-  /// Restores what memory() returned.
-  void recall(In memory);
+  /// Restores what memory() returned at time t and these places.
+  void recall(In memory, double t, In q);
 
  private:
+  /// Work of natural strains since the last check, J.
+  struct Natural {
+    double put_in = 0, work = 0, uncertain = 0;
+  };
   EnergyMeasure measure(double t, In q, In v, const Energy& energy, double power);
-  double power_of(SupportForces& supports, double t, In q, In v);
+  double power_of(double t, In q, In v);
+  void remember(double t, In q);
+  void gather_natural(double t, In q);
+  double sampled(double power, double t, In q);
   Points points_of(const GuardedStrand& strand, std::size_t first);
   void move_with(double t, const GuardedStrand& strand, const Points& p,
                  std::size_t first, EnergyMeasure& now);
@@ -93,7 +100,12 @@ class Guard {
   std::size_t first_;
   std::vector<int> before_;                     // each point along its strand, -1: none
   std::vector<double> x_, u_, tangent_, load_;  // (3 points); u_: relative to the frame
-  int steps_ = 0;                               // since judged
+  SupportForces* supports_;                     // null: none
+  bool natural_moves_;                          // natural strains do
+  Natural natural_;
+  double t_before_ = 0;           // s, at the last step, if natural strains move
+  std::vector<double> q_before_;  // places at that time
+  int steps_ = 0;                 // since judged
   EnergyAccount account_;
   DissipationMeter meter_;
   std::optional<Breach> breach_;

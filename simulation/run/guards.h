@@ -68,10 +68,10 @@ class Guards {
     }
     return all;
   }
-  /// Restores what memory() returned.
-  void recall(In memory) {
+  /// Restores what memory() returned at time t and these places.
+  void recall(In memory, double t, In q) {
     for (Part& part : parts_) {
-      part.guard.recall(memory.first(Guard::remembered));
+      part.guard.recall(memory.first(Guard::remembered), t, part.of(q));
       memory = memory.subspan(Guard::remembered);
     }
   }

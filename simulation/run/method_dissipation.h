@@ -48,12 +48,14 @@ class DissipationMeter {
     kinetic_ = energy.kinetic;
     power_ = power;
   }
-  /// h (s) after the last call.
-  void gather(double h, const Energy& energy, double power) {
-    const double work = h * (power_ + power) / 2;
+  /// h (s) after the last call. `done`: work in the interval that `power` leaves out, and
+  /// the bound of its error (J).
+  void gather(double h, const Energy& energy, double power, double done = 0,
+              double uncertain = 0) {
+    const double work = h * (power_ + power) / 2 + done;
     passed_ += work;
     given_ += std::max(0.0, work);
-    uncertain_ += h * std::abs(power - power_);
+    uncertain_ += h * std::abs(power - power_) + uncertain;
     way_ += h * std::sqrt(2 * std::max({0.0, kinetic_, energy.kinetic}));
     power_ = power;
     kinetic_ = energy.kinetic;

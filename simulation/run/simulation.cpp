@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "simulation/run/guard.h"
+#include "simulation/run/remedy.h"
+
 namespace tress::simulation {
 
 std::unique_ptr<System> make_model(std::string_view id, const ModelSettings& settings) {
@@ -47,6 +50,29 @@ Simulation simulate(std::string_view integrator, System& system, const Options& 
 Simulation simulate(std::string_view integrator, System& system, const Options& options,
                     const State& start, double t_end, const Observer& each_step) {
   return simulate(integrator, system, options, start, {&t_end, 1}, {}, each_step);
+}
+
+void conclude(Guard& guard, std::string_view integrator, const Options& options,
+              Simulation& run) {
+  if (run.status == Status::ok && !guard.judge(run.t, run.state.q, run.state.v)) {
+    run.status = Status::fatal;
+  }
+  if (guard.breach()) {
+    run.failure = guard.breach()->message() + ": " + remedy(integrator, options);
+  }
+}
+
+Simulation simulate_guarded(Guard& guard, std::string_view integrator, System& system,
+                            const Options& options, const State& start, double t_end,
+                            const Observer& each_step) {
+  system.reset();
+  guard.start(0, start.q, start.v);
+  Simulation run =
+      simulate(integrator, system, options, start, t_end, [&](double t, In q, In v) {
+        return guard(t, q, v) && (!each_step || each_step(t, q, v));
+      });
+  conclude(guard, integrator, options, run);
+  return run;
 }
 
 }  // namespace tress::simulation

@@ -120,7 +120,7 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
     keep(begin, old_q, old_v);
     system->recall(memory);
     system->accept(begin, q, v);
-    if (guard) guard->recall(gathered);
+    if (guard) guard->recall(gathered, begin, q);
     Status now = steps->start(begin, q, v);
     if (now == Status::ok) now = steps->advance(end, observer());
     if (breached()) return Status::fatal;

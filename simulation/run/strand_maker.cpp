@@ -19,6 +19,22 @@ void hold(System& system, std::span<const StrandToMake> strands) {
   natural_strains(system)->set_natural(natural);
 }
 
+/// Lets strands whose free roots begin with the same velocity and spin turn as one body,
+/// about the root of the first.
+void spin_together(std::vector<Strand>& strands) {
+  const std::optional<models::FreeRoot> first = strands.front().free_root;
+  const bool alike = std::ranges::all_of(strands, [&](const Strand& strand) {
+    return first && strand.free_root &&
+           norm(strand.free_root->velocity - first->velocity) == 0 &&
+           norm(strand.free_root->spin - first->spin) == 0;
+  });
+  if (!alike) return;
+  for (Strand& strand : strands) {
+    models::FreeRoot& root = *strand.free_root;
+    root.velocity = root.velocity + cross(root.spin, root.position - first->position);
+  }
+}
+
 }  // namespace
 
 StrandMaker::StrandMaker(const Scene& scene)
@@ -71,13 +87,16 @@ SteppedSystem StrandMaker::joined(std::span<const StrandToMake> strands,
                                   const SceneJoints::Group& group) const {
   std::vector<std::shared_ptr<const Metered>> meters;
   std::vector<std::unique_ptr<System>> systems;
+  std::vector<Strand> begun;
+  for (const StrandToMake& strand : strands) begun.push_back(strand.strand);
+  spin_together(begun);
   std::vector<const Strand*> each;
   SupportedStart supported;
   for (std::size_t k = 0; k < strands.size(); ++k) {
     const std::size_t number = group.first + k;
-    each.push_back(&strands[k].strand);
-    systems.push_back(
-        supports_.on(metered(strands[k], meters), strands[k].strand, number));
+    each.push_back(&begun[k]);
+    const StrandToMake own{begun[k], strands[k].between, strands[k].held};
+    systems.push_back(supports_.on(metered(own, meters), begun[k], number));
     if (!supports_.hold(number)) continue;
     const SupportedStart one =
         begin_on_supports(*systems.back(), supports_.place(number));

@@ -57,7 +57,8 @@ void World::restore(const Snapshot& snapshot) {
     if (guards.empty()) {
       body.guard->start(t_, body.integrator->q(), body.integrator->v());
     } else {
-      body.guard->recall(guards.first(body.guard->remembered()));
+      body.guard->recall(guards.first(body.guard->remembered()), t_,
+                         body.integrator->q());
       guards = guards.subspan(body.guard->remembered());
     }
   }

@@ -166,7 +166,7 @@ void World::Body::rewind() {
   std::vector<double> old_q = marked.q, old_v = marked.v;
   system->recall(marked.memory);
   system->accept(marked_t, old_q, old_v);
-  if (guard) guard->recall(marked_guard);
+  if (guard) guard->recall(marked_guard, marked_t, marked.q);
   if (depth) depth->deepest = marked_depth;
   rewindable->rewind();
   status = Status::ok;

@@ -264,19 +264,21 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
     const Table& table = tables()[j];
     const Parameters& p = table.values();
     Joint joint{.kind = kind_of(table)};
-    const auto end = [&](std::string_view key, std::size_t number,
-                         models::RodJoint& half) {
+    const auto end = [&](std::string_view key, std::size_t number, models::RodJoint& half,
+                         std::optional<Frame>& begin) {
       const std::size_t k = number - group.first;
       const auto [name, at] = end_of(table, key);
       const int point =
           point_at(at, *strands[k], fmt::format("strand {}", name), table.place(key));
       const auto& segments = strands[k]->segments;
-      half = models::rod_joint(*strands[k], nullptr,
-                               segments[point == 0 ? 0 : segments.size() - 1], {});
+      const models::Segment& edge = point == 0 ? segments.front() : segments.back();
+      half = models::rod_joint(*strands[k], nullptr, edge, {});
+      // A strand that has found its equilibrium has no moment at an end.
+      if (!held[k]->begins_elsewhere()) begin = models::strain_of_half(edge, point > 0);
       return models::StrandPoint{k, point};
     };
-    joint.a = end("a", ends_[j].a, joint.half_a);
-    joint.b = end("b", ends_[j].b, joint.half_b);
+    joint.a = end("a", ends_[j].a, joint.half_a, joint.begin_a);
+    joint.b = end("b", ends_[j].b, joint.half_b, joint.begin_b);
     joint.axis = p.vec("axis");
     joint.stiffness = p.number("stiffness_n_per_m");
     joint.damping = p.number("damping_n_s_per_m");
@@ -296,11 +298,6 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
 
 void SceneJoints::check(const Scene& scene) const {
   if (!any()) return;
-  if (tables_->driven.any()) {
-    const std::string drive = tables_->driven.first().name();
-    throw InputError("joints next to " + drive + ", whose work is not counted there",
-                     place(), "leave out " + drive + ", or the joints");
-  }
   refuse_if(scene.rest == RestStrains::inverse,
             "joints with rest = \"inverse\", which balances strands without their forces",
             place(), "leave out rest, or the joints");

@@ -35,6 +35,45 @@ int point_of(const Table& table, const Strand& strand) {
                   table.place("at"));
 }
 
+/// The edge at an end of a strand.
+const models::Segment& edge_at(const Strand& strand, int point) {
+  return point == 0 ? strand.segments.front() : strand.segments.back();
+}
+
+/// The section of the rod at an end of a strand in its shape at the start. `section`:
+/// that of the model, whose half edge is natural.
+Frame end_at_start(System& system, const Strand& strand, int point,
+                   const Frame& section) {
+  const Sections::Kind kind = sections(system)->section_kind(point);
+  if (!kind.half_edge) return section;
+  if (kind.natural_half) {
+    return section * models::strain_of_half(edge_at(strand, point), point > 0);
+  }
+  return joints(strand, models::ShapeOf::initial,
+                models::root_place(strand))[static_cast<std::size_t>(point)]
+      .frame;
+}
+
+/// Prepares a support for the joint of half an edge, whose rest is the natural shape.
+void strain_half_edge(const Strand& strand, const Sections::Kind& kind,
+                      Support& support) {
+  using models::ShapeOf;
+  const models::Segment& edge = edge_at(strand, support.point);
+  const bool tip = support.point > 0;
+  support.half_edge = models::rod_joint(strand, nullptr, edge, {});
+  if (kind.natural_half) {
+    support.begin = models::inverse(models::strain_of_half(edge, tip));
+    return;
+  }
+  // The wall turns to the direction in which it holds the middle of a natural edge.
+  const Frame natural = models::chord_at_end(edge, ShapeOf::natural, tip);
+  support.path.frame = support.path.frame * natural;
+  support.begin =
+      models::inverse(natural) * models::chord_at_end(edge, ShapeOf::initial, tip);
+  const Vec across{0, support.hinge.y, support.hinge.z};
+  if (norm(across) > 0) support.hinge = (1 / norm(across)) * across;
+}
+
 /// The axis of a hinge in the components of the section at the start.
 Vec hinge_axis(const Table& table, const Frame& section) {
   const char* const remedy =
@@ -135,9 +174,7 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
               "a twist of a model without frames of its sections",
               table.place("twist_rad"),
               "leave it out, or use a model with twist, such as \"super_helix\"");
-    const std::size_t last = strand.segments.size() - 1;
-    support.half_edge =
-        models::rod_joint(strand, nullptr, strand.segments[point == 0 ? 0 : last], {});
+    if (held.half_edge) strain_half_edge(strand, held, support);
   }
   stay_in_plane(model_options_, duration_, strand, table, support);
   let_slide(table, support);
@@ -179,7 +216,8 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
     StrandPlace start{load3(&x[3 * point]), {}};
     if (table->values().word("kind") != "ball") {
       models::section_to_hold(*system, at, table->place("kind"));
-      start.frame = sections(*system)->section(0, q, v, zero, at).frame;
+      start.frame = end_at_start(*system, strand, at,
+                                 sections(*system)->section(0, q, v, zero, at).frame);
     }
     supports.push_back(support(*system, strand, *table, start, at));
     if (supports.back().rigid_axes().empty() || norm(table->values().vec("slide")) > 0) {

@@ -283,6 +283,13 @@ TEST(NaturalShape, RefusesWhatTheModelOrTheTableDoesNotAdmit) {
   EXPECT_NE(why("id = \"mass_spring\"", one).find("lacks a natural strain"),
             std::string::npos);
   EXPECT_EQ(why(helix, one), "");
+  const std::string clothoid =
+      why("id = \"super_clothoid\"", "twist_per_m = [[0, 0], [1, 1e4]]");
+  EXPECT_NE(clothoid.find("the natural shape at t = 1 s: an element of linear curvature "
+                          "winds by more than 24 rad"),
+            std::string::npos)
+      << clothoid;
+  EXPECT_NE(clothoid.find("driven.toml:"), std::string::npos) << clothoid;
 }
 
 }  // namespace tress::test_driven_scenes

@@ -250,7 +250,7 @@ TEST(Guards, RememberWhatEachHasGathered) {
   EXPECT_EQ(memory.size(), guards.remembered());
   guards.start(0.5, q, v);
   EXPECT_NE(guards.memory(), memory);
-  guards.recall(memory);
+  guards.recall(memory, 0.001, q);
   EXPECT_EQ(guards.memory(), memory);
 }
 
@@ -291,7 +291,7 @@ TEST_F(GuardTest, RemembersWhatItGathered) {
   EXPECT_TRUE(guard_->judge(0.001, state_.q, state_.v));
   const auto memory = guard_->memory();
   guard_->start(0.5, state_.q, state_.v);
-  guard_->recall(memory);
+  guard_->recall(memory, 0.001, state_.q);
   EXPECT_EQ(guard_->memory(), memory);
 }
 

@@ -68,7 +68,7 @@ inline std::unique_ptr<SupportedSystem> driven(const std::string& model,
     const std::vector<double> from = natural_strains(*strand)->natural();
     std::vector<double> to = from;
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = 0.3 * from[i];
-    drives.natural = NaturalMotion({{0, from}, {time, to}});
+    drives.natural = NaturalMotion({{0, from}, {time, to}}, {});
   }
   return std::make_unique<SupportedSystem>(std::move(strand), std::move(supports),
                                            std::move(drives));
