@@ -77,6 +77,8 @@ class HeadSceneRun {
     made.work = work();
     made.rejected = made.work.rejected;
     const std::size_t state = run_->hash();
+    made.dissipation = run_->dissipation();
+    made.no_dissipation = run_->no_dissipation();
     set_outcome_of_ranks(outcome);
     if (!ranks_.first()) {
       if (losses_ > 0) made.end = SceneRun::End::failed;

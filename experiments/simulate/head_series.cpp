@@ -7,7 +7,9 @@ namespace tress::experiments::scene_runs {
 std::vector<Reading> head_series(const Scene& scene) {
   std::vector<Reading> all{
       {"t_s", "time"},
-      {"tip_x_m", "tip, mean over the strands; all without failed strands"},
+      {"tip_x_m",
+       "tip, mean over the strands that have not failed; empty if all have. Energies "
+       "leave failed strands out"},
       {"tip_y_m", "tip, mean over the strands"},
       {"tip_z_m", "tip, mean over the strands"},
       {"kinetic_j", "kinetic energy of all strands"},

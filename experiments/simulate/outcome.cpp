@@ -38,8 +38,11 @@ constexpr Column columns_of_outcome[] = {
     {"method_dissipated_j",
      "energy that the method dissipated (negative: created). Energy at the "
      "start, and the work of loads, root and friction, less the energy at the "
-     "end. Work by the trapezoidal rule over every fourth step. Empty without a "
-     "guard, of a batch, and where impulses or other strands act"},
+     "end. Work by the trapezoidal rule over every fourth step. Where it is empty, "
+     "method_dissipated_missing has the reason"},
+    {"method_dissipated_missing",
+     "reason why no account of the method's dissipation is kept: no guard, SIMD lanes, "
+     "impulses, strands that touch"},
     {"method_dissipated_bound_j",
      "estimated bound of the error of method_dissipated_j: the sum of the changes of "
      "power between two checks times the intervals. The run warns where "
@@ -182,6 +185,8 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("method_dissipated_j", run.dissipation->dissipated);
     row.set("method_dissipated_bound_j", run.dissipation->uncertain);
     row.set("method_dissipated_rel", run.dissipation->share());
+  } else if (!run.no_dissipation.empty()) {
+    row.set("method_dissipated_missing", run.no_dissipation);
   }
   if (replaces_steps(scene)) row.set("replaced_steps", work.replaced);
   if (!run.not_smooth.empty()) row.set("not_smooth", run.not_smooth);

@@ -50,14 +50,14 @@ Strand rope(int elements, double hangs) {
 }
 
 /// The cylinder, which yields by 1e-4 of its radius under the pull of a rope.
-std::shared_ptr<const Effect> cylinder(const Strand& strand, double pulled,
-                                       double friction) {
+std::shared_ptr<const Effect> cylinder(const ContactRun& run, const Strand& strand,
+                                       double pulled, double friction) {
   const double thick = strand.segments.front().section.a1, depth = 1e-4 * radius;
   const NormalContact normal{.stiffness = pulled / radius / depth, .offset = thick};
   // The capsule's axis is z of its frame.
   const StrandPlace axis{{}, {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};
-  return std::make_shared<ExactBody>(Capsule{radius - thick, radius}, axis,
-                                     ExactContact{normal, false, friction});
+  return std::make_shared<ExactBody>(Capsule{radius - thick, radius}, run.place(axis),
+                                     ExactContact{normal, run.is_rigid(false), friction});
 }
 
 /// A strand that has slid is bent where it was straight and straight where it was bent,
@@ -67,24 +67,25 @@ const double pull = 20'000 * TestRod().force();
 
 /// The pulls rise together in a fifth of the time; with 0.01 % more than the strand
 /// bears it is `away` in the rest of the time.
-bool slides(const ModelVariant& variant, const Strand& strand, double friction,
-            double ratio, double distance) {
+bool slides(const ModelTrial& trial, const Strand& strand, double ratio,
+            double distance) {
+  const ContactRun& run = trial.contact;
   const double t_end = 0.1 / TestRod().rate();
   const auto down = [&](double at, double force) {
     return std::make_shared<Tether>(
         Tether::Settings{.at = at,
                          .pull = force,
-                         .target = {at > 0 ? radius : -radius, 0, -1e3},
+                         .target = run.turned * Vec{at > 0 ? radius : -radius, 0, -1e3},
                          .off = 1e6,
                          .ramp = 0.2 * t_end});
   };
-  const auto system =
-      on_strand(variant, strand,
-                {cylinder(strand, pull, friction), down(0, pull), down(1, ratio * pull)});
+  const auto system = on_strand(trial.variant, run.strand(strand),
+                                {cylinder(run, strand, pull, trial.parameter),
+                                 down(0, pull), down(1, ratio * pull)});
   const double start = -tail;
   const auto gone = [&](double z) { return std::abs(z - start) > distance; };
   const Track tip =
-      track("backward_euler", *system, t_end / 100, t_end, place(*system, -1, 2), gone);
+      track(run.integrator, *system, t_end / 100, t_end, run.look(*system, -1, 2), gone);
   return gone(tip.value.back());
 }
 
@@ -92,9 +93,7 @@ double ratio_of(double friction) { return std::exp(friction * wrapped); }
 
 double found_ratio(const ModelTrial& trial, double distance, double width) {
   const Strand strand = rope(trial.elements, tail);
-  const auto slid = [&](double ratio) {
-    return slides(trial.variant, strand, trial.parameter, ratio, distance);
-  };
+  const auto slid = [&](double ratio) { return slides(trial, strand, ratio, distance); };
   const double low = ratio_of(trial.parameter) / 1.1,
                high = ratio_of(trial.parameter) * 1.1;
   if (slid(low)) throw std::runtime_error("slides at much less pull");
@@ -137,12 +136,14 @@ const double both_hang = rope_length - wrapped * radius;
 /// Gravity that begins slowly: at once it lets the rope jump, and slide as it does.
 class Weight final : public Effect {
  public:
-  explicit Weight(double ramp) : ramp_(ramp) {}
+  Weight(double ramp, const Vec& down) : ramp_(ramp), down_(down) {}
   std::string_view name() const override { return "weight"; }
   Needs needs() const override { return {}; }
   void add_load(double t, const Points& p, InOut f) const noexcept override {
     const double g = rope_gravity * std::fmin(1, t / ramp_);
-    for (std::size_t i = 0; i < p.mass.size(); ++i) f[3 * i + 2] -= p.mass[i] * g;
+    for (std::size_t i = 0; i < p.mass.size(); ++i) {
+      store3(load3(&f[3 * i]) + (p.mass[i] * g) * down_, &f[3 * i]);
+    }
   }
   void add_derivatives(double, const Points&, double, double,
                        InOut) const noexcept override {}
@@ -151,20 +152,23 @@ class Weight final : public Effect {
 
  private:
   double ramp_;  // s
+  Vec down_;     // of length 1
 };
 
 bool slides_by_weight(const ModelTrial& trial, double friction) {
+  const ContactRun& run = trial.contact;
   const double hangs = trial.parameter * both_hang;
   const Strand strand = rope(trial.elements, both_hang - hangs);
   const double weight = TestRod().line_mass() * rope_length * rope_gravity;
   const double t_end = 15 * std::sqrt(rope_length / rope_gravity);
-  const auto system = on_strand(
-      trial.variant, strand,
-      {std::make_shared<Weight>(0.3 * t_end), cylinder(strand, weight / 3, friction)});
+  const auto system =
+      on_strand(trial.variant, run.strand(strand),
+                {std::make_shared<Weight>(0.3 * t_end, run.turned * Vec{0, 0, -1}),
+                 cylinder(run, strand, weight / 3, friction)});
   const double start = hangs - both_hang;
   const auto gone = [&](double z) { return std::abs(z - start) > away; };
   const Track root =
-      track("backward_euler", *system, t_end / 500, t_end, place(*system, 0, 2), gone);
+      track(run.integrator, *system, t_end / 500, t_end, run.look(*system, 0, 2), gone);
   return gone(root.value.back());
 }
 

@@ -84,9 +84,10 @@ double measured_force(const ModelTrial& trial) {
                      {{"friction", number_text(mu)},
                       {"thickness_m", number_text(2 * half_thick)},
                       {"tolerance_m_s", number_text(1e-5 * size / period)}}});
-  simulation::World world(touching_strands(trial.variant, {strand}, effects, dt));
+  simulation::World world(
+      touching_strands(trial.variant, {strand}, effects, dt, trial.contact.integrator));
   for (int i = 1; i <= 100; ++i) {
-    go_on(world, t_end * i / 100);
+    go_on(world, t_end * i / 100, trial.contact);
     if (trial.deadline.passed())
       throw std::runtime_error("the time for the row was over");
   }

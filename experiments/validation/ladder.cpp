@@ -35,6 +35,7 @@ Strand ladder(int elements, double slope) {
 }
 
 bool falls(const ModelTrial& trial, double slope) {
+  const ContactRun& run = trial.contact;
   const Strand strand = ladder(trial.elements, slope);
   const double thick = strand.segments.front().section.a1;
   const double weight = TestRod().line_mass() * ladder_length * ladder_gravity;
@@ -48,15 +49,16 @@ bool falls(const ModelTrial& trial, double slope) {
   const StrandPlace floor{{0, 0, inside - thick}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   // The wall's outside is towards +x.
   const StrandPlace wall{{-reach - thick, 0, 0}, {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
-  const ExactContact law{normal, false, trial.parameter};
-  const auto system = on_strand(trial.variant, strand,
-                                {std::make_shared<Gravity>(Vec{0, 0, -ladder_gravity}),
-                                 std::make_shared<ExactBody>(Plane{}, floor, law),
-                                 std::make_shared<ExactBody>(Plane{}, wall, law)});
+  const ExactContact law{normal, run.is_rigid(false), trial.parameter};
+  const auto system =
+      on_strand(trial.variant, run.strand(strand),
+                {std::make_shared<Gravity>(run.turned * Vec{0, 0, -ladder_gravity}),
+                 std::make_shared<ExactBody>(Plane{}, run.place(floor), law),
+                 std::make_shared<ExactBody>(Plane{}, run.place(wall), law)});
   const double t_end = 10 * std::sqrt(ladder_length / ladder_gravity);
   const auto gone = [](double x) { return std::abs(x) > 0.02 * ladder_length; };
   const Track foot =
-      track("backward_euler", *system, t_end / 500, t_end, place(*system, 0, 0), gone);
+      track(run.integrator, *system, t_end / 500, t_end, run.look(*system, 0, 0), gone);
   return gone(foot.value.back());
 }
 

@@ -17,21 +17,22 @@ namespace tress::experiments::validation {
 namespace {
 
 /// Lies along y and may leave.
-Strand flat_rod(int elements, const Vec& velocity) {
+Strand flat_rod(const ModelTrial& trial, const Vec& velocity) {
   const Frame along_y{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-  Strand strand = TestRod().strand(elements, along_y);
+  Strand strand = TestRod().strand(trial.elements, along_y);
   strand.free_root = FreeRoot{{}, along_y, velocity, {}};
   return strand;
 }
 
-std::shared_ptr<const Effect> rigid_floor(const ModelVariant& variant,
-                                          const Strand& strand, double friction) {
+std::shared_ptr<const Effect> rigid_floor(const ModelTrial& trial, const Strand& strand,
+                                          double friction) {
   const double thick = strand.segments.front().section.a1;
-  const StrandPlace under{{0, 0, lowest_point(variant, strand) - thick},
+  const StrandPlace under{{0, 0, lowest_point(trial.variant, strand) - thick},
                           {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   return std::make_shared<ExactBody>(
-      Plane{}, under,
-      ExactContact{NormalContact{.stiffness = 1, .offset = thick}, true, friction});
+      Plane{}, trial.contact.place(under),
+      ExactContact{NormalContact{.stiffness = 1, .offset = thick},
+                   trial.contact.is_rigid(true), friction});
 }
 
 constexpr double slope_time = 0.5, slope_step = 1.0 / 30;  // s
@@ -39,14 +40,14 @@ constexpr double slope_time = 0.5, slope_step = 1.0 / 30;  // s
 /// What holds moves by rounding errors; a coefficient too small by 1e-5 lets it slide by
 /// 12 um.
 bool slides_down(const ModelTrial& trial, double friction) {
-  const Strand strand = flat_rod(trial.elements, {});
+  const Strand strand = flat_rod(trial, {});
   const double cosine = 1 / std::hypot(1, trial.parameter);
   const Vec down = earth_gravity * cosine * Vec{trial.parameter, 0, -1};
-  const auto system = on_strand(
-      trial.variant, strand,
-      {std::make_shared<Gravity>(down), rigid_floor(trial.variant, strand, friction)});
-  const Track x =
-      track("backward_euler", *system, slope_step, slope_time, place(*system, 0, 0));
+  const auto system = on_strand(trial.variant, trial.contact.strand(strand),
+                                {std::make_shared<Gravity>(trial.contact.turned * down),
+                                 rigid_floor(trial, strand, friction)});
+  const Track x = track(trial.contact.integrator, *system, slope_step, slope_time,
+                        trial.contact.look(*system, 0, 0));
   return std::abs(x.value.back()) > 1e-8;
 }
 
@@ -62,11 +63,12 @@ double least_holding(const ModelTrial& trial) {
 constexpr double fall = 1;  // m/s, and as much along the plane
 
 double speed_after(const ModelTrial& trial) {
-  const Strand strand = flat_rod(trial.elements, {fall, 0, -fall});
-  const auto system = on_strand(trial.variant, strand,
-                                {rigid_floor(trial.variant, strand, trial.parameter)});
+  const Strand strand = flat_rod(trial, {fall, 0, -fall});
+  const auto system = on_strand(trial.variant, trial.contact.strand(strand),
+                                {rigid_floor(trial, strand, trial.parameter)});
   const double step = 1e-3;
-  const Track x = track("backward_euler", *system, step, 10 * step, place(*system, 0, 0));
+  const Track x = track(trial.contact.integrator, *system, step, 10 * step,
+                        trial.contact.look(*system, 0, 0));
   const std::size_t last = x.value.size() - 1;
   return (x.value[last] - x.value[last - 1]) / (step * fall);
 }

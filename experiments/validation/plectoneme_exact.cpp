@@ -38,8 +38,9 @@ simulation::Scene exact_thread(const ModelVariant& variant, const HeldThread& th
                           "linearly_implicit_euler");
 }
 
-void proceed(simulation::World& world, double t, const Deadline& deadline) {
-  go_on(world, t);
+void proceed(simulation::World& world, double t, const Deadline& deadline,
+             const ContactRun& run = {}) {
+  go_on(world, t, run);
   if (deadline.passed()) throw std::runtime_error("the time for the row was over");
 }
 
@@ -47,7 +48,7 @@ double measured_angle(const ModelTrial& trial) {
   const HeldThread thread = held_thread(trial.variant, trial.elements, turns);
   simulation::World world(exact_thread(trial.variant, thread, trial.parameter, dt));
   for (int i = 1; i <= 100; ++i) {
-    proceed(world, thread.settled * i / 100, trial.deadline);
+    proceed(world, thread.settled * i / 100, trial.deadline, trial.contact);
   }
   return thread.angle_over_equilibrium(world.positions());
 }

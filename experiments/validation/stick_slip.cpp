@@ -35,8 +35,9 @@ const double away = 0.05 * rod_length;  // displacement beyond which a tip has s
 /// The clamp goes down by eps L in the first 70 % of the time and then waits. The time is
 /// 56 periods of the strand, which drag damps to 0.7 of critical.
 template <bool exact>
-bool slips(const ModelVariant& variant, const Strand& strand, double height,
+bool slips(const ModelTrial& trial, const Strand& strand, double height,
            double friction) {
+  const ContactRun& run = trial.contact;
   const double t_end = 100 / TestRod().rate(), depth = 1e-4 * rod_length;
   // The last node carries half a segment.
   const Segment& last = strand.segments.back();
@@ -49,19 +50,21 @@ bool slips(const ModelVariant& variant, const Strand& strand, double height,
   const StrandPlace plane{{0, 0, height - radius}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   std::shared_ptr<const Effect> body;
   if constexpr (exact) {
-    body = std::make_shared<ExactBody>(Plane{}, plane,
-                                       ExactContact{law.normal(), false, law.friction});
+    body = std::make_shared<ExactBody>(
+        Plane{}, run.place(plane),
+        ExactContact{law.normal(), run.is_rigid(false), law.friction});
   } else {
     body = std::make_shared<Body>(Plane{}, plane, law);
   }
-  const auto system = on_strand(
-      variant, strand, {body, std::make_shared<LinearDrag>(0, 5 * TestRod().rate())});
+  const auto system =
+      on_strand(trial.variant, run.strand(strand),
+                {body, std::make_shared<LinearDrag>(0, 5 * TestRod().rate())});
   const auto gone = [](double x) { return std::abs(x) > away; };
   // A quarter of the step if Newton's iteration cannot follow the strand as it buckles.
   for (double step = t_end / 1000;; step /= 4) {
     try {
       const Track x =
-          track("backward_euler", *system, step, t_end, place(*system, -1, 0), gone);
+          track(run.integrator, *system, step, t_end, run.look(*system, -1, 0), gone);
       return gone(x.value.back());
     } catch (const std::runtime_error&) {
       if (step < t_end / 10'000) throw;
@@ -85,7 +88,7 @@ double measured_friction(const ModelTrial& trial, double span, double width) {
   strand.root.translations.push_back(
       {{0, 0, -1}, smooth_step(down, 0, 70 / TestRod().rate())});
   const auto slipped = [&](double friction) {
-    return slips<exact>(trial.variant, strand, height, friction);
+    return slips<exact>(trial, strand, height, friction);
   };
   const double least = least_friction(trial.parameter);
   const double low = least / span, high = least * span;

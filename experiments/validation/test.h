@@ -7,6 +7,7 @@
 
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/experiment.h"
+#include "experiments/validation/rods/contact_run.h"
 
 namespace tress::experiments::validation {
 
@@ -16,6 +17,7 @@ struct ModelTrial {
   int elements;      // N
   double parameter;  // of the test
   const Deadline& deadline;
+  ContactRun contact = {};  // of tests with exact contact
 };
 
 /// A published test of slender rods: a known number for the continuous rod, and how to

@@ -39,12 +39,12 @@ Strand loose_rod(int elements, const Vec& root, const Vec& tangent,
   return strand;
 }
 
-std::vector<EffectSettings> on_floor(double radius, double floor_friction,
-                                     double friction) {
+std::vector<EffectSettings> on_floor(const ContactRun& run, double radius,
+                                     double floor_friction, double friction) {
   return {{"gravity", {{"gravity_m_s2", "0,0," + number_text(-touching_gravity)}}},
           {"body",
            {{"friction_law", "exact"},
-            {"normal", "rigid"},
+            {"normal", run.is_rigid(true) ? "rigid" : "compliant"},
             {"friction", number_text(floor_friction)},
             {"strand_radius_m", number_text(radius)}}},
           {"strand_friction",
@@ -68,15 +68,16 @@ double slowed(const ModelTrial& trial) {
   for (Strand& rail : strands) rail.free_root->position.z = radius;
   strands.push_back(loose_rod(trial.elements, {0.3 * length, -0.5 * length, 3 * radius},
                               {0, 1, 0}, {speed, 0, 0}));
-  simulation::World world(
-      touching_strands(trial.variant, strands, on_floor(radius, 0, trial.parameter), dt));
+  simulation::World world(touching_strands(
+      trial.variant, strands, on_floor(trial.contact, radius, 0, trial.parameter), dt,
+      trial.contact.integrator));
   const auto apart = [&] {
     return point(world, 2, trial.elements / 2).x - point(world, 0, 0).x;
   };
   const auto relative_speed = [&](double t) {
-    go_on(world, t);
+    go_on(world, t, trial.contact);
     const double before = apart();
-    go_on(world, t + dt);
+    go_on(world, t + dt, trial.contact);
     return (apart() - before) / dt;
   };
   const double first = relative_speed(0.1 * stop), last = relative_speed(0.8 * stop);
@@ -96,10 +97,11 @@ bool pile_falls(const ModelTrial& trial, double friction) {
   // Falls with the part of g by which friction is too little.
   const double t_end = 30 * std::sqrt(radius / touching_gravity);
   simulation::World world(touching_strands(
-      trial.variant, strands, on_floor(radius, friction, friction), t_end / 300));
+      trial.variant, strands, on_floor(trial.contact, radius, friction, friction),
+      t_end / 300, trial.contact.integrator));
   const double start = point(world, 2, 0).z;
   for (int i = 1; i <= 30; ++i) {
-    go_on(world, t_end * i / 30);
+    go_on(world, t_end * i / 30, trial.contact);
     if (start - point(world, 2, 0).z > 0.1 * radius) return true;
   }
   return false;

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "models/head/head.h"
+#include "simulation/run/method_dissipation.h"
 
 namespace tress::simulation {
 
@@ -33,6 +35,11 @@ class HeadGuard {
                      double t) = 0;
   /// Returns the finding of the last judge(); empty: nothing.
   virtual std::string_view verdict(std::size_t place) const = 0;
+
+  /// Why there is no dissipation(); empty: there is one.
+  virtual std::string no_dissipation() const = 0;
+  /// Returns the sum over strands of what the method has dissipated.
+  virtual MethodDissipation dissipation() const = 0;
 
   /// Returns how many numbers of a strand judge() changes, in addition to those of the
   /// batch.

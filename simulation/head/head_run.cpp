@@ -389,6 +389,17 @@ void HeadRun::potentials(double t, std::vector<double>& each) {
   });
 }
 
+std::string HeadRun::no_dissipation() const {
+  return guard_ ? guard_->no_dissipation() : "a batch of no scene has no guard";
+}
+
+std::optional<MethodDissipation> HeadRun::dissipation() {
+  if (!no_dissipation().empty()) return {};
+  MethodDissipation sum;
+  for (const MethodDissipation& one : ranks_->of_each(guard_->dissipation())) sum += one;
+  return sum;
+}
+
 double HeadRun::stepping_s() { return std::exchange(stepping_s_, 0); }
 
 HeadWork HeadRun::work() const {

@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "models/effects/strand_interaction.h"
@@ -67,6 +69,11 @@ class HeadRun {
   void positions(double t, std::vector<double>& x);
   /// Computes the energies of own strands, J.
   void energies(double t, std::vector<models::HeadEnergy>& each);
+  /// Why dissipation() is empty; empty: it is not.
+  std::string no_dissipation() const;
+  /// Returns what the method has dissipated on all strands of all ranks, which all call
+  /// it. Empty without an account: see no_dissipation().
+  std::optional<MethodDissipation> dissipation();
   /// Returns the number of HeadGuard::potentials() of each strand; none without a scene.
   std::size_t effects() const { return guard_ ? guard_->effects() : 0; }
   /// Computes the potentials of effects on own strands, strand after strand, J.

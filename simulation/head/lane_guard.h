@@ -49,6 +49,12 @@ class LaneGuard final : public HeadGuard {
   std::string_view verdict(std::size_t place) const override {
     return strands_[place].verdict;
   }
+  /// Lanes compute no power of internal friction and of the clamp.
+  std::string no_dissipation() const override {
+    return "SIMD lanes compute no power of internal friction and of the clamp: give "
+           "--as strands";
+  }
+  MethodDissipation dissipation() const override { return {}; }
   std::size_t kept() const override { return EnergyAccount::remembered; }
   /// Writes the account of a strand.
   void keep(std::size_t place, std::span<double> to) const override;

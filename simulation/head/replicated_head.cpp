@@ -52,6 +52,16 @@ class ReplicatedHead::Judge final : public HeadGuard {
     return head_.strands_[place].verdict;
   }
 
+  std::string no_dissipation() const override {
+    if (head_.touching_) return std::string(touching_strands);
+    return head_.strands_.front().run.no_dissipation();
+  }
+  MethodDissipation dissipation() const override {
+    MethodDissipation sum;
+    for (const OfStrand& one : head_.strands_) sum += one.run.guard->dissipation();
+    return sum;
+  }
+
   // The head keeps what guards have gathered.
   std::size_t kept() const override { return 0; }
   void keep(std::size_t, std::span<double>) const override {}
@@ -85,7 +95,9 @@ double bulge_of(double arc, double chord) {
 }  // namespace
 
 ReplicatedHead::ReplicatedHead(const Scene& scene, int elements)
-    : maker_(scene), elements_(static_cast<std::size_t>(elements)) {}
+    : maker_(scene),
+      elements_(static_cast<std::size_t>(elements)),
+      touching_(scene.interaction() != nullptr) {}
 
 void ReplicatedHead::add(const StrandToMake& strand, std::size_t number) {
   const auto refuse = [&](const std::string& what, const std::string& remedy) {

@@ -91,6 +91,7 @@ class ReplicatedHead final : public models::Head {
 
   StrandMaker maker_;
   std::size_t elements_;
+  bool touching_;                             // strands act on each other
   std::size_t coordinates_ = 0, memory_ = 0;  // numbers of a strand
   std::size_t bytes_ = 0;
   std::vector<OfStrand> strands_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "contract/basics.h"
 #include "contract/forms/energetics.h"
@@ -30,6 +31,10 @@ struct MethodDissipation {
     return *this;
   }
 };
+
+/// Reason why strands that touch have no account.
+inline constexpr std::string_view touching_strands =
+    "energy passes between strands that touch";
 
 /// Keeps the account of one system. With the power P of everything outside the energy E
 /// (Energetics::power), a solution of the equations has E(0) + integral of P = E(t). The

@@ -45,7 +45,7 @@ Readout::Readout(const Scene& scene, const World& world)
   add("t_s", "time");
   for (const char* axis : {"x", "y", "z"}) {
     add(std::string("tip_") + axis + "_m",
-        "tip, mean over the strands that have not failed");
+        "tip, mean over the strands that have not failed; empty if all have");
   }
   add("kinetic_j", "kinetic energy of all strands");
   if (scene.strands.empty()) {
@@ -250,9 +250,11 @@ void Readout::read_points(World& world, Frame3d& frame) {
     // Strands are separate lines.
     if (!scene_.strands.empty()) read_loads(world, k, end, contacts, frame);
     end += points;
-    if (world.lost(k)) continue;
-    const std::size_t left = world.strands() - world.lost().size();
-    tip = tip + (1.0 / static_cast<double>(left)) * load3(&x[3 * (end - 1)]);
+    if (!world.lost(k)) tip = tip + load3(&x[3 * (end - 1)]);
+  }
+  // Without any left they are no numbers, and their cells are empty.
+  if (world.strands() > 0) {
+    tip = 1 / static_cast<double>(world.strands() - world.lost().size()) * tip;
   }
   for (const double component : {tip.x, tip.y, tip.z}) frame.series.push_back(component);
 }

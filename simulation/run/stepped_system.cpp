@@ -97,6 +97,15 @@ void SteppedSystem::advance(const IntegratorEntry& method, const Options& option
   if (!guard->judge(t, q, v)) status = Status::fatal;
 }
 
+std::string SteppedSystem::no_dissipation() const {
+  if (!guard) return "without a guard no account is kept: leave out guard = false";
+  if (system->energetics() == nullptr) return "the model computes no energy";
+  if (system->contact_form() != nullptr) {
+    return "impulses of exact contact change the energy by no power";
+  }
+  return {};
+}
+
 /// Of Options::max_work, which bounds failed attempts too.
 double SteppedSystem::work_left(const Options& options) const {
   if (options.max_work == 0) return std::numeric_limits<double>::infinity();

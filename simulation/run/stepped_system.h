@@ -44,6 +44,8 @@ struct SteppedSystem {
   struct State {
     std::vector<double> q, v, memory;  // memory: System::memory()
   };
+  /// Why the guard has no account of what the method dissipates; empty: it has one.
+  std::string no_dissipation() const;
   /// Returns the initial state.
   State initial_state() const;
   /// A new integrator, to be started.

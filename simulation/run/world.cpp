@@ -176,6 +176,15 @@ std::vector<std::string> World::supported_starts() const {
   return all;
 }
 
+double World::drive() const {
+  double fastest = friction_ == nullptr ? 0 : friction_->drive();
+  for (const Body& body : bodies_) {
+    const ContactForm* const form = body.system->contact_form();
+    if (form != nullptr) fastest = std::max(fastest, form->drive());
+  }
+  return fastest;
+}
+
 double World::stretch() {
   double most = 0;
   for (const Body& body : bodies_) {

@@ -91,6 +91,8 @@ class World {
   /// changes by other means than power: impulses of rigid contact and of friction between
   /// strands, other strands that move.
   std::optional<MethodDissipation> dissipation() const;
+  /// Returns the reason why dissipation() is empty; empty: it is not.
+  std::string no_dissipation() const;
   /// Returns the largest depth of a strand in a body at the ends of all steps since the
   /// last call, m. Watches from the first call on, which returns 0.
   double take_depth();
@@ -133,6 +135,11 @@ class World {
   /// have them act, by strand; without those between strands.
   std::vector<ContactForce> contact_forces();
   double stretch();  // largest |length/rest - 1|, 0 if not available
+  /// Returns the largest drive of friction after the last step, with bodies and between
+  /// strands, m/s: ContactForm::drive().
+  double drive() const;
+  /// Returns the step of the method, s.
+  double step() const { return maker_.options().step; }
   // Null if the scene names none.
   /// Returns the forces between strands that touch.
   const StrandInteraction* interaction() const { return interaction_; }

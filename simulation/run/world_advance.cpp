@@ -110,15 +110,18 @@ const Breach* World::breach() const {
 }
 
 std::optional<MethodDissipation> World::dissipation() const {
+  if (!no_dissipation().empty()) return {};
   MethodDissipation sum;
-  if (!couplings_.empty()) return {};
-  for (const Body& body : bodies_) {
-    const bool known = body.guard && body.system->energetics() != nullptr &&
-                       body.system->contact_form() == nullptr;
-    if (!known) return {};
-    sum += body.guard->dissipation();
-  }
+  for (const Body& body : bodies_) sum += body.guard->dissipation();
   return sum;
+}
+
+std::string World::no_dissipation() const {
+  if (!couplings_.empty()) return std::string(touching_strands);
+  for (const Body& body : bodies_) {
+    if (std::string why = body.no_dissipation(); !why.empty()) return why;
+  }
+  return {};
 }
 
 void World::watch_depth() {

@@ -16,11 +16,13 @@
 #include "simulation/head/batch_matrix.h"
 #include "simulation/head/head_run.h"
 #include "simulation/run/world.h"
+#include "tests/contracts/batch_runs.h"
 #include "tests/support/thread_ranks.h"
 
 namespace tress::simulation {
 namespace {
 
+using namespace testing_support;
 using Way = BatchCase::Way;
 
 constexpr double trapped = 10;  // m along y: no strand elsewhere is there
@@ -52,63 +54,6 @@ const bool trap_is_added = [] {
       "this test");
   return true;
 }();
-
-/// Positions of all strands at all frames, and which strands have failed.
-struct Course {
-  std::vector<std::vector<double>> frames;
-  std::vector<std::size_t> lost;
-};
-
-Course of_strands(const Scene& scene) {
-  World world(scene);
-  Course course;
-  for (std::size_t frame = 1; frame <= scene.last_frame(); ++frame) {
-    EXPECT_EQ(world.advance(scene.time_of(frame)), Status::ok) << world.failure();
-    course.frames.push_back(world.positions());
-  }
-  for (const FailedStrand& one : world.lost()) course.lost.push_back(one.strand);
-  std::ranges::sort(course.lost);
-  return course;
-}
-
-/// Steps of the scene from its frame to the next one.
-void step_to(HeadRun& run, const Scene& scene, std::size_t frame) {
-  const double begin = scene.time_of(frame - 1), end = scene.time_of(frame),
-               count = std::max(
-                   1.0,
-                   std::ceil((end - begin) / longest_step(scene, run.lanes()) - 1e-9)),
-               h = (end - begin) / count;
-  for (int i = 0; i < static_cast<int>(count); ++i) run.step(begin + i * h, h);
-  run.judge(end);
-}
-
-std::unique_ptr<HeadRun> batch(const SceneOutline& outline, int threads = 1) {
-  const HeadPack pack{models::HeadNumber::float64, 4};
-  return std::make_unique<HeadRun>(make_head(outline, pack, threads), threads);
-}
-
-/// Places are numbers where strands do not touch.
-Course of_batch(HeadRun& run, const Scene& scene, std::size_t from = 1) {
-  Course course;
-  for (std::size_t frame = from; frame <= scene.last_frame(); ++frame) {
-    step_to(run, scene, frame);
-    run.positions(scene.time_of(frame), course.frames.emplace_back());
-  }
-  for (std::size_t k = 0; k < run.head().strands(); ++k) {
-    if (run.head().lost(k)) course.lost.push_back(k);
-  }
-  return course;
-}
-
-double apart(const Course& one, const Course& other) {
-  double most = 0;
-  for (std::size_t f = 0; f < one.frames.size(); ++f) {
-    for (std::size_t i = 0; i < one.frames[f].size(); ++i) {
-      most = std::max(most, std::abs(one.frames[f][i] - other.frames[f][i]));
-    }
-  }
-  return most;
-}
 
 /// Runs it both ways.
 void expect_the_same(const BatchCase& one) {

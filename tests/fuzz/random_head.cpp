@@ -2,81 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "integrators/catalogue.h"
 #include "models/catalogue.h"
+#include "tests/fuzz/random_effects.h"
 
 namespace tress::testing_support {
-namespace {
-
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {}
-
-  bool chance(double p) { return uniform(0, 1) < p; }
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_()) * std::ldexp(1.0, -64);
-  }
-  double of_size(double low, double high) {
-    return std::exp(uniform(std::log(low), std::log(high)));
-  }
-  template <class T, std::size_t n>
-  T one_of(const T (&all)[n]) {
-    return all[random_() % n];
-  }
-  template <class List>
-  const auto& of(const List& list) {
-    return list[random_() % std::size(list)];
-  }
-
- private:
-  std::mt19937_64 random_;
-};
-
-std::string body(Draw& draw, double reach) {
-  return fmt::format(
-      "[[effects.body]]\nshape = \"sphere\"\nradius_m = {:.4g}\nmoves = \"{}\"\n"
-      "stiffness_n_m2 = {:.4g}\nfriction = {}\n",
-      draw.uniform(0.09, 0.1 + 0.3 * reach), draw.chance(0.5) ? "fixed" : "head",
-      draw.of_size(0.1, 300), draw.one_of({0.0, 0.3, 2.0}));
-}
-
-/// A sphere that moves towards the strands by its own keyframes, or nothing.
-std::string moving_body(Draw& draw, double length) {
-  if (!draw.chance(0.1)) return "";
-  return fmt::format(
-      "[[effects.body]]\nshape = \"sphere\"\nradius_m = {:.4g}\ncentre_m = [{:.4g}, 0, "
-      "{:.4g}]\nmoves = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], [0.01, 0, 0, "
-      "{:.4g}, "
-      "1]]\n",
-      0.2 * length, 0.2 + 0.5 * length, -0.5 * length, 0.4 * length);
-}
-
-std::string wind(Draw& draw) {
-  return fmt::format(
-      "[effects.wind]\nvelocity_m_s = [{:.3g}, 0, 1]\nprofile = \"{}\"\nlaw = \"{}\"\n",
-      draw.of_size(0.3, 30), draw.one_of({"steady", "sine"}),
-      draw.one_of({"force", "quadratic"}));
-}
-
-}  // namespace
-
 namespace {
 
 /// A scene of what has SIMD lanes.
 std::string with_lanes(Draw& draw) {
   const std::string_view model =
-      draw.one_of({"super_helix", "super_clothoid", "articulated_chain", "mass_spring"});
+      draw.one_of({"super_helix", "super_clothoid", "articulated_chain", "mass_spring",
+                   "corde", "xpbd_cosserat"});
   const std::string_view method =
       draw.one_of({"linearly_implicit_euler", "linearly_implicit_euler", "backward_euler",
                    "linearly_implicit_midpoint", "tr_bdf2"});
-  const bool springs = model == "mass_spring",
+  const bool quaternions = model == "corde" || model == "xpbd_cosserat",
+             nodes = quaternions || model == "mass_spring",
              single = method == "linearly_implicit_euler";
   const double length = draw.of_size(0.02, 0.8), radius = draw.of_size(1e-5, 4e-4),
                modulus = draw.of_size(1e5, 1e10);
@@ -88,17 +34,18 @@ std::string with_lanes(Draw& draw) {
       "title = \"pair\"\nduration_s = {:.6g}\nframes_per_s = {:.6g}\n[model]\nid = "
       "\"{}\"\n",
       steps * step, 10 / (steps * step), model);
-  if (!springs) {
-    text +=
-        fmt::format("jacobian = \"{}\"\nmodes = \"{}\"\n", single ? "elastic" : "exact",
-                    draw.one_of({"bend_twist", "bend_twist", "bend"}));
+  if (!nodes) {
+    text += fmt::format("jacobian = \"{}\"\nmodes = \"{}\"\nrotary_inertia = \"{}\"\n",
+                        single ? "elastic" : "exact",
+                        draw.one_of({"bend_twist", "bend_twist", "bend"}),
+                        draw.one_of({"on", "off"}));
   }
   text += fmt::format(
       "[integrator]\nid = \"{}\"\ndt_s = {:.6g}\n[material]\nname = \"custom\"\n"
       "radius_m = {:.4g}\nyoungs_modulus_pa = {:.4g}\npoisson_ratio = {}\n"
       "density_kg_m3 = {}\nellipticity = {}\ninternal_friction_kg_m3_s = {:.4g}\n",
       method, step, radius, modulus, draw.one_of({0.0, 0.48}), density,
-      springs ? 1.0 : draw.one_of({1.0, 1.0, 2.0, 0.3}),
+      nodes ? 1.0 : draw.one_of({1.0, 1.0, 2.0, 0.3}),
       draw.chance(0.5) ? 0.0 : draw.of_size(1e-12, 1e-8));
   text += fmt::format(
       "[groom]\ncount = {}\nlength_variation = {}\nlength_m = {:.4g}\nelements = {}\n",
@@ -120,11 +67,17 @@ std::string with_lanes(Draw& draw) {
                         draw.of_size(1e-6, 1e-2));
   }
   if (draw.chance(0.4)) text += body(draw, length);
-  if (single && !springs && draw.chance(0.3)) text += wind(draw);
-  if (single && !springs && draw.chance(0.2)) {
+  if (single && !nodes && draw.chance(0.3)) text += wind(draw);
+  if (single && !nodes) text += further(draw, length);
+  if (single && !nodes && draw.chance(0.2)) {
     text += "[effects.strand_interaction]\ncoupling = \"lagged\"\n";
   }
-  return text + moving_body(draw, length);
+  text += moving_body(draw, length);
+  // Contact is not smooth: the sums over an element depend on its points.
+  if (!nodes && text.find("effects.body") != std::string::npos) {
+    text.insert(text.find("[integrator]"), "quadrature = 8\n");
+  }
+  return text;
 }
 
 /// Some options of a model or a method, each a word of its choices.
@@ -171,19 +124,12 @@ std::string effects(Draw& draw, double length, int count) {
     text += fmt::format("[effects.linear_drag]\ndrag_kg_m_s = {:.3g}\n",
                         draw.of_size(1e-6, 1e-3));
   }
-  if (draw.chance(0.15)) text += "[effects.quadratic_drag]\n";
   if (draw.chance(0.2)) text += wind(draw);
-  if (draw.chance(0.15)) text += "[effects.constant_force]\nforce_n_m = [0, 1e-5, 0]\n";
-  if (draw.chance(0.15)) {
-    text += fmt::format(
-        "[[effects.tether]]\nstiffness_n_m = 0.001\ntarget_m = [{:.3g}, "
-        "0, 0]\n",
-        length);
-  }
+  text += further(draw, length);
+  if (draw.chance(0.15)) text += "[effects.self_contact]\n";
   if (draw.chance(0.25)) {
     text += body(draw, length) + (draw.chance(0.4) ? "friction_law = \"exact\"\n" : "");
   }
-  if (draw.chance(0.15)) text += "[effects.self_contact]\n";
   if (count > 1 && draw.chance(0.2)) {
     text += fmt::format("[effects.strand_interaction]\ncoupling = \"{}\"\n",
                         draw.one_of({"lagged", "lagged", "monolithic"}));
@@ -204,16 +150,6 @@ std::string along(Draw& draw) {
   return text;
 }
 
-/// Dead and following forces on one place of every strand.
-std::string point_force(Draw& draw) {
-  if (!draw.chance(0.15)) return "";
-  return fmt::format(
-      "[[effects.point_force]]\nat = {:.3g}\nforce_n = [0, {:.3g}, 0]\nfollower_n = "
-      "{:.3g}\nfactor_over_time = [[0, 0], [0.01, 1]]\n",
-      draw.one_of({0.3, 1.0, 1.0}), draw.of_size(1e-8, 1e-6),
-      draw.chance(0.5) ? 0.0 : -draw.of_size(1e-8, 1e-6));
-}
-
 /// Of any model of strands, integrator, option and effect.
 std::string of_anything(Draw& draw) {
   std::vector<const models::ModelEntry*> strand_models;
@@ -223,7 +159,8 @@ std::string of_anything(Draw& draw) {
   const models::ModelEntry& model = *draw.of(strand_models);
   const integrators::IntegratorEntry& method =
       draw.of(integrators::integrator_catalogue());
-  const bool constrained = model.id == "inextensible_strand";
+  const bool constrained =
+      model.id == "inextensible_strand" || model.id == "dynamic_spline";
   const double length = draw.of_size(0.02, 0.4), step = draw.of_size(1e-4, 5e-3);
   const int steps = draw.one_of({4, 8, 16}), count = draw.one_of({1, 2, 3, 6});
   std::string text =
@@ -233,6 +170,9 @@ std::string of_anything(Draw& draw) {
   if (draw.chance(0.1)) text += "rest = \"inverse\"\nunstable = \"keep\"\n";
   text +=
       fmt::format("[model]\nid = \"{}\"\n", model.id) + options(draw, model.parameters);
+  for (const Parameter& p : model.parameters) {
+    if (p.name == "quadrature") text += fmt::format("{} = 8\n", p.name);
+  }
   text += integrator(draw, method, constrained, step);
   text += fmt::format(
       "[material]\nname = \"custom\"\nradius_m = {:.4g}\nyoungs_modulus_pa = {:.4g}\n"
@@ -256,8 +196,7 @@ std::string of_anything(Draw& draw) {
                        draw.one_of({"shake", "rotate", "stop", "translate", "free"}));
   }
   const std::string acting = effects(draw, length, count);
-  return text + along(draw) + root + acting + point_force(draw) +
-         moving_body(draw, length);
+  return text + along(draw) + root + acting + driven(draw) + moving_body(draw, length);
 }
 
 }  // namespace

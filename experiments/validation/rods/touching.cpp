@@ -1,5 +1,7 @@
 #include "experiments/validation/rods/touching.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -41,8 +43,17 @@ simulation::Scene touching_strands(const ModelVariant& variant,
   return scene;
 }
 
-void go_on(simulation::World& world, double t) {
-  if (world.advance(t) != Status::ok) throw std::runtime_error(world.failure());
+void go_on(simulation::World& world, double t, const ContactRun& run) {
+  const auto advance = [&](double to) {
+    if (world.advance(to) != Status::ok) throw std::runtime_error(world.failure());
+  };
+  if (!run.each_drive) return advance(t);
+  const double begin = world.time(), span = t - begin;
+  const double steps = std::max(1.0, std::ceil(span / world.step() - 1e-9));
+  for (double i = 1; i <= steps; ++i) {
+    advance(i == steps ? t : begin + span * i / steps);
+    run.each_drive(world.drive());
+  }
 }
 
 Vec point(simulation::World& world, std::size_t strand, int i) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/problems/strand_models.h"
+#include "experiments/validation/rods/contact_run.h"
 #include "models/strand/strand.h"
 #include "simulation/run/world.h"
 
@@ -22,8 +23,9 @@ simulation::Scene touching_strands(const ModelVariant& variant,
                                    const std::vector<EffectSettings>& effects, double dt,
                                    std::string_view integrator = "backward_euler");
 
-/// Throws std::runtime_error if the world does not get there.
-void go_on(simulation::World& world, double t);
+/// Advances to t, one step at a time where `run` receives the drive. Throws
+/// std::runtime_error if the world does not get there.
+void go_on(simulation::World& world, double t, const ContactRun& run = {});
 
 /// A material point of a strand, from its tip: -1, -2, ...
 Vec point(simulation::World& world, std::size_t strand, int i);
