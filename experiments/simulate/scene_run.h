@@ -80,8 +80,9 @@ struct SceneRun {
   bool resumed = false;
   Exchanges exchanges = {};
   std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
-  std::string not_smooth = {};  // World::not_smooth(), first that was seen
-  std::size_t lost = 0;         // strands that failed and stay
+  std::string not_smooth = {};               // World::not_smooth(), first that was seen
+  std::optional<StrandPassage> passed = {};  // World::passed(), first that was seen
+  std::size_t lost = 0;                      // strands that failed and stay
   std::optional<HeadOutcome> head = {};
   std::vector<NamedLoad> supports = {};  // their loads in the last frame
   double support_force = 0;              // N, largest in a frame

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "models/head/head.h"
+#include "simulation/run/body_passages.h"
 
 namespace tress::simulation {
 
@@ -33,6 +35,10 @@ class HeadGuard {
                      double t) = 0;
   /// Returns the finding of the last judge(); empty: nothing.
   virtual std::string_view verdict(std::size_t place) const = 0;
+
+  /// Returns the first passage of a strand through a body that steps of its own have
+  /// seen; its number is its place. HeadPassages watches strands in lanes.
+  virtual std::optional<StrandPassage> passed() const { return {}; }
 
   /// Returns how many numbers of a strand judge() changes, in addition to those of the
   /// batch.
