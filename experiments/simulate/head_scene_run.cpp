@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -75,6 +77,7 @@ class HeadSceneRun {
     made.frames = frames_;
     made.simulated_s = scene_.duration;
     made.work = work();
+    made.passed = passed();
     made.rejected = made.work.rejected;
     const std::size_t state = run_->hash();
     made.dissipation = run_->dissipation();
@@ -147,6 +150,17 @@ class HeadSceneRun {
                                     : done.shortened;
     }
     return all;
+  }
+
+  /// The earliest of all ranks.
+  std::optional<StrandPassage> passed() {
+    StrandPassage none;
+    none.contact.t = std::numeric_limits<double>::infinity();
+    StrandPassage first = none;
+    for (const StrandPassage& one : ranks_.of_each(passed_.value_or(none))) {
+      if (one.contact.t < first.contact.t) first = one;
+    }
+    return std::isfinite(first.contact.t) ? std::optional(first) : std::nullopt;
   }
 
   /// What the rank with most has, or has taken.
@@ -352,6 +366,7 @@ class HeadSceneRun {
     std::vector<double> series;
     outcome.read_s += seconds_of([&] {
       run_->judge(t);
+      if (!passed_) passed_ = run_->passed();
       lose(t, 0);
       gather_lost();
       series = reading_->series(*run_, t);
@@ -374,6 +389,7 @@ class HeadSceneRun {
   FailuresOfRanks lost_;                    // not yet known to the first rank
   std::size_t frames_ = 0, step_ = 0;       // written; taken before this process began
   std::size_t losses_ = 0;                  // of all ranks
+  std::optional<StrandPassage> passed_;     // of this rank
   long steps_ = 0;
   models::HeadWork done_;  // by heads that others have taken the place of
 };

@@ -107,6 +107,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     }
     add_frame();
     if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
+    if (!run.passed) run.passed = world->passed();
     run.indicator = std::max(run.indicator, world->error_indicator());
     bar.show(world->time());
     if (between_saves == 0 || frame % between_saves != 0 || frame == last) continue;
@@ -119,6 +120,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     add_exchanges(world->exchanges(), run.exchanges);
     world = std::make_unique<World>(scene, options.threads, world->held());
     world->restore(snapshot);
+    static_cast<void>(world->take_depth());  // watched from here on
     readout.restart();
   }
   add_work(world->stats(), run.work);
@@ -146,6 +148,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   run.simulated_s = world->time();
   run.dissipation = world->dissipation();
   run.no_dissipation = world->no_dissipation();
+  if (!run.passed) run.passed = world->passed();
   if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();
   run.wall_s = seconds_since(begin);
   options.heartbeat->doing(scene.name + ": writing its pictures");

@@ -81,8 +81,9 @@ struct SceneRun {
   Exchanges exchanges = {};
   std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
   std::string no_dissipation = {};                    // why it is empty
-  std::string not_smooth = {};  // World::not_smooth(), first that was seen
-  std::size_t lost = 0;         // strands that failed and stay
+  std::string not_smooth = {};               // World::not_smooth(), first that was seen
+  std::optional<StrandPassage> passed = {};  // World::passed(), first that was seen
+  std::size_t lost = 0;                      // strands that failed and stay
   std::optional<HeadOutcome> head = {};
   std::vector<NamedLoad> supports = {};  // their loads in the last frame
   double support_force = 0;              // N, largest in a frame

@@ -7,8 +7,9 @@
 
 namespace tress::experiments::scene_runs {
 
-/// Returns the warnings of a run that came to its end, one sentence each: a method that
-/// changed the energy by a large part, a model without a smooth motion.
+/// Returns the warnings of a run, one sentence each. They concern a method that changed
+/// the energy by a large part, a model without a smooth motion, and a strand that passed
+/// through a body within a step.
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run);
 
 }  // namespace tress::experiments::scene_runs

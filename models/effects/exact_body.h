@@ -35,6 +35,8 @@ class ExactBody final : public Effect, private Multipliers {
     return body_->next_breakpoint(t);
   }
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
+  /// Returns shape, place and motion.
+  const RigidBody& body() const { return *body_; }
 
   std::unique_ptr<Effect> for_strand(std::size_t points) const override;
   Multipliers* multipliers() override { return this; }

@@ -26,6 +26,8 @@ class Obstacle final : public Effect {
     return body_->penetration(t, x);
   }
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
+  /// Returns shape, place and motion.
+  const RigidBody& body() const { return *body_; }
 
   /// Returns Coulomb's coefficient.
   double friction() const { return friction_; }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "models/head/head.h"
+#include "simulation/run/body_passages.h"
 #include "simulation/run/method_dissipation.h"
 
 namespace tress::simulation {
@@ -40,6 +42,10 @@ class HeadGuard {
   virtual std::string no_dissipation() const = 0;
   /// Returns the sum over strands of what the method has dissipated.
   virtual MethodDissipation dissipation() const = 0;
+
+  /// Returns the first passage of a strand through a body that steps of its own have
+  /// seen; its number is its place. HeadPassages watches strands in lanes.
+  virtual std::optional<StrandPassage> passed() const { return {}; }
 
   /// Returns how many numbers of a strand judge() changes, in addition to those of the
   /// batch.

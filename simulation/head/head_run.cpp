@@ -27,6 +27,7 @@ HeadRun::HeadRun(std::unique_ptr<Head> head, int threads,
                         .lanes = true,
                         .division = {},
                         .halo = {},
+                        .passages = {},
                         .held = {}},
               threads, alone_) {}
 
@@ -39,6 +40,7 @@ HeadRun::HeadRun(SceneHead made, int threads, Ranks& ranks)
       head_(std::move(made.head)),
       guard_(std::move(made.guard)),
       guarded_(guard_ && made.guarded),
+      passages_(std::move(made.passages)),
       lanes_(made.lanes),
       crew_(threads) {
   all_ = pieces([](std::size_t) { return true; });
@@ -183,6 +185,7 @@ void HeadRun::recall(std::size_t block, std::span<const double> from) {
 }
 
 void HeadRun::recall(Numbers strands, std::vector<double>& kept_of_all) {
+  if (passages_) passages_->forget();
   const std::size_t each = kept();
   const std::vector<std::size_t> counts = division_->counts(strands);
   std::vector<double> own(each * counts[static_cast<std::size_t>(ranks_->rank())]),
@@ -327,15 +330,48 @@ void HeadRun::step(double t, double h) {
     return;
   }
   look(t, h);
+  const bool searched = passages_ && passages_->due(t, h);
+  if (searched && !passages_->knows(t)) positions(t, passages_->x);
   take_steps(inner_, t, h);
   if (halo_) {
     halo_->receive(x_, v_, loop());
     take_steps(outer_, t, h);
   }
+  if (searched) find_passages(t + h, h);
   lost_ = head_->losses(losses_);
   losses_ += lost_.size();
   for (models::HeadLoss& loss : lost_) loss.strand = division_->own()[loss.strand];
   taken(t, h, [] {});
+}
+
+void HeadRun::find_passages(double t, double h) {
+  std::vector<double> now;
+  positions(t, now);
+  const std::size_t each = head_->numbers();
+  std::vector<double> longest(head_->blocks());
+  std::vector<std::optional<StrandPassage>> found(head_->blocks());
+  each_block([&](std::size_t block, std::size_t first) {
+    for (std::size_t k = first; k < first + head_->strands_of(block); ++k) {
+      if (head_->lost(k)) continue;
+      const auto one =
+          passages_->find({t - h, t, std::span(passages_->x).subspan(each * k, each),
+                           std::span(now).subspan(each * k, each)});
+      longest[block] = std::max(longest[block], one.longest);
+      if (one.missed && !found[block]) found[block] = {division_->own()[k], *one.missed};
+    }
+  });
+  std::optional<StrandPassage> any;
+  for (const auto& one : found) {
+    if (one && (!any || one->strand < any->strand)) any = one;
+  }
+  passages_->take(t, std::move(now), *std::ranges::max_element(longest), any);
+}
+
+std::optional<StrandPassage> HeadRun::passed() const {
+  if (passages_) return passages_->first;
+  std::optional<StrandPassage> first = guard_ ? guard_->passed() : std::nullopt;
+  if (first) first->strand = division_->own()[first->strand];
+  return first;
 }
 
 template <class Ready>

@@ -55,6 +55,10 @@ class HeadRun {
   /// Own strands that the last step lost, by their numbers in the whole head.
   const std::vector<models::HeadLoss>& lost() const { return lost_; }
 
+  /// Returns the first own strand that passed through a body within a step, by its number
+  /// in the whole head. Strands in lanes with a tolerance are not watched.
+  std::optional<StrandPassage> passed() const;
+
   // Of this rank's own strands, by their places: see HeadDivision.
   /// Returns the division of strands among ranks.
   const HeadDivision& division() const { return *division_; }
@@ -130,6 +134,8 @@ class HeadRun {
   void each_block(Use use);
   std::size_t first_of(std::size_t block) const;
   void take_steps(const std::vector<Blocks>& of, double t, double h);
+  /// Searches the step of h that has come to t for strands that pass through bodies.
+  void find_passages(double t, double h);
   /// A step has been taken; `ready` brings the strands here if they must be judged.
   template <class Ready>
   void taken(double t, double h, Ready ready);
@@ -156,8 +162,9 @@ class HeadRun {
   std::unique_ptr<models::StrandInteraction> interaction_;
   std::unique_ptr<Halo> halo_;  // or null
   std::unique_ptr<Head> head_;
-  std::unique_ptr<HeadGuard> guard_;  // or null
-  bool guarded_;                      // whether it judges
+  std::unique_ptr<HeadGuard> guard_;        // or null
+  bool guarded_;                            // whether it judges
+  std::unique_ptr<HeadPassages> passages_;  // or null
   bool lanes_;
   long steps_ = 0;
   std::unique_ptr<DeviceHead> device_;  // or null

@@ -61,6 +61,16 @@ class ReplicatedHead::Judge final : public HeadGuard {
     for (const OfStrand& one : head_.strands_) sum += one.run.guard->dissipation();
     return sum;
   }
+  std::optional<StrandPassage> passed() const override {
+    std::optional<StrandPassage> first;
+    for (std::size_t k = 0; k < head_.strands_.size(); ++k) {
+      const auto& depth = head_.strands_[k].run.depth;
+      if (!depth || !depth->seen.missed) continue;
+      if (first && first->contact.t <= depth->seen.missed->t) continue;
+      first = {k, *depth->seen.missed};
+    }
+    return first;
+  }
 
   // The head keeps what guards have gathered.
   std::size_t kept() const override { return 0; }
@@ -115,12 +125,15 @@ void ReplicatedHead::add(const StrandToMake& strand, std::size_t number) {
     one.lengths.push_back(segment.length);
   }
   SteppedSystem& run = one.run;
-  const MaterialPoints* points = run.system->material_points();
+  MaterialPoints* const points = run.system->material_points();
   if (points == nullptr || points->count() != static_cast<int>(elements_ + 1)) {
     refuse(
         "the model has no material points at the ends of its elements, which frames "
         "of a batch consist of",
         "use --as strands");
+  }
+  if (BodyDepth depth(maker_.effects(), *points); depth.any()) {
+    run.depth.emplace(std::move(depth));
   }
   run.take_method(maker_.method().id, maker_.options());
   SteppedSystem::State begin = run.initial_state();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "contract/input_error.h"
@@ -237,6 +239,15 @@ void replicate(const Scene& scene, const Strands& series, Crew& crew, SceneHead&
   to.head = std::move(head);
 }
 
+/// With a tolerance strands take steps that their batch does not see.
+void watch_bodies(const Scene& scene, SceneHead& to) {
+  if (scene.options.tolerance > 0) return;
+  std::vector<int> before(to.head->numbers() / 3);
+  std::iota(before.begin(), before.end(), -1);
+  BodyPassages passages(make_effects(scene), std::move(before));
+  if (passages.any()) to.passages = std::make_unique<HeadPassages>(std::move(passages));
+}
+
 /// make_head() for a StrandSeries, or for Held strands.
 template <class Strands>
 SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pack,
@@ -264,6 +275,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
     replicate(scene, series, crew, made);
   } else {
     add_in_lanes(scene, series, pack, all, crew, ranks, made);
+    watch_bodies(scene, made);
   }
   return made;
 }

@@ -8,6 +8,7 @@
 #include "simulation/head/halo.h"
 #include "simulation/head/head_division.h"
 #include "simulation/head/head_guard.h"
+#include "simulation/head/head_passages.h"
 #include "simulation/head/make_head.h"
 #include "simulation/head/no_head.h"
 #include "simulation/head/ranks.h"
@@ -27,8 +28,9 @@ struct SceneHead {
   bool guarded = false;                                    // whether it judges the steps
   bool lanes = true;                                       // else a ReplicatedHead
   std::shared_ptr<const HeadDivision> division;  // null: all strands, in their order
-  std::unique_ptr<Halo> halo;   // null: no other rank's strands may touch these
-  std::vector<HeldShape> held;  // of a rest that is inverse, by places
+  std::unique_ptr<Halo> halo;  // null: no other rank's strands may touch these
+  std::unique_ptr<HeadPassages> passages;  // null: no bodies, or strands watch themselves
+  std::vector<HeldShape> held;             // of a rest that is inverse, by places
 };
 /// Makes the strands of this process alone, in the order of the scene.
 SceneHead make_head(const SceneOutline& outline, const HeadPack& pack, int threads);

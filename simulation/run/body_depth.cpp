@@ -1,45 +1,43 @@
 #include "simulation/run/body_depth.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace tress::simulation {
+namespace {
 
-BodyDepth::BodyDepth(const models::Effects& effects, MaterialPoints& points)
-    : spacing_(std::numeric_limits<double>::infinity()) {
-  for (const auto& effect : effects) {
-    if (!effect->penetration(0, {})) continue;
-    bodies_.push_back(effect);
-    const auto outline = effect->outline(0);
-    if (!outline) continue;
-    // A capsule's half length, without its caps, may be 0; a plane has no size.
-    const Vec& size = outline->half_axes;
-    for (const double half : {size.x, size.y, size.z}) {
-      if (half > 0) spacing_ = std::min(spacing_, half);
-    }
-  }
-  for (int i = 0; i < points.count(); ++i) before_.push_back(points.before(i));
-  x_.resize(3 * before_.size());
+std::vector<int> before_of(const MaterialPoints& points) {
+  std::vector<int> before;
+  for (int i = 0; i < points.count(); ++i) before.push_back(points.before(i));
+  return before;
 }
 
-void BodyDepth::look(MaterialPoints& points, double t, In q) {
-  constexpr double most = 64;
+}  // namespace
+
+BodyDepth::BodyDepth(const models::Effects& effects, MaterialPoints& points)
+    : passages_(effects, before_of(points)) {
+  for (const auto& effect : effects) {
+    if (effect->penetration(0, {})) bodies_.push_back(effect);
+  }
+  x_.resize(3 * passages_.places().points());
+  old_x_.resize(x_.size());
+}
+
+void BodyDepth::look(MaterialPoints& points, double from, In old_q, double t, In q) {
+  if (std::ranges::equal(old_q, q_)) {
+    old_x_.swap(x_);
+  } else {
+    points.positions(from, old_q, old_x_);
+  }
   points.positions(t, q, x_);
-  places_ = x_;
-  for (std::size_t i = 0; i < before_.size(); ++i) {
-    if (before_[i] < 0) continue;
-    const Vec to = load3(&x_[3 * i]),
-              from = load3(&x_[3 * static_cast<std::size_t>(before_[i])]);
-    const double pieces = std::clamp(std::ceil(norm(to - from) / spacing_), 1.0, most);
-    for (double k = 1; k < pieces; ++k) {
-      const Vec place = from + (k / pieces) * (to - from);
-      places_.insert(places_.end(), {place.x, place.y, place.z});
-    }
-  }
+  q_.assign(q.begin(), q.end());
+  const std::vector<double> places = passages_.places().of(x_);
   for (const auto& body : bodies_) {
-    deepest = std::max(deepest, body->penetration(t, places_).value_or(0));
+    seen.deepest = std::max(seen.deepest, body->penetration(t, places).value_or(0));
   }
+  const auto missed = passages_.find({from, t, old_x_, x_}).missed;
+  if (!missed) return;
+  seen.deepest = std::max(seen.deepest, missed->depth);
+  if (!seen.missed) seen.missed = missed;
 }
 
 }  // namespace tress::simulation

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "contract/forms/material_points.h"
 #include "models/effects/effect.h"
+#include "simulation/run/body_passages.h"
 
 namespace tress::simulation {
 
-/// Gauges the depth of strands in bodies after every step. A strand is the polygon
-/// through its material points. Between two points the depth is sampled at distances of
-/// at most half the thickness of the thinnest body, in 64 pieces at most.
+/// Gauges the depth of strands in bodies after every step, at the places of StrandPlaces,
+/// and finds strands that passed through a body within the step.
 class BodyDepth {
  public:
   /// Gauges the depth in those of the effects that are bodies.
@@ -18,16 +19,20 @@ class BodyDepth {
 
   /// Returns true if there is a body.
   bool any() const { return !bodies_.empty(); }
-  /// Looks at a state of the system that `points` are of.
-  void look(MaterialPoints& points, double t, In q);
+  /// Looks at a step of the system that `points` are of, from old_q at `from` to q at t.
+  void look(MaterialPoints& points, double from, In old_q, double t, In q);
 
-  double deepest = 0;  // m, largest depth so far
+  /// Findings so far.
+  struct Seen {
+    double deepest = 0;                   // m, at the ends of steps and on passages
+    std::optional<MissedContact> missed;  // the first
+  };
+  Seen seen;
 
  private:
+  BodyPassages passages_;
   std::vector<std::shared_ptr<const models::Effect>> bodies_;
-  double spacing_;           // m
-  std::vector<int> before_;  // each point along its strand, -1: none
-  std::vector<double> x_, places_;
+  std::vector<double> q_, x_, old_x_;  // at the end of the last step; (3 points)
 };
 
 }  // namespace tress::simulation

@@ -49,7 +49,7 @@ Readout::Readout(const Scene& scene, const World& world)
   }
   add("kinetic_j", "kinetic energy of all strands");
   if (scene.strands.empty()) {
-    add("potential_j", "potential energy");
+    add("potential_j", "potential energy, of models with a geometry of their own only");
   } else {
     add("elastic_j", "elastic energy of all strands");
     for (std::size_t i = 0; i < effects_.size(); ++i) {
@@ -58,8 +58,9 @@ Readout::Readout(const Scene& scene, const World& world)
   }
   add("stretch_rel", "largest |length/rest - 1| of a segment");
   add("penetration_m",
-      "largest depth of a strand in a body since the last frame, over the ends of all "
-      "steps; strands are straight between their points");
+      "largest depth of a strand in a body since the last frame, at the ends of all "
+      "steps and on paths through a body within a step; strands are straight between "
+      "their points");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "mean distance from a strand to the nearest other one");

@@ -167,8 +167,8 @@ void SteppedSystem::keep(double at, In new_q, In new_v) {
 
 Observer SteppedSystem::observer() {
   return [this](double at, In new_q, In new_v) {
+    if (depth) depth->look(*system->material_points(), t, q, at, new_q);
     keep(at, new_q, new_v);
-    if (depth) depth->look(*system->material_points(), at, new_q);
     return !guard || (*guard)(at, new_q, new_v);
   };
 }

@@ -93,9 +93,13 @@ class World {
   std::optional<MethodDissipation> dissipation() const;
   /// Returns the reason why dissipation() is empty; empty: it is not.
   std::string no_dissipation() const;
-  /// Returns the largest depth of a strand in a body at the ends of all steps since the
-  /// last call, m. Watches from the first call on, which returns 0.
+  /// Returns the largest depth of a strand in a body since the last call, m. Looks at the
+  /// ends of steps, and at the paths of strands that passed through a body. Watches from
+  /// the first call on, which returns 0.
   double take_depth();
+  /// Returns the first strand that passed through a body within a step since take_depth()
+  /// was first called; none: no step did.
+  std::optional<StrandPassage> passed() const;
   /// Why the motion of a strand was not smooth; empty: no such event was seen.
   std::string not_smooth() const;
   /// Returns the breach that a guard found, or null.
@@ -172,7 +176,7 @@ class World {
     State marked;
     double marked_t = 0;
     Guards::Memory marked_guard;
-    double marked_depth = 0;
+    BodyDepth::Seen marked_depth;
     PointNorm norm;
     void mark();
     void rewind();

@@ -139,9 +139,24 @@ double World::take_depth() {
   if (!depth_watched_) watch_depth();
   double deepest = 0;
   for (Body& body : bodies_) {
-    if (body.depth) deepest = std::max(deepest, std::exchange(body.depth->deepest, 0.0));
+    if (!body.depth) continue;
+    deepest = std::max(deepest, std::exchange(body.depth->seen.deepest, 0.0));
   }
   return deepest;
+}
+
+std::optional<StrandPassage> World::passed() const {
+  std::optional<StrandPassage> first;
+  for (const Body& body : bodies_) {
+    const auto missed = body.depth ? body.depth->seen.missed : std::nullopt;
+    if (!missed || (first && first->contact.t <= missed->t)) continue;
+    first = {body.first, *missed};
+    std::size_t& point = first->contact.point;
+    for (std::size_t& k = first->strand; point >= static_cast<std::size_t>(points_[k]);) {
+      point -= static_cast<std::size_t>(points_[k++]);
+    }
+  }
+  return first;
 }
 
 std::string World::not_smooth() const {

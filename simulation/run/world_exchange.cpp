@@ -156,7 +156,7 @@ void World::Body::mark() {
   marked.v.assign(integrator->v().begin(), integrator->v().end());
   marked.memory = system->memory();
   if (guard) marked_guard = guard->memory();
-  if (depth) marked_depth = depth->deepest;
+  if (depth) marked_depth = depth->seen;
   marked_t = integrator->time();
   rewindable->mark();
 }
@@ -167,7 +167,7 @@ void World::Body::rewind() {
   system->recall(marked.memory);
   system->accept(marked_t, old_q, old_v);
   if (guard) guard->recall(marked_guard, marked_t, marked.q);
-  if (depth) depth->deepest = marked_depth;
+  if (depth) depth->seen = marked_depth;
   rewindable->rewind();
   status = Status::ok;
 }

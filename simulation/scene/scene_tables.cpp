@@ -46,14 +46,15 @@ constexpr Parameter top[] = {
          "end the run at a state that physics rules out. These are a segment stretched "
          "or compressed by more than half, a point faster than the energy allows, or "
          "too much energy. The energy may exceed its initial value by m g L and a tenth "
-         "of the initial kinetic and elastic energy. The work of loads and root, times "
-         "1.1, adds to this limit. Coarse but sound steps need that margin. A run prints "
-         "the energy that the method created within it. See failed_strands",
+         "of the initial kinetic and elastic energy. To this, 1.1 times the work of "
+         "loads and root is added. Coarse steps need that margin. A run prints the "
+         "energy that the method created within it. See failed_strands",
      .choices = "true|false"},
     {.name = "failed_strands",
-     .help = "outcome of a strand that fails, or that the guard stops. It ends the run, "
-             "or stays in place while the others continue; the run then fails at its "
-             "end. In a batch it always stays",
+     .help =
+         "outcome of a strand that fails, or that the guard stops: it ends the run, or "
+         "stays in place. The run then exits with code 3. In a batch a strand always "
+         "stays",
      .choices = "end_run|stay"},
     {.name = "rest",
      .help =

@@ -257,7 +257,7 @@ class Queries(Made):
         self.assertRegex(self.say("validation.matrix", validation=[cell]), r"\| 1e-4 \| 2e-14 \|")
         self.assertRegex(self.say("validation.matrix", validation=[cell, {**cell, "status": "refused", "error_rel": ""}]),
                          r"2e-14 \(in part\)")
-        self.assertRegex(self.say("validation.scores_table"), r"\| `der` \| 1 \| 1 \| impact \|")
+        self.assertRegex(self.say("validation.scores_table"), r"\| `der` \| 1 \| 1 \| `impact` \|")
         self.assertRegex(self.say("friction.fits_table", calibrate=[
             {"data": "a_b", "signal": "s", "fit": "gamma", "integrator": "bdf2", "status": "ok",
              "internal_friction_kg_m3_s": 1e-10, "internal_friction_low_kg_m3_s": 9e-11,

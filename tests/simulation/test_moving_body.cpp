@@ -1,5 +1,5 @@
-// Bodies that move by keyframes of their own: as the head by the same ones, and as a belt
-// that carries a strand.
+// Bodies that move by keyframes of their own: as the head by the same ones, as a belt
+// that carries a strand, and past a strand in less than a step.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +10,9 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "models/effects/body_passage.h"
+#include "simulation/head/head_run.h"
+#include "simulation/head/scene_head.h"
 #include "simulation/run/world.h"
 #include "tests/support/refusal.h"
 
@@ -136,6 +139,116 @@ TEST(MovingBody, ReadsItsRowsFromAFile) {
       refusal([&] { end("moves = \"poses\"\nposes = \"none.csv\"\n"); }).find("none.csv"),
       std::string::npos);
   std::filesystem::remove_all(folder);
+}
+
+/// A vertical capsule of radius 0.5 mm that passes the lower half of a hanging hair:
+/// 0.4 m in 0.2 s from 0.1 m beside it, at 3.75 m/s at most (keyframes are a quintic,
+/// with 15/8 of the mean speed). It is at the hair at t = 0.0719 s.
+Scene crossed(const std::string& model, const std::string& dt, const std::string& law) {
+  return scene_of(text_of(
+      model, "id = \"backward_euler\"\ndt_s = " + dt,
+      "[strand]\nlength_m = 0.1\nelements = 6\nroot_tangent = [0, 0, -1]\n"
+      "[effects.gravity]\n[[effects.body]]\nshape = \"capsule\"\nradius_m = 5e-4\n"
+      "length_m = 0.1\ncentre_m = [-0.1, 0, -0.1]\nmoves = \"keyframes\"\n"
+      "keyframes = [[0, 0, 0, 0, 0], [0.2, 0.4, 0, 0, 0]]\n" +
+          law));
+}
+constexpr double capsule = 5e-4 + 40e-6, fastest = 3.75;  // m, with the strand's; m/s
+const char* const stiff = "stiffness_n_m2 = 1e4\n";
+const char* const rigid = "friction_law = \"exact\"\nnormal = \"rigid\"\n";
+
+/// The hair stands still until the capsule is within its radius of it. At 10 ms no end of
+/// a step sees the capsule, which moves by 30 mm and more per step there. The path goes
+/// through the axis to within the gaps of its samples, an eighth of a radius. The step
+/// named is that in which the path, of at most 37.5 mm in 10 ms, is a radius.
+TEST(MovingBody, ReportsAThinBodyThatPassesWithinAStep) {
+  for (const char* law : {stiff, rigid}) {
+    SCOPED_TRACE(law);
+    World coarse(crossed("der", "0.01", law));
+    coarse.take_depth();
+    ASSERT_EQ(coarse.advance(0.1), Status::ok) << coarse.failure();
+    const auto passed = coarse.passed();
+    ASSERT_TRUE(passed);
+    EXPECT_EQ(passed->strand, 0U);
+    EXPECT_EQ(passed->contact.body, 0U);
+    EXPECT_NEAR(passed->contact.t, 0.08, 1e-9);
+    EXPECT_NEAR(passed->contact.depth, capsule - 5e-4 / 16, 5e-4 / 16);
+    EXPECT_EQ(coarse.take_depth(), passed->contact.depth);
+    EXPECT_GE(passed->contact.needed, 5e-4 / fastest);
+    EXPECT_LE(passed->contact.needed, 5e-4 / fastest * 1.5);
+    // The work of impacts of a rigid body that moves is not in the account of the guard.
+    Scene short_steps = crossed("der", "1e-4", law);
+    short_steps.guard = law == stiff;
+    World fine(short_steps);
+    fine.take_depth();
+    ASSERT_EQ(fine.advance(0.08), Status::ok) << fine.failure();
+    EXPECT_FALSE(fine.passed());
+    EXPECT_GT(fine.positions()[3 * 6], 0.01);  // the capsule carries it on
+  }
+}
+
+/// The same in SIMD lanes, and as systems of their own.
+TEST(MovingBody, ReportsAPassageInABatch) {
+  const struct {
+    const char *model, *law;
+    bool lanes;
+  } batches[] = {{"super_helix", "", true}, {"der", rigid, false}};
+  for (const auto& [model, law, lanes] : batches) {
+    SCOPED_TRACE(model);
+    for (const bool far : {false, true}) {
+      const std::string away = far ? "\n[[effects.body]]\nshape = \"plane\"\n"
+                                     "centre_m = [0, 0, -1]\n"
+                                   : std::string(law);
+      Scene scene = crossed(model, "0.01", away);
+      if (far) scene.effects.erase(scene.effects.begin());
+      scene.strands.assign(5, scene.strands.front());
+      HeadRun run(make_head(scene, {models::HeadNumber::float64, 4}, 2), 2);
+      ASSERT_TRUE(far || run.lanes() == lanes);
+      for (int i = 0; i < 10; ++i) run.step(0.01 * i, 0.01);
+      ASSERT_EQ(run.passed().has_value(), !far);
+      if (far) continue;
+      EXPECT_EQ(run.passed()->strand, 0U);
+      EXPECT_NEAR(run.passed()->contact.t, 0.08, 1e-9);
+    }
+  }
+}
+
+/// A hair that falls on a thick body, and one that falls on a plane so fast that every
+/// step is longer than the hair.
+TEST(MovingBody, ReportsNoPassageOfThickBodies) {
+  const auto fall = [](const std::string& body, const std::string& dt, double end) {
+    World world(scene_of(text_of(
+        "der", "id = \"backward_euler\"\ndt_s = " + dt,
+        "[strand]\nlength_m = 0.05\nelements = 6\nposition_m = [-0.025, 0, 0.03]\n"
+        "[root]\nmotion = \"free\"\n[effects.gravity]\n[[effects.body]]\n" +
+            body)));
+    world.take_depth();
+    EXPECT_EQ(world.advance(end), Status::ok) << world.failure();
+    EXPECT_FALSE(world.passed());
+    return world.take_depth();
+  };
+  EXPECT_GT(fall("shape = \"sphere\"\nradius_m = 0.02\nfriction = 0\n", "5e-3", 0.2), 0);
+  EXPECT_GT(fall("shape = \"plane\"\ncentre_m = [0, 0, -1]\n", "0.02", 0.5), 0);
+}
+
+/// A path beside the axis of a capsule is as deep as its place nearest to the axis, to
+/// the gaps of its samples: a place off by an eighth of a radius is lower by less than
+/// (r/8)^2/(2 y). Nothing passes from one side to the same side, nor from within.
+TEST(MovingBody, FindsTheDepthOfAPath) {
+  const Scene scene = crossed("der", "0.01", "");
+  const auto body = make_effects(scene).at(0);
+  const auto depth = [&](const Vec& from, const Vec& to) {
+    const Vec centre{-0.1, 0, -0.1};
+    const Vec a = from + centre, b = to + centre;
+    const double x[] = {a.x, a.y, a.z}, y[] = {b.x, b.y, b.z};
+    return models::passage(*models::body_of(*body), {0, 0, x, y}).depth;
+  };
+  const double beside = 3e-4, r = 5e-4;
+  EXPECT_NEAR(depth({-5e-3, beside, 0}, {7e-3, beside, 0}), capsule - beside,
+              r * r / 64 / (2 * beside));
+  EXPECT_EQ(depth({-5e-3, capsule, 0}, {7e-3, capsule, 0}), 0);
+  EXPECT_EQ(depth({-5e-3, 0, 0}, {-1e-3, 0, 0}), 0);
+  EXPECT_EQ(depth({-5e-3, 0, 0}, {5e-4, 0, 0}), 0);
 }
 
 TEST(MovingBody, RefusesKeyframesThatItDoesNotFollow) {

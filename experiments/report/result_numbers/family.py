@@ -139,8 +139,8 @@ def exact_step(tables):
 
     return _sentence(
         tables, f"stable at every step tried up to 100 ms for {_held(twisted)}{_silent(twisted)}, and without twist for "
-        f"{_share(bent)}. Of its largest stable steps, the median is {ms(twisted['median'])} and the lowest decile "
-        f"{ms(twisted['decile_1'])}", twisted)
+        f"{_share(bent)}. The largest stable step has a median of {ms(twisted['median'])} and a lowest decile of "
+        f"{ms(twisted['decile_1'])} over the hairs", twisted)
 
 
 def model_steps(tables):

@@ -106,10 +106,13 @@ def accepted(tables):
     return span(judged(tables)["error_limit"].dropna(), percent)
 
 
-def longest_step_table(tables):
-    """Returns, for each method at the longest step: survivors, accurate runs, and the errors of survivors."""
+def longest_step_table(tables, cases=None):
+    """Returns, for each method at the longest step: survivors, accurate runs, and the errors of survivors. `cases`: those
+    counted; all by default."""
     rows = judged(tables)
     rows = rows[~rows["by_tolerance"] & (rows["outcome"] != "refused")]
+    if cases:
+        rows = rows[rows["case"].isin(cases)]
     lines = []
     for integrator, members in groups(rows[rows["dt_s"] == rows["dt_s"].max()], "integrator"):
         compared = members[members["survives"] & members["outcome"].isin(["stable", "stable and accurate"])]
@@ -131,6 +134,19 @@ _CONTACT = {"grazing_contact": ["grazing_exact", "grazing_impulse"],
             "coil_contact": ["coil_impulse"]}
 
 
+def _contact_cases():
+    return [name for regularised, exact in _CONTACT.items() for name in (regularised, *exact)]
+
+
+def contact_cases(_tables):
+    return code(_contact_cases())
+
+
+def longest_step_contact_table(tables):
+    """Returns longest_step_table() of the cases with contact."""
+    return longest_step_table(tables, _contact_cases())
+
+
 _OUTCOMES = {"stable": "stable, inaccurate", "stable, not compared": "stable, no reference"}
 
 
@@ -139,7 +155,7 @@ def friction_table(tables):
     rows = judged(tables)
     rows = rows[(rows["integrator"] == "backward_euler") & ~rows["by_tolerance"]]
     longest = rows["dt_s"].max()
-    names = [name for regularised, exact in _CONTACT.items() for name in (regularised, *exact)]
+    names = _contact_cases()
     rows = rows[rows["case"].isin(names)]
     models = rows["model"].unique()
     rows = rows[(rows["dt_s"] == longest) & (rows["outcome"] != "refused")]

@@ -1,7 +1,7 @@
 """Published tests of slender rods."""
 from .report import rows
 from .tables import groups, known, records
-from .words import counted, is_number, number, table
+from .words import coded, counted, is_number, number, table
 
 # Nobody cares how much less, unless less is accepted.
 _LEAST_PCT = 1e-3
@@ -36,6 +36,19 @@ def _coded(cell):
     return f"`{cell['model']}`" + (f", {cell['variant']}" if cell["variant"] else "")
 
 
+def _id(cell):
+    """Returns the id of a test, as in the table: figures have blanks in place of underscores."""
+    return f"`{cell['test'].replace(' ', '_')}`"
+
+
+def tests_table(tables):
+    """Returns what each test loads and measures, and the source of its reference."""
+    tests_of = tables.manifest("validation")["glossary"]["test"]
+    return table(["test", "strand and load", "quantity", "reference and source"],
+                 [[f"`{name}`", *(coded(test[key]).replace("|", "\\|").replace(" beside ", " next to ") for key in ("what", "quantity", "source"))]
+                  for name, test in tests_of.items()])
+
+
 def matrix(tables):
     """Returns tests as rows, models as columns: the largest error of the judged runs in per cent."""
     all_cells = cells(tables)
@@ -44,15 +57,15 @@ def matrix(tables):
     for test, members in groups(all_cells, "test"):
         by_name = {cell["name"]: cell for cell in records(members)}
         tolerances = members["tolerance_pct"][known(members["tolerance_pct"])]
-        lines.append([test, number(next(iter(tolerances), None)), *(_shown(by_name.get(name)) for name in names)])
+        lines.append([_id({"test": test}), number(next(iter(tolerances), None)), *(_shown(by_name.get(name)) for name in names)])
     return table(["test", "accepted", *names.values()], lines)
 
 
 def _missed(cell):
     if cell["outcome"] == "no solution":
-        return f"{cell['test']} (no solution)"
+        return f"{_id(cell)} (no solution)"
     why = "a run failed" if cell["failed"] is True else f"{number(cell['error_pct'])} %"
-    return f"{cell['test']} ({why})"
+    return f"{_id(cell)} ({why})"
 
 
 def _scored(tables):
@@ -63,7 +76,7 @@ def _scored(tables):
     scored = []
     for _, members in groups(judged, "name"):
         met = members[members["outcome"] == "within"]
-        partly = [cell["test"] for cell in records(met) if cell["partly"] is True]
+        partly = [_id(cell) for cell in records(met) if cell["partly"] is True]
         missed = [_missed(cell) for cell in records(members[members["outcome"] != "within"])]
         scored.append({"name": _coded(members.iloc[0]), "all": len(members), "met": len(met), "partly": partly, "missed": missed})
     return sorted(scored, key=lambda one: -one["met"] / one["all"])
@@ -89,5 +102,5 @@ def order_points(tables):
     points = groups(rows(tables, "validation_orders"), ["test", "name"])["points"].first()
     few = 2
     two = (points == few).sum()
-    return (f"Of {len(points)} curves, {len(points) - two} {'has' if len(points) - two == 1 else 'have'} more than {few} element counts. The other {two} "
-            f"are dashed, and their slope is no evidence of an order")
+    return (f"The table is no evidence of an order: of {len(points)} curves of error against elements, "
+            f"{len(points) - two} {'has' if len(points) - two == 1 else 'have'} more than {few} element counts")
