@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t fewest_points = 5;
 constexpr const char* header_remedy =
-    "give t_s,amplitude_m, sigma_m where it is known, and parameters of the strand";
+    "give t_s,amplitude_m, sigma_m where it is known, and parameters of the strand; or, "
+    "for points of the strands of --scene, time_s, x_m, y_m, z_m";
 
 class Reader {
  public:

@@ -31,7 +31,9 @@ bool near_contact_change(const StrandGradient& strand, std::size_t frame) {
   return frame < strand.near_contact_change.size() && strand.near_contact_change[frame];
 }
 
-const char* status_at(const StrandGradient& strand, std::size_t frame) {
+/// `ends`: the run ended after this frame, before that of the scene.
+const char* status_at(const StrandGradient& strand, std::size_t frame, bool ends) {
+  if (ends) return "unfinished";
   if (!strand.not_smooth.empty()) return "not_smooth";
   return near_contact_change(strand, frame) ? "contact_changes" : "ok";
 }
@@ -48,11 +50,17 @@ std::string table_of(const Scene& scene, const SceneGradient& gradient,
     const StrandGradient& other = finer.strands[k];
     const double length = scene.strands[k].length();
     const std::size_t last = frames(strand, other);
+    const bool whole = strand.unfinished.empty() && other.unfinished.empty();
+    if (last == 0) {
+      text += csv_line(std::vector<std::string>{std::to_string(k), "", "", "", "", "", "",
+                                                "", "", "unfinished"});
+    }
     for (std::size_t f = of == GradientOf::last_tip ? std::max<std::size_t>(last, 1) - 1
                                                     : 0;
          f < last; ++f) {
       const std::size_t numbers = strand.points[f].size();
-      const char* const status = status_at(strand, f);
+      const bool ends = !whole && f + 1 == last;
+      const char* const status = status_at(strand, f, ends);
       for (std::size_t i = of == GradientOf::points ? 0 : numbers - 3; i < numbers; ++i) {
         for (std::size_t j = 0; j < gradient.parameters.size(); ++j) {
           const SceneParameter& by = gradient.parameters[j];
@@ -89,6 +97,11 @@ void tell_parameter(const Scene& scene, const SceneGradient& gradient,
   for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= other.by[j][f][i];
   constexpr double percent = 0.01, mm = 1e3;
   const double size = size_of_tip(strand.by[j][f]);
+  if (size == 0) {
+    tell("simulate: {}: gradient: {} does not move the tip at {:g} s\n", scene.name,
+         by.name, scene.time_of(f));
+    return;
+  }
   const double change = by.value != 0 ? percent * std::abs(by.value) : 1;
   const std::string of =
       by.value != 0 ? "1 % of " + by.name : fmt::format("1 {} of {}", by.unit, by.name);
@@ -96,7 +109,23 @@ void tell_parameter(const Scene& scene, const SceneGradient& gradient,
       "simulate: {}: gradient: {} moves the tip by {:.3g} mm at {:g} s; estimated error "
       "in time {:.2g} %\n",
       scene.name, of, mm * change * size, scene.time_of(f),
-      size > 0 ? error_over_change(scene) * size_of_tip(apart) / size / percent : 0.0);
+      error_over_change(scene) * size_of_tip(apart) / size / percent);
+}
+
+/// Derivatives by a number of the material where strands have materials of their own.
+void tell_of_materials(const Scene& scene, const SceneGradient& gradient) {
+  const auto of_material = [](const SceneParameter& by) {
+    return by.positive && by.name.find('.') == std::string::npos;
+  };
+  const bool own = std::ranges::any_of(
+      scene.tables->sources,
+      [](const StrandSource& source) { return source.material.has_value(); });
+  if (!own || std::ranges::none_of(gradient.parameters, of_material)) return;
+  tell(
+      "simulate: {}: gradient: strands have materials of their own: derivatives by "
+      "numbers of the material are per unit of the number of strand 0, and those of all "
+      "strands change in the same proportion\n",
+      scene.name);
 }
 
 void warn_of_contact(const Scene& scene, const SceneGradient& gradient) {
@@ -133,6 +162,7 @@ bool report_gradient(const Scene& scene, const std::string& file) {
   }
   const SceneGradient gradient = scene_gradient(scene), finer = scene_gradient(scene, 2);
   replace_file(file, table_of(scene, gradient, finer));
+  tell_of_materials(scene, gradient);
   warn_of_contact(scene, gradient);
   bool finished = true;
   for (const SceneGradient* one : {&gradient, &finer}) {

@@ -3,11 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
+namespace {
+
+/// Why a run has no derivative by a parameter whose change by s ends the use of a
+/// reference frame in another step.
+std::string frame_moves(const std::string& name, double s) {
+  std::ostringstream text;
+  text << "a change of " << name << " by " << s
+       << " of its size moves a reference frame to another step: change dt_s by a "
+          "thousandth, or use a model without reference frames, such as super_helix";
+  return text.str();
+}
+
+}  // namespace
+
 VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
                                      std::span<const VariedSystem> varied,
                                      const Options& options, bool sparse, System* copies)
@@ -132,8 +148,10 @@ bool VariationalSystem::accept(double t, InOut dq, InOut dv) {
       shifted(v, before.v, s, column(In(old_dv), k));
       const std::vector<double> old_q = q, old_v = v;
       if (varied_[k].systems[i]->accept(t, q, v) != moved) {
-        failure_ = "a change of parameter " + std::to_string(k + 1) + " by " +
-                   std::to_string(s) + " moves a reference frame to another step";
+        failure_ =
+            frame_moves(varied_[k].name.empty() ? "parameter " + std::to_string(k + 1)
+                                                : varied_[k].name,
+                        s);
         std::ranges::fill(dq, std::nan(""));
         return moved;
       }

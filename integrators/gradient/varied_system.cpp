@@ -145,8 +145,10 @@ std::vector<double> natural_direction(System& system, const RunParameter& parame
 
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory) {
-  VariedSystem varied{
-      central_differences(parameter.places.value_or(central_distance)), {}, {}};
+  VariedSystem varied{central_differences(parameter.places.value_or(central_distance)),
+                      {},
+                      {},
+                      parameter.name};
   const bool own_history = system.history() != nullptr && memory == VariedMemory::own;
   if (!parameter.places && !own_history) {
     auto far = parameter(affine_stencil.at[0]);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "contract/system.h"
@@ -17,6 +18,7 @@ struct RunParameter : std::function<std::unique_ptr<System>(double s)> {
   /// Distance of its central differences in s where it places points, bodies or targets,
   /// whose forces may begin and end at any place. Empty: it is of another kind.
   std::optional<double> places = {};
+  std::string name = {};  // for messages; empty: it has none
 };
 
 /// f'(0) = base f(0) + sum_i weight_i f(at_i).
@@ -57,6 +59,7 @@ struct VariedSystem {
   Stencil stencil;                               // stencil of the derivative
   std::vector<std::unique_ptr<System>> systems;  // systems at the stencil's distances
   std::optional<SimpleDerivative> simple;        // where the residual has one
+  std::string name = {};                         // RunParameter::name
 };
 
 /// Memory of the systems of a stencil: that of their own runs (`own`), or that of the run

@@ -106,7 +106,6 @@ Ring::Inside Ring::at(double s, std::size_t interval, const Vec& ring,
   if (last - first < 3) extend(false);
   in.first = first;
   in.count = last - first + 1;
-  Vec second;
   in.d = -1.0 * ring;
   for (std::size_t j = 0; j < in.count; ++j) {
     // Product of (s - s_m)/(s_j - s_m) with its first and second derivatives.
@@ -124,9 +123,9 @@ Ring::Inside Ring::at(double s, std::size_t interval, const Vec& ring,
     in.slope[j] = slope;
     in.d = in.d + value * x;
     in.tangent = in.tangent + slope * x;
-    second = second + curve * x;
+    in.second = in.second + curve * x;
   }
-  in.curvature = dot(in.d, second);
+  in.curvature = dot(in.d, in.second);
   return in;
 }
 
@@ -153,6 +152,7 @@ Ring::Inside Ring::inside(double t, const Points& p) const noexcept {
     in.at_end = true;
     return in;
   }
+  int turned = 0;  // 1: on to the next interval, without a way; -1: back
   for (int k = 0; k < most_iterations; ++k) {
     const double slope = dot(in.tangent, in.tangent) + in.curvature;
     // Where the distance has no minimum nearby, along the strand towards the ring.
@@ -166,6 +166,13 @@ Ring::Inside Ring::inside(double t, const Points& p) const noexcept {
     const bool moved = std::abs(next - in.s) > found * p.longest;
     const bool on = in.s + step > high && !ends, back = in.s + step < low && !begins;
     in = at(next, interval, ring, p);
+    const int turns = moved ? 0 : on ? 1 : back ? -1 : 0;
+    if (turns != 0 && turns == -turned) {  // away from the point on neither side
+      if (back) in = at(next, --interval, ring, p);
+      in.at_point = true;
+      break;
+    }
+    turned = turns;
     in.at_end = (begins && next == low) || (ends && next == high);
     if (!moved && !on && !back) break;
     if (on) in = at(next, ++interval, ring, p);
@@ -174,13 +181,18 @@ Ring::Inside Ring::inside(double t, const Points& p) const noexcept {
   return in;
 }
 
-/// Velocity of the material relative to the ring, across the strand; at an end all
-/// components.
-Vec Ring::slip(double t, const Points& p, const Inside& in) const noexcept {
+/// Velocity of the material relative to the ring.
+Vec Ring::relative(double t, const Points& p, const Inside& in) const noexcept {
   Vec u = -1.0 * s_.path.at(t).v;
   for (std::size_t j = 0; j < in.count; ++j) {
     u = u + in.weight[j] * load3(&p.v[3 * (in.first + j)]);
   }
+  return u;
+}
+
+/// Its part across the strand; at an end all components.
+Vec Ring::slip(double t, const Points& p, const Inside& in) const noexcept {
+  const Vec u = relative(t, p, in);
   const double square = dot(in.tangent, in.tangent);
   if (in.at_end || square == 0) return u;
   return u - (dot(u, in.tangent) / square) * in.tangent;
@@ -202,10 +214,38 @@ void Ring::add_load(double t, const Points& p, InOut f) const noexcept {
 
 /// The force at fixed s*, and its change with s*, -k (d w_j' + x' w_j) ds*. With F =
 /// d.x'(s) = 0, ds* = -(w_l x' + w_l' d).dx_l/(x'.x' + d.x'').
-Coupling Ring::coupling(const Inside& in) const noexcept {
+/// The damper adds -c (w_j' P u ds* + w_j d(P u)). With q = x'.x',
+///
+///     d(P u) = P v' ds* - G dx',   dx' = w_l' dx_l + x'' ds*,
+///     G = (x'.u I + x' u^T - 2 x'.u x' x'^T/q)/q.
+Coupling Ring::coupling(double t, const Points& p, const Inside& in) const noexcept {
   const Vec axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const double square = dot(in.tangent, in.tangent), slope = square + in.curvature;
-  const bool slides = !in.at_end && slope > least_slope * square;
+  const bool slides = !in.at_end && !in.at_point && slope > least_slope * square;
+  const bool projects = !in.at_end && square > 0;
+  const auto across = [&](const Vec& x) {
+    return projects ? x - (dot(x, in.tangent) / square) * in.tangent : x;
+  };
+  const bool damps = s_.damping > 0;
+  const Vec u = damps ? relative(t, p, in) : Vec{};
+  const double along_u = projects ? dot(u, in.tangent) / square : 0;
+  // Row r of G.
+  const auto turning = [&](std::size_t r) {
+    const double component = dot(axes[r], in.tangent) / square;
+    return along_u * axes[r] + component * (u - (2 * along_u) * in.tangent);
+  };
+  // -c d(P u)/ds*, and what f adds to d with the weights' change.
+  Vec by_sliding, held = in.d;
+  if (damps && slides) {
+    for (std::size_t j = 0; j < in.count; ++j) {
+      by_sliding = by_sliding -
+                   (s_.damping * in.slope[j]) * across(load3(&p.v[3 * (in.first + j)]));
+    }
+    for (std::size_t r = 0; r < 3; ++r) {
+      by_sliding = by_sliding + (s_.damping * dot(turning(r), in.second)) * axes[r];
+    }
+    held = held + (s_.damping / s_.stiffness) * across(u);
+  }
   Coupling made;
   for (std::size_t j = 0; j < made.ends.size(); ++j) {
     Coupling::End& end = made.ends[j];
@@ -213,31 +253,31 @@ Coupling Ring::coupling(const Inside& in) const noexcept {
     end.point = in.first + std::min(j, in.count - 1);
     const double w = j < in.count ? in.weight[j] : 0,
                  by_s = j < in.count ? in.slope[j] : 0;
+    const Vec along = w * in.tangent + by_s * in.d;
     for (std::size_t r = 0; r < 3; ++r) {
-      Vec across = axes[r];
-      if (!in.at_end && square > 0) {
-        across = across - (dot(across, in.tangent) / square) * in.tangent;
-      }
       end.onto[r] = w * axes[r];
       end.by_place[r] = (-s_.stiffness * w) * axes[r];
-      end.by_velocity[r] = (-s_.damping * w) * across;
+      end.by_velocity[r] = (-s_.damping * w) * across(axes[r]);
+      if (!damps || !projects) continue;
+      end.by_place[r] = end.by_place[r] + (s_.damping * by_s) * turning(r);
+      if (!slides) continue;
+      end.by_place[r] = end.by_place[r] - (dot(axes[r], by_sliding) / slope) * along;
     }
     if (!slides) continue;
-    const Vec along = w * in.tangent + by_s * in.d;
-    end.onto[3] = along;
+    end.onto[3] = w * in.tangent + by_s * held;
     end.by_place[3] = (s_.stiffness / slope) * along;
   }
   return made;
 }
 
 void Ring::add_couplings(double t, const Points& p, std::vector<Coupling>& all) const {
-  all.push_back(coupling(inside(t, p)));
+  all.push_back(coupling(t, p, inside(t, p)));
 }
 
 void Ring::add_derivatives(double t, const Points& p, double pos, double vel,
                            InOut blocks) const noexcept {
   const Inside in = inside(t, p);
-  const Coupling all = coupling(in);
+  const Coupling all = coupling(t, p, in);
   for (std::size_t j = 0; j < in.count; ++j) {
     all.add_block(j, j, pos, vel, &blocks[9 * (in.first + j)]);
   }
@@ -253,11 +293,7 @@ double Ring::power(double t, const Points& p) const noexcept {
   const Vec moves = s_.path.at(t).v;
   double sum = -s_.stiffness * dot(in.d, moves);
   if (s_.damping == 0) return sum;
-  Vec u;
-  for (std::size_t j = 0; j < in.count; ++j) {
-    u = u + in.weight[j] * load3(&p.v[3 * (in.first + j)]);
-  }
-  return sum - s_.damping * dot(slip(t, p, in), u);
+  return sum - s_.damping * dot(slip(t, p, in), relative(t, p, in) + moves);
 }
 
 }  // namespace tress::models

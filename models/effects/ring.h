@@ -20,9 +20,11 @@ std::span<const Parameter> ring_parameters();
 ///
 /// with P the projection across the tangent and u the velocity of the material at s*. The
 /// force is across the strand, because d.x'(s*) = 0: nothing holds the material along it.
-/// Point j bears w_j(s*) f. The derivative of s* by the places of the points is part of
-/// the tangent; of the damper, the derivative by velocities alone. An end that comes into
-/// the ring stays there, as with a knot. O(points).
+/// Point j bears w_j(s*) f. The tangent is exact: the derivative of s* by the places of
+/// the points is part of it. An end that comes into the ring stays there, as with a knot.
+/// The polynomials of neighbouring intervals meet at the point between them with tangents
+/// that differ a little. On the outer side of a bend, s* therefore stays at that point
+/// for some while. On the inner side, s* and the load jump by a little. O(points).
 class Ring final : public Effect {
  public:
   /// Parameters of the ring.
@@ -59,8 +61,10 @@ class Ring final : public Effect {
     double s = 0;                             // s*, m
     Vec d;                                    // m
     Vec tangent;                              // x'(s*)
+    Vec second;                               // x''(s*), 1/m
     double curvature = 0;                     // d.x''(s*)
     bool at_end = false;                      // whether s* is an end of the strand
+    bool at_point = false;                    // whether s* stays at a point between two
   };
   /// Finds the place.
   Inside inside(double t, const Points& p) const noexcept;
@@ -68,9 +72,10 @@ class Ring final : public Effect {
  private:
   Inside at(double s, std::size_t interval, const Vec& ring,
             const Points& p) const noexcept;
+  Vec relative(double t, const Points& p, const Inside& in) const noexcept;
   Vec slip(double t, const Points& p, const Inside& in) const noexcept;
   Vec force(double t, const Points& p, const Inside& in) const noexcept;
-  Coupling coupling(const Inside& in) const noexcept;
+  Coupling coupling(double t, const Points& p, const Inside& in) const noexcept;
 
   Settings s_;
 };

@@ -93,6 +93,17 @@ class Fits(unittest.TestCase):
         with self.assertRaisesRegex(tress.InputError, r"has no strand 1 \(record 0:2:"):
             strands = np.ones(columns["time_s"].size, dtype=int)
             tress.fit(scene, {**columns, "strand": strands}, BY)
+        for bad, place in ((5, "record"), ([], "record"), ({}, "record 0"), ([{}], "record 0")):
+            with self.assertRaisesRegex(tress.InputError, rf"\({place}\): give") as caught:
+                tress.fit(scene, bad, BY)
+            self.assertNotIn("\n", str(caught.exception))
+        for three in ((1, 2, 3), 1, ("a", "b")):
+            with self.assertRaisesRegex(tress.InputError, r"no two numbers \(bounds\): give"):
+                tress.fit(scene, columns, BY, bounds={BY[0]: three})
+        with self.assertRaisesRegex(tress.InputError, r"int is no scene \(scene\)"):
+            tress.fit(5, columns, BY)
+        with self.assertRaisesRegex(tress.InputError, r"1 is no name \(by\)"):
+            tress.fit(scene, columns, [1])
         late = columns["time_s"] + 0.1
         with self.assertRaisesRegex(tress.InputError, "which lasts 0.2 s .*set duration_s"):
             tress.fit(scene, {**columns, "time_s": late}, BY)

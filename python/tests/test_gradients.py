@@ -95,6 +95,23 @@ class Gradients(unittest.TestCase):
             curl({"integrator": {"id": "rk4", "dt_s": 1e-5}}).gradient(by=BY)
         with self.assertRaisesRegex(tress.InputError, "one of youngs_modulus_pa"):
             curl().gradient(by=BY[:1]).by("radius_m")
+        for nothing in ([], [1], 5):
+            with self.assertRaisesRegex(tress.InputError, r"\(by\): give .*by=\[") as caught:
+                curl().gradient(by=nothing)
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_ends_as_the_run_does(self):
+        """Where the guard finds an impossible state."""
+        bent = {"elements": 6, "shape": "along", "initial": "straight",
+                "darboux_along": [[0, 0, 200, 0], [1, 0, 200, 0]]}  # fmt: skip
+        scene = curl({"model.id": "corde", "strand": bent})
+        with self.assertRaises(tress.SolveError) as of_run:
+            scene.run()
+        with self.assertRaises(tress.SolveError) as of_gradient:
+            scene.gradient(by=BY[:1])
+        self.assertEqual(str(of_gradient.exception), str(of_run.exception))
+        found = scene.changed({"guard": False}).gradient(by=BY[:1])
+        self.assertTrue(np.isfinite(found.jacobian).all())
 
 
 class Steps(unittest.TestCase):

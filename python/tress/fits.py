@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from .errors import InputError
+from .gradients import names_of
 from .scenes import Scene
 from .tables import Table
 
@@ -21,7 +22,7 @@ class Fit:
 
     names: list[str]  # (K)
     units: list[str]  # (K)
-    values: np.ndarray  # (K)
+    values: np.ndarray  # (K) of the first strand; others change in the same proportion
     low: np.ndarray  # (K) lower ends of the intervals; nan: not determined
     high: np.ndarray  # (K)
     # (K) intervals by profiles; nan: not asked for, or no end
@@ -60,7 +61,14 @@ def _text(record: Any, number: int) -> tuple[str, str]:
             return Path(record).read_text(), str(record)
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"cannot be read ({record}): {error}") from error
+    if not isinstance(record, (Mapping, Table)):
+        raise InputError(
+            f"{type(record).__name__} is no record (record): give a CSV file, a dict of "
+            "columns, or a list of these"
+        )
     columns = {name: np.atleast_1d(column) for name, column in dict(record).items()}
+    if not columns:
+        raise InputError(f"no columns (record {number}): give time_s, x_m, y_m, z_m")
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
@@ -79,8 +87,27 @@ def _cell(x: Any) -> str:
     return "" if isinstance(x, (float, np.floating)) and np.isnan(x) else str(x)
 
 
-def _list(one_or_more: Any, single: Any) -> list:
-    return [one_or_more] if isinstance(one_or_more, single) else list(one_or_more)
+def _list(one_or_more: Any) -> list:
+    return list(one_or_more) if isinstance(one_or_more, (list, tuple)) else [one_or_more]
+
+
+def _pairs(
+    given: Mapping[str, tuple[float, float]] | None, where: str, two: str
+) -> dict[str, tuple[float, float]]:
+    """Pairs of numbers by name."""
+    remedy = f"give {{name: ({two})}}"
+    if given is not None and not isinstance(given, Mapping):
+        raise InputError(f"{given!r} is no dict ({where}): {remedy}")
+    pairs = {}
+    for name, values in (given or {}).items():
+        try:
+            first, second = map(float, values)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{values!r} of {name} are no two numbers ({where}): {remedy}"
+            ) from None
+        pairs[name] = (first, second)
+    return pairs
 
 
 def fit(
@@ -113,12 +140,14 @@ def fit(
     Least squares by Gauss-Newton steps within a trust region, with the exact derivatives of
     the runs; `calibrate` does the same. Raises InputError with the place and the remedy.
     """
-    records = _list(record, (str, Path, dict, Table))
-    texts = [_text(one, number) for number, one in enumerate(records)]
-    scenes = [one._core for one in _list(scene, Scene)]
-    names = [by] if isinstance(by, str) else by
-    pairs = [
-        {name: tuple(map(float, two)) for name, two in (given or {}).items()}
-        for given in (bounds, priors)
-    ]
+    texts = [_text(one, number) for number, one in enumerate(_list(record))]
+    scenes = []
+    for one in _list(scene):
+        if not isinstance(one, Scene):
+            raise InputError(
+                f"{type(one).__name__} is no scene (scene): give a Scene, or a list of them"
+            )
+        scenes.append(one._core)
+    names = None if by is None else names_of(by)
+    pairs = (_pairs(bounds, "bounds", "low, high"), _pairs(priors, "priors", "value, sigma"))
     return Fit(**_core.fit(scenes, texts, names, *pairs, confidence, shifts, profile, progress))

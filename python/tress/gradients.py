@@ -1,6 +1,6 @@
 """Derivatives of runs by numbers of a scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,9 @@ class Gradient:
     jacobian: np.ndarray  # (F, P, 3, K) m per unit of each parameter
     names: list[str]  # (K) parameters
     units: list[str]  # (K) units of the parameters
-    parameters: np.ndarray  # (K) values of the parameters
+    # (K) values of the parameters, of the first strand. Where strands have materials of
+    # their own, all change in the same proportion.
+    parameters: np.ndarray
     strand: np.ndarray  # (P) the strand of each point
     damped: bool  # the run began with two short steps of backward Euler
     # "ok"; "not_smooth" where a force jumped during the run; "contact_changes" where
@@ -78,8 +80,22 @@ def _one_of(name: str, value: str, words: Sequence[str]) -> None:
         raise InputError(f"unknown {name} '{value}' ({name}): one of {', '.join(words)}")
 
 
-def _names(by: str | Sequence[str]) -> list[str]:
-    return [by] if isinstance(by, str) else list(by)
+def names_of(by: str | Sequence[str]) -> list[str]:
+    """Returns names of parameters as a list. Raises InputError on what is no name."""
+    remedy = 'give names of parameters, as by=["youngs_modulus_pa"]'
+    if isinstance(by, str):
+        return [by]
+    if not isinstance(by, Iterable):
+        raise InputError(f"{by!r} is no name (by): {remedy}")
+    names = list(by)
+    for name in names:
+        if not isinstance(name, str):
+            raise InputError(f"{name!r} is no name (by): {remedy}")
+    return names
+
+
+def _guarded(scene: "Scene") -> bool:
+    return scene.tables.get("guard", True) not in (False, "false")
 
 
 def gradient(
@@ -93,8 +109,14 @@ def gradient(
     _one_of("of", of, ("tip", "points"))
     if start is not None:
         _one_of("start", start, ("auto", "damped", "as_run"))
-    names = None if by is None else _names(by)
+    names = None if by is None else names_of(by)
+    if names == []:
+        raise InputError(
+            'by names nothing (by): give a parameter, as by=["youngs_modulus_pa"]'
+        )
     found = _core.gradient(scene._core, of == "tip", names, start, 1)
+    if _guarded(scene):
+        scene.run(kind="strands", every=len(scene.times()))
     strands, over_change = found.pop("strands"), found.pop("error_over_change")
     changes = np.any([near for _, _, _, near in strands], axis=0)
     rough = any(reason for _, _, reason, _ in strands)
@@ -117,4 +139,4 @@ def linearized_step(
     scene: "Scene", t: float, dt: float | None, by: str | Sequence[str], strand: int
 ) -> LinearizedStep:
     """``Scene.linearized_step``."""
-    return LinearizedStep(**_core.linearized_step(scene._core, strand, t, dt, _names(by)))
+    return LinearizedStep(**_core.linearized_step(scene._core, strand, t, dt, names_of(by)))

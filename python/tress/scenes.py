@@ -177,8 +177,12 @@ class Scene:
             "auto".
         time_errors: runs again with half the step to estimate ``Gradient.time_error``.
 
+        Where strands have materials of their own, a derivative by a number of the material
+        is per unit of the first strand's: all change in the same proportion.
+
         Raises InputError for an unknown parameter, or with the reason why the run has no
-        derivatives. A step without a solution raises SolveError.
+        derivatives. A step without a solution, or an impossible state, raises SolveError as
+        ``run`` does.
         """
         return gradients.gradient(self, of, by, start, time_errors)
 

@@ -142,6 +142,10 @@ class System:
 
         By default v and a are 0. For a model without a sparse form, S is computed by central
         differences of the residual (exact in a; error 1e-10 of its largest entries).
+
+        A sparse S has the derivatives of an effect's load on a point by that point alone.
+        It leaves out those by other points, which [effects.ring] and [effects.self_contact]
+        have. ``linearize`` and ``solve`` use the whole S.
         """
         made = self._core.tangent(t, q, *self._rest(v, a), acc, vel, pos)
         if isinstance(made, tuple):
@@ -158,13 +162,13 @@ class System:
     def damping(
         self, t: float, q: Array, v: Array | None = None, a: Array | None = None
     ) -> scipy.sparse.csc_matrix:
-        """Returns the damping matrix D = dr/dv (n, n)."""
+        """Returns the damping matrix D = dr/dv (n, n). ``tangent`` names its limits."""
         return self.tangent(t, q, v, a, vel=1.0)
 
     def stiffness(
         self, t: float, q: Array, v: Array | None = None, a: Array | None = None
     ) -> scipy.sparse.csc_matrix:
-        """Returns the stiffness matrix K = dr/dq (n, n)."""
+        """Returns the stiffness matrix K = dr/dq (n, n). ``tangent`` names its limits."""
         return self.tangent(t, q, v, a, pos=1.0)
 
     def linearize(

@@ -11,6 +11,7 @@ namespace tress::simulation {
 namespace {
 
 constexpr const char* repair = "repair or delete the file; it must be RFC 4180 CSV";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 class Reader {
  public:
@@ -111,6 +112,7 @@ std::string to_csv(std::span<const std::string> header, std::span<const Row> row
 }
 
 CsvTable parse_csv(std::string_view text, const std::string& file) {
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   Reader reader(text, file);
   CsvTable table;
   if (!reader.done()) table.header = reader.line(table.places.emplace_back());
@@ -128,8 +130,10 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
   while (!reader.done()) {
     const std::vector<std::string> cells = reader.line(table.places.emplace_back());
     if (cells.size() != table.header.size()) {
-      reader.fail(fmt::format("the line before has {} cells, the header {}", cells.size(),
-                              table.header.size()));
+      throw InputError(fmt::format("a line of {} cells, where the header has {}",
+                                   cells.size(), table.header.size()),
+                       fmt::format("{}:{}:1", file, table.places.back().front().line),
+                       "give one cell for each column; a cell may be empty");
     }
     Row& row = table.rows.emplace_back();
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -68,12 +68,13 @@ class Reader {
     return has(name) ? table_.rows[i].text(name) : std::string_view();
   }
 
-  double number(std::size_t i, std::string_view name) const {
+  double number(std::size_t i, std::string_view name,
+                const char* remedy = "give a number, or leave out the line") const {
     const std::string_view text = cell(i, name);
     const double x = decimal(text).value_or(std::nan(""));
     refuse_if(!std::isfinite(x),
               fmt::format("{} = '{}' is not a finite number", name, text), place(i, name),
-              "give a number, or leave out the line");
+              remedy);
     return x;
   }
   std::size_t index(std::size_t i, std::string_view name) const {
@@ -108,7 +109,8 @@ class Reader {
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
       if (cell(i, coordinates[k]).empty()) continue;
       one.component = k;
-      one.value = number(i, coordinates[k]);
+      one.value = number(i, coordinates[k],
+                         "give a number, or leave the cell empty if it was not measured");
       record.observations.push_back(one);
       if (sigma > 0) record.sigma.push_back(sigma);
     }

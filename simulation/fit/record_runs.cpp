@@ -97,6 +97,17 @@ void check_last_time(const Scene& scene, std::string_view column, double last,
 RecordRuns::RecordRuns(const FitTask& task) {
   refuse_if(task.by.empty(), "no parameter to fit", task.place,
             "name one, as youngs_modulus_pa");
+  refuse_if(task.records.empty(), "no record to fit", "record",
+            "give a table with the columns time_s, x_m, y_m, z_m");
+  for (std::size_t i = 0; i < task.records.size(); ++i) {
+    const PointRecord& points = *task.records[i].points;
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool same = points.hash == task.records[j].points->hash &&
+                        task.records[i].scene == task.records[j].scene;
+      refuse_if(same && !points.hash.empty(), "a record that is given twice counts twice",
+                points.file, "leave one of them out");
+    }
+  }
   for (const FitRecord& record : task.records) add(task, record);
   known_ = std::ranges::none_of(
       task.records, [](const FitRecord& one) { return one.points->sigma.empty(); });

@@ -183,9 +183,16 @@ void Fit::judge(SceneFit& fit) const {
     misfit = fmt::format("residuals are too large for sigma_m (reduced chi^2 {:.3g})",
                          fit.reduced_chi2);
   }
-  if (!misfit.empty()) {
-    misfit += ": the scene is not that of the records, and intervals are too narrow";
-  }
+  // What limits a value, and of what there are too few. Where the residuals are no noise
+  // either, both are said.
+  const auto limited = [&](std::string_view error, std::string_view remedy) {
+    return misfit.empty()
+               ? fmt::format("{} error, not noise, limits it; give {}", error, remedy)
+               : fmt::format(
+                     "{}; give {} first; if the residuals stay so, the scene is not that "
+                     "of the records, and intervals are too narrow",
+                     misfit, remedy);
+  };
   for (FittedParameter& one : fit.parameters) {
     if (one.status != "ok") continue;
     const auto say = [&](std::string_view status, std::string reason) {
@@ -196,16 +203,16 @@ void Fit::judge(SceneFit& fit) const {
       say("solver_error", "a run with half the step or twice the elements fails");
     } else if (one.step_shift > largest_shift) {
       say("time_error",
-          fmt::format("half the step moves {} by {:.3g} half intervals: time error, not "
-                      "noise, limits it; give a shorter step",
-                      one.name, one.step_shift));
+          fmt::format("half the step moves {} by {:.3g} half intervals: {}", one.name,
+                      one.step_shift, limited("time", "a shorter step")));
     } else if (one.elements_shift > largest_shift) {
       say("space_error",
-          fmt::format("twice the elements move {} by {:.3g} half intervals: space error, "
-                      "not noise, limits it; give more elements",
-                      one.name, one.elements_shift));
+          fmt::format("twice the elements move {} by {:.3g} half intervals: {}", one.name,
+                      one.elements_shift, limited("space", "more elements")));
     } else if (!misfit.empty()) {
-      say("misfit", misfit);
+      say("misfit", misfit +
+                        ": the scene is not that of the records, and intervals are "
+                        "too narrow");
     }
   }
   const auto bad = std::ranges::find_if(

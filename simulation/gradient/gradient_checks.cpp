@@ -59,20 +59,25 @@ void check_derivatives(const Scene& scene) {
             "parameters",
             place, "leave out rest = \"inverse\"");
   refuse_if(SceneJoints(scene).any(),
-            "no gradient of strands with [joints]: each strand is differentiated alone",
+            "no gradient of strands with [joints]: derivatives of joined strands, which "
+            "move as one system, are not available",
             place, "leave out [joints]");
-  if (const SceneSupports supports(scene); supports.any()) {
+  const SceneSupports supports(scene);
+  if (supports.drive()) {
     throw InputError(
-        supports.drive()
-            ? fmt::format("no gradient of strands with {}: its forces are not "
-                          "differentiated",
-                          supports.table_name())
-            : "no gradient of strands on [supports], whose start depends on "
-              "the parameters",
+        fmt::format("no gradient of strands with {}: derivatives of strands that are "
+                    "driven are not available",
+                    supports.table_name()),
         place, "leave out " + supports.table_name());
   }
+  refuse_if(
+      supports.constrain(),
+      "no gradient of strands on rigid [supports]: derivatives of their constraints "
+      "are not available",
+      place, "give [supports] stiffness_n_per_m, or leave out [supports]");
   const auto system = exact_system_of(scene, 0);
-  const auto no = integrators::no_gradient(scene.integrator, *system, scene.options);
+  const auto no = integrators::no_gradient(
+      scene.integrator, *system, options_beside_supports(*system, scene.options));
   if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     refuse_if(

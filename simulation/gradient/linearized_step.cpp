@@ -9,6 +9,7 @@
 #include "integrators/gradient/gradient_run.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -46,7 +47,8 @@ std::string run_to(const Scene& scene, System& system, double t, GradientRun::St
   at.v.resize(at.q.size());
   system.initial_state(at.q, at.v);
   system.accept(0, at.q, at.v);
-  const auto run = integrators::make_integrator(scene.integrator, system, scene.options);
+  const auto run = integrators::make_integrator(
+      scene.integrator, system, options_beside_supports(system, scene.options));
   Status s = run->start(0, at.q, at.v);
   if (s == Status::ok && t > 0) s = run->advance(t);
   if (s != Status::ok) return run->failure();
@@ -80,7 +82,8 @@ LinearizedStep linearized_step(const Scene& scene, std::size_t strand, double t,
     from.dq[i * n + i] = 1;
     from.dv[(n + i) * n + i] = 1;
   }
-  GradientRun::Method method{.id = scene.integrator, .options = scene.options};
+  GradientRun::Method method{.id = scene.integrator,
+                             .options = options_beside_supports(*system, scene.options)};
   method.options.tolerance = 0;
   method.options.step = step;
   method.sparse = !needs(make_effects(scene)).couplings;

@@ -3,6 +3,7 @@
 #include "contract/forms/material_points.h"
 #include "integrators/catalogue.h"
 #include "simulation/gradient/scene_gradient.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 
@@ -27,7 +28,8 @@ AcceptedSteps accepted_steps(const Scene& scene, std::size_t strand,
   std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q);
   system->initial_state(q, v);
   system->accept(0, q, v);
-  const auto run = integrators::make_integrator(scene.integrator, *system, scene.options);
+  const auto run = integrators::make_integrator(
+      scene.integrator, *system, options_beside_supports(*system, scene.options));
   AcceptedSteps accepted;
   Status s = run->start(0, q, v);
   for (const RunStop& asked : stops_at(times)) {

@@ -16,6 +16,7 @@
 #include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/run_stops.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 namespace {
@@ -34,6 +35,21 @@ Parameters exact_options(const Scene& scene) {
     }
   }
   return options;
+}
+
+/// The model of a strand with its supports.
+std::unique_ptr<System> on_supports(const Scene& scene, std::size_t strand,
+                                    const Parameters& model_options) {
+  const Strand& one = scene.strands[strand];
+  return SceneSupports(scene).on(
+      scene.model->on_strand(one, model_options, make_effects(scene)), one, strand);
+}
+
+/// Copies of a strand for the derivatives of its residual; null: supports change it.
+std::unique_ptr<System> copies_of(const Scene& scene, std::size_t strand) {
+  if (SceneSupports(scene).change(strand)) return nullptr;
+  return models::strand_copies(*scene.model, scene.strands[strand], scene.model_options,
+                               make_effects(scene));
 }
 
 double farthest(const std::vector<double>& x, const std::vector<double>& y) {
@@ -78,6 +94,7 @@ class StrandRun {
         system_(system_of(scene, strand)),
         parameters_(run_parameters(scene, strand, task.parameters)),
         method_(method_of(scene, task.damped)) {
+    method_.options = options_beside_supports(*system_, method_.options);
     if (chosen_) accepted_ = accepted_steps(scene, strand, task.times);
     stops_ = chosen_ ? divided(accepted_.stops, task.parts) : stops_at(task.times);
     if (!chosen_) divide_steps();
@@ -139,8 +156,7 @@ class StrandRun {
 
   void forward() {
     GradientRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_,
-                    models::strand_copies(*scene_.model, scene_.strands[strand_],
-                                          scene_.model_options, make_effects(scene_)));
+                    copies_of(scene_, strand_));
     static_cast<void>(take(run, [&](std::size_t) {
       for (std::size_t k = 0; k < found_.by.size(); ++k) {
         std::vector<double> dx(found_.points.back().size());
@@ -203,13 +219,11 @@ class StrandRun {
 }  // namespace
 
 std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
-  return scene.model->on_strand(scene.strands[strand], scene.model_options,
-                                make_effects(scene));
+  return on_supports(scene, strand, scene.model_options);
 }
 
 std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand) {
-  return scene.model->on_strand(scene.strands[strand], exact_options(scene),
-                                make_effects(scene));
+  return on_supports(scene, strand, exact_options(scene));
 }
 
 std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
@@ -221,6 +235,7 @@ std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
       parameter.change(changed, s);
       return exact_system_of(changed, strand);
     });
+    all.back().name = parameter.name;
     if (parameter.places) {
       all.back().places = distance_of_places(scene, strand, parameter);
     }

@@ -10,24 +10,80 @@
 namespace tress::simulation {
 namespace {
 
-constexpr double reach = 0.25;  // |s| of a stencil (integrators/gradient)
+// |s| of a stencil (integrators/gradient), and rounding: of affine numbers upwards, of
+// others both ways.
+constexpr double reach = 0.2501, central_reach = 1e-5;
+// A number nearer to an end of its range than this part of it, times `reach`, has no
+// room.
+constexpr double least_room = 1e-3;
+
+constexpr Use wind_profiles[] = {{"sine", "frequency_hz"},
+                                 {"gusts", "gust_speed_m_s|gust_length_m|gust_time_s"}};
+constexpr Use air_laws[] = {
+    {"linear", "drag_kg_m_s"},
+    {"quadratic",
+     "strand_radius_m|air_density_kg_m3|air_viscosity_pa_s|c_normal|c_tangential"},
+    {"force", "force_n_m"}};
+constexpr Use drag_coefficients[] = {{"constant", "c_normal"},
+                                     {"reynolds", "air_viscosity_pa_s"}};
+
+/// The numbers of an effect that apply to one word of a choice.
+struct EffectUse {
+  std::string_view effect, choice;
+  std::span<const Use> uses;
+};
+constexpr EffectUse effect_uses[] = {
+    {"wind", "profile", wind_profiles},
+    {"wind", "law", air_laws},
+    {"wind", "coefficients", drag_coefficients},
+    {"quadratic_drag", "coefficients", drag_coefficients},
+};
 
 double or_one(double value) { return value != 0 ? std::abs(value) : 1; }
 
-/// The unit at the end of a help text: "air drag per length (kg/(m s))"; 1 if there is
-/// none.
+/// Whether a text in parentheses is a unit: "kg/(m s)", and not "1 - cos(2 pi f t)".
+bool is_unit(std::string_view text) {
+  constexpr std::string_view units[] = {"m", "s", "kg", "N", "Pa", "J", "Hz", "rad"};
+  constexpr std::string_view others = "0123456789^/() ";
+  bool any = false;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(others), text.size());
+    if (end > 0 && std::ranges::count(units, text.substr(0, end)) == 0) return false;
+    any = any || end > 0;
+    text.remove_prefix(std::max<std::size_t>(end, 1));
+  }
+  return any;
+}
+
+/// The last unit in a help text: "air drag per length (kg/(m s))"; 1 if there is none.
 std::string unit_of(const Parameter& p) {
-  const std::size_t end = p.help.rfind(')');
-  if (end == p.help.npos) return "1";
-  int depth = 0;
-  for (std::size_t i = end + 1; i-- > 0;) {
-    depth += p.help[i] == ')' ? 1 : p.help[i] == '(' ? -1 : 0;
-    if (depth == 0) return std::string(p.help.substr(i + 1, end - i - 1));
+  std::size_t end = p.help.rfind(')');
+  while (end != p.help.npos) {
+    int depth = 0;
+    std::size_t i = end + 1;
+    do {
+      --i;
+      depth += p.help[i] == ')' ? 1 : p.help[i] == '(' ? -1 : 0;
+    } while (depth > 0 && i > 0);
+    const std::string_view inside = p.help.substr(i + 1, end - i - 1);
+    if (depth == 0 && is_unit(inside)) return std::string(inside);
+    end = end == 0 ? p.help.npos : p.help.rfind(')', end - 1);
   }
   return "1";
 }
 
 }  // namespace
+
+std::string unused_number(std::string_view effect, std::string_view key,
+                          const Parameters& values) {
+  for (const EffectUse& one : effect_uses) {
+    if (one.effect != effect) continue;
+    const std::string_view word = values.word(one.choice);
+    if (used(one.uses, word, key)) continue;
+    return fmt::format("{} = \"{}\" does not use it", one.choice, word);
+  }
+  return {};
+}
 
 Vec axis_of(std::size_t k) {
   return {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
@@ -81,16 +137,19 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
   all.value =
       all.component ? dot(axis_of(*all.component), values.vec(key)) : values.number(key);
   all.unit = unit_of(*p);
-  all.measure = or_one(all.value);
+  // A change by a quarter of the measure stays within the range.
+  const double typical = or_one(all.value);
+  all.measure = std::min(
+      {typical, (p->max - all.value) / reach, (all.value - p->min) / central_reach});
   all.positive = all.value > 0 && p->min >= 0;
   all.min = p->min;
   all.max = p->max;
-  if (all.value <= p->min || all.value + reach * all.measure > p->max) {
-    refuse_gradient(
-        name,
-        fmt::format("{:g} is at the end of its range, where a change has no two sides",
-                    all.value),
-        place, "give it a value inside");
+  if (all.value <= p->min || all.measure < least_room * typical) {
+    refuse_gradient(name,
+                    fmt::format("{:g} is at the end of its range, {:g} to {:g}, where a "
+                                "change has no two sides",
+                                all.value, p->min, p->max),
+                    place, "give it a value inside");
   }
   return all;
 }

@@ -110,9 +110,11 @@ struct Refused {
 constexpr Refused refused[] = {
     {"poisson_ratio", "sets the shear modulus only", "give shear_modulus_pa"},
     {"ellipticity", "derivatives by it are not available", "give radius_m"},
-    {"length_m", "length changes the meaning of the coordinates",
-     "give radius_m or youngs_modulus_pa, whose ratio to it decides"},
-    {"elements", "elements are a whole number", "compare runs"},
+    {"length_m", "coordinates of strands of two lengths are not those of the same points",
+     "compare runs with two lengths"},
+    {"elements", "elements are a whole number", "compare runs with other numbers"},
+    {"root.skin_scale", "places on a skin do not change with its scale alone",
+     "compare runs"},
     {"initial_velocity_m_s", "a clamped strand starts at rest",
      "give root.velocity_m_s.x of [root] motion = \"free\""},
 };
@@ -275,6 +277,8 @@ class Finder {
     const EffectChoice& effect = scene_.effects[i];
     const GradientNumber of = gradient_number(
         name, name.substr(dot + 1), effect.entry->parameters, effect.parameters, place_);
+    const std::string unused = unused_number(effect.entry->id, of.key, effect.parameters);
+    if (!unused.empty()) refuse(name, unused, "leave it out");
     to.push_back({std::string(name), of.unit, of.value, of.measure, false,
                   [of, i](Scene& scene, double s) {
                     EffectChoice& changed = scene.effects[i];
@@ -300,7 +304,12 @@ class Finder {
     }
     const std::vector<std::string> effects = effect_names(scene_);
     for (std::size_t i = 0; i < effects.size(); ++i) {
-      for (const Parameter& p : scene_.effects[i].entry->parameters) add(effects[i], p);
+      const EffectChoice& effect = scene_.effects[i];
+      for (const Parameter& p : effect.entry->parameters) {
+        if (unused_number(effect.entry->id, p.name, effect.parameters).empty()) {
+          add(effects[i], p);
+        }
+      }
     }
     return all;
   }

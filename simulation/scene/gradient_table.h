@@ -36,6 +36,11 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
                                std::span<const Parameter> declared,
                                const Parameters& values, const std::string& place);
 
+/// Returns why a number of an effect does nothing: `profile = "constant" does not use
+/// it`. Empty: it acts.
+std::string unused_number(std::string_view effect, std::string_view key,
+                          const Parameters& values);
+
 /// "name.x" becomes "name", 0; empty without such an end.
 std::optional<std::size_t> take_component(std::string_view& name);
 /// Unit vector of the world's axis k.

@@ -253,14 +253,15 @@ std::optional<FreeRoot> free_motion(const Table& root) {
 
 void set_root(Strand& strand, const RootMotions& motions, Vec position,
               const Frame& frame) {
+  const Frame placed = frame;  // which may be that of the strand, replaced below
   strand.root =
-      motions.skin != nullptr ? motions.skin->motion(position, frame) : motions.head;
+      motions.skin != nullptr ? motions.skin->motion(position, placed) : motions.head;
   strand.root.position = position;
-  strand.root.frame = frame;
+  strand.root.frame = placed;
   strand.free_root = motions.free_root;
   if (strand.free_root) {
     strand.free_root->position = position;
-    strand.free_root->frame = frame;
+    strand.free_root->frame = placed;
     if (!motions.begins_with_head) return;
     const models::RootPose pose = strand.root.at(0);
     strand.free_root->velocity = pose.v;

@@ -109,6 +109,16 @@ TEST(CalibratePoints, RefusesWithPlaceAndRemedyBeforeAnyRun) {
   calibrate.write("bad.csv", "time_s,x_m\n0.1,oops\n");
   EXPECT_THAT(refused("--scene " + scene + " --set data=bad.csv"),
               HasSubstr("bad.csv:2:5"));
+  calibrate.write("nan.csv", "time_s,x_m,y_m\n0.1,0,nan\n");
+  EXPECT_THAT(refused("--scene " + scene + " --set data=nan.csv"),
+              HasSubstr("(nan.csv:2:7): give a number, or leave the cell empty"));
+  calibrate.write("short.csv", "time_s,x_m,y_m\n0.1,0,0\n0.2,0\n0.3,0,0\n");
+  EXPECT_THAT(refused("--scene " + scene + " --set data=short.csv"),
+              HasSubstr("(short.csv:3:1): give one cell for each column"));
+  calibrate.write("header.csv", "t,x,y,z\n0.1,0,0,0\n");
+  EXPECT_THAT(refused("--scene " + scene + " --set data=header.csv"),
+              HasSubstr("time_s, x_m, y_m, z_m"));
+  EXPECT_THAT(refused(both + "," + record), HasSubstr("a record that is given twice"));
 }
 
 // A record, a bound or a prior that does not fit the scene, and a scene whose run has no

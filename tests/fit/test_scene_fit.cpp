@@ -262,7 +262,8 @@ TEST(SceneFit, FourParametersOf75NumbersTakeAFifthOfASecond) {
 }
 
 // Tips of der with 20 elements lie 0.2 mm from those of super_helix with 5, below the
-// noise of 0.5 mm: the residuals do not tell, twice the elements do.
+// noise of 0.5 mm, and the residuals are correlated by them. Twice the elements show why:
+// the reason states both.
 TEST(SceneFit, OfAnotherModelsRecordIsLimitedBySpaceErrorAndSaysSo) {
   const Scene other = Curl{.model = "der", .elements = 20, .dt = 0.005}.scene();
   const PointRecord record = with_noise(record_of(other, 25, noise), noise, 1);
@@ -270,7 +271,9 @@ TEST(SceneFit, OfAnotherModelsRecordIsLimitedBySpaceErrorAndSaysSo) {
   const SceneFit found = fit(scene, record);
   const FittedParameter& modulus = found.parameters[0];
   EXPECT_EQ(modulus.status, "space_error") << found.reason;
-  EXPECT_THAT(modulus.reason, HasSubstr("space error, not noise, limits it"));
+  EXPECT_THAT(modulus.reason, HasSubstr("half intervals: residuals are correlated"));
+  EXPECT_THAT(modulus.reason, HasSubstr("give more elements first"));
+  EXPECT_THAT(modulus.reason, HasSubstr("the scene is not that of the records"));
   EXPECT_GT(modulus.elements_shift, 0.25);
   EXPECT_LT(modulus.step_shift, 0.25);
   EXPECT_EQ(found.status, "space_error");
@@ -353,6 +356,22 @@ TEST(SceneFit, OfSeveralRecordsSharesTheParameters) {
   EXPECT_NEAR(found.parameters[2].value, 5e-5, 5e-5 * 1e-6);
   ASSERT_EQ(found.fitted.size(), 2u);
   EXPECT_NEAR(found.fitted[1][2], of_two.observations[2].value, 1e-9);
+}
+
+TEST(SceneFit, RefusesNoRecordAndTheSameOneTwice) {
+  const Scene scene = Curl{}.scene();
+  const std::string text = "time_s,x_m\n0.05,0\n0.1,0\n0.2,0\n";
+  const PointRecord record = parse_point_record(text, "a.csv");
+  const auto refused = [&](std::vector<FitRecord> records) {
+    return refusal([&] {
+      check_fit(
+          {.records = std::move(records), .by = {four[0]}, .bounds = {}, .priors = {}});
+    });
+  };
+  EXPECT_THAT(refused({}), HasSubstr("no record to fit (record): give a table"));
+  EXPECT_EQ(refused({{&scene, &record}}), "");
+  EXPECT_THAT(refused({{&scene, &record}, {&scene, &record}}),
+              HasSubstr("a record that is given twice counts twice (a.csv)"));
 }
 
 // A time as a table prints it, with 9 digits, is not after the end.

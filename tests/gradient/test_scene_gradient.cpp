@@ -259,6 +259,13 @@ TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
             std::string::npos);
   EXPECT_NE(refused("by = [\"wind.velocity_m_s\"]\n").find(".x, .y or .z"),
             std::string::npos);
+  EXPECT_NE(refused("by = [\"wind.frequency_hz\"]\n")
+                .find("profile = \"constant\" does not use it"),
+            std::string::npos);
+  EXPECT_NE(
+      refused("by = [\"wind.c_normal\"]\n").find("law = \"linear\" does not use it"),
+      std::string::npos);
+  EXPECT_EQ(listed.find("wind.frequency_hz"), std::string::npos) << listed;
   EXPECT_NE(refused("by = []\n").find("names nothing"), std::string::npos);
   EXPECT_NE(refused("by = [\"radius_m\", \"radius_m\"]\n").find("twice"),
             std::string::npos);
@@ -266,6 +273,45 @@ TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
             std::string::npos);
   EXPECT_NE(refused("by = [1]\n").find("expected a list of strings"), std::string::npos);
   EXPECT_NE(refused("off = \"tip\"\n").find("unknown key 'off'"), std::string::npos);
+}
+
+// Units are those of the names, whatever else is in parentheses.
+TEST(SceneGradient, HasTheUnitsOfItsParameters) {
+  const std::string effects = "[effects.tether]\n[effects.distributed_load]\nto = 0.83\n";
+  const Scene scene = parse_scene(scene_text(effects), "s.toml");
+  const auto unit = [&](const std::string& name) {
+    return gradient_parameters(scene, std::vector<std::string>{name}, "by").front().unit;
+  };
+  EXPECT_EQ(unit("root.amplitude_m"), "m");
+  EXPECT_EQ(unit("root.frequency_hz"), "Hz");
+  EXPECT_EQ(unit("root.direction.x"), "1");
+  EXPECT_EQ(unit("linear_drag.drag_kg_m_s"), "kg/(m s)");
+  EXPECT_EQ(unit("tether.target_m.x"), "m");
+  EXPECT_EQ(unit("wind.velocity_m_s.x"), "m/s");
+  EXPECT_EQ(unit("gravity.gravity_m_s2.z"), "m/s^2");
+  EXPECT_EQ(unit("distributed_load.to"), "1");
+}
+
+// The load ends at 0.83 of the length, 1 is the end of the range.
+TEST(SceneGradient, OfANumberNearTheEndOfItsRangeIsThatOfDifferences) {
+  const auto text = [](const std::string& to) {
+    return scene_text("[effects.distributed_load]\nforce_n_per_m = [0, 1e-4, 0]\nto = " +
+                      to + "\n[gradient]\nby = [\"distributed_load.to\"]\n");
+  };
+  const Scene near = parse_scene(text("0.83"), "s.toml");
+  const StrandGradient found = scene_gradient(near).strands.front();
+  const auto y = [&](const char* to) {
+    const Scene scene = parse_scene(text(to), "s.toml");
+    return scene_gradient(scene).strands.front().points.back().end()[-2];
+  };
+  // The load is piecewise linear in its end, and the strand almost: 1e-4 of it.
+  const double d = (y("0.831") - y("0.829")) / 0.002;
+  EXPECT_GT(std::abs(d), 1e-5);
+  EXPECT_NEAR(found.by[0].back().end()[-2], d, 1e-3 * std::abs(d));
+  EXPECT_NE(refusal([&] {
+              parse_scene(text("1.0"), "s.toml");
+            }).find("1 is at the end of its range, 0 to 1"),
+            std::string::npos);
 }
 
 TEST(SceneGradient, IsRefusedWhereARunHasNone) {
@@ -362,6 +408,38 @@ TEST(SimulateGradient, EstimatesTheErrorInTimeByTheOrderOfTheMethod) {
     for (int i = 0; i < 9; ++i) std::getline(entries, entry, ',');
     EXPECT_NEAR(std::stod(entry), factor * change, 6e-3 * factor * change) << method;
   }
+}
+
+// An edge of der moves its frame, back through which there is no adjoint.
+TEST(SimulateGradient, MarksWhereARunEndsEarly) {
+  Toy simulate;
+  std::string text =
+      scene_text("[gradient]\nby = [\"youngs_modulus_pa\"]\nway = \"adjoint\"\n",
+                 "dt_s = 0.004\nnewton_tolerance = 1e-13\n[model]\nid = \"der\"\n");
+  text.replace(text.find("duration_s = 0.1"), 16, "duration_s = 0.4");
+  simulate.write("s.toml", text);
+  const Toy::Result run = simulate.run("s.toml --gradient --out out --progress none");
+  EXPECT_EQ(run.code, 3) << run.err;
+  EXPECT_NE(run.err.find("not finished"), std::string::npos) << run.err;
+  const std::string table = simulate.read("out/s.gradient.csv");
+  EXPECT_TRUE(table.ends_with(",unfinished\n")) << table;
+}
+
+TEST(SimulateGradient, StatesWhatStrandsOfOtherMaterialsDo) {
+  Toy simulate;
+  std::string text =
+      scene_text("[gradient]\nby = [\"youngs_modulus_pa\", \"wind.velocity_m_s.y\"]\n");
+  const auto said = [&] {
+    simulate.write("s.toml", text);
+    const Toy::Result run = simulate.run("s.toml --gradient --out out --progress none");
+    EXPECT_EQ(run.code, 0) << run.err;
+    return run.err.find("per unit of the number of strand 0") != std::string::npos;
+  };
+  EXPECT_FALSE(said());
+  text.replace(text.find("[strand]"), 8,
+               "[[strand]]\nelements = 2\nmaterial = {youngs_modulus_pa = "
+               "1e9}\n[[strand]]");
+  EXPECT_TRUE(said());
 }
 
 TEST(SimulateGradient, WritesTheTableAndSaysWhatAPercentDoes) {

@@ -82,6 +82,15 @@ TEST(Csv, ReadsCarriageReturnsAndAMissingLastLineEnd) {
   EXPECT_EQ(table.rows[1].text("b"), "2");
 }
 
+TEST(Csv, BeginsAfterAByteOrderMark) {
+  const CsvTable table = parse_csv(
+      "\xEF\xBB\xBF"
+      "a,b\n1,2\n",
+      "t.csv");
+  EXPECT_EQ(table.header.front(), "a");
+  EXPECT_EQ(table.rows[0].text("a"), "1");
+}
+
 TEST(Csv, ErrorsNameFileLineAndColumn) {
   const auto message = [](std::string_view text) -> std::string {
     try {
@@ -93,7 +102,8 @@ TEST(Csv, ErrorsNameFileLineAndColumn) {
   };
   EXPECT_THAT(message("a,b\n1,x\"y\n"), HasSubstr("t.csv:2:4"));
   EXPECT_THAT(message("a\n\"open"), HasSubstr("t.csv:2:6"));
-  EXPECT_THAT(message("a,b\n1\n"), HasSubstr("1 cells, the header 2"));
+  EXPECT_THAT(message("a,b\n1,2\n1\n1,2\n"),
+              HasSubstr("a line of 1 cells, where the header has 2 (t.csv:3:1)"));
   EXPECT_THAT(message("a,a\n"), HasSubstr("appears twice"));
 }
 

@@ -6,11 +6,13 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/effects/ring.h"
 #include "models/motion/signals.h"
 #include "tests/models/reduced/work_of_motion.h"
+#include "tests/support/apart.h"
 #include "tests/support/refusal.h"
 #include "tests/support/small_motion.h"
 
@@ -79,6 +81,82 @@ TEST(Ring, HoldsTheClosestPlaceAcrossTheStrand) {
   EXPECT_NEAR(end.s, std::numbers::pi / 2, 1e-14);
 }
 
+/// df/dx of the load, (3 count x 3 count) row-major, by couplings.
+std::vector<double> by_places(const Ring& held, const Points& p) {
+  std::vector<Coupling> all;
+  held.add_couplings(0, p, all);
+  const std::size_t n = p.x.size();
+  std::vector<double> found(n * n);
+  for (const Coupling& coupling : all) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        double block[9] = {};
+        coupling.add_block(a, c, 1, 0, block);
+        const std::size_t row = 3 * coupling.ends[a].point,
+                          column = 3 * coupling.ends[c].point;
+        for (std::size_t i = 0; i < 9; ++i) {
+          found[(row + i / 3) * n + column + i % 3] += block[i];
+        }
+      }
+    }
+  }
+  return found;
+}
+
+/// Rounding of loads of 1 N over 1e-6 m is 1e-9 of derivatives of 1 N/m and more, the
+/// truncation 1e-12 of the third derivatives.
+TEST(Ring, CouplingsAreTheWholeDerivativeOfTheLoad) {
+  // Across the strand between two points, next to the tip and beyond it, and outside of
+  // the point in the middle.
+  const double diagonal = 1.25 * std::numbers::sqrt2 / 2;
+  const std::pair<std::size_t, Vec> all[] = {{21, {0.75, 0.06, 0.72}},
+                                             {21, {1.02, 0.1, 0.03}},
+                                             {21, {1.2, 0.1, -0.3}},
+                                             {5, {diagonal, 0.1, diagonal}}};
+  for (const auto& [count, place] : all) {
+    Arc strand(count);
+    std::vector<double> v(strand.x.size());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = std::sin(1.7 * double(i) + 0.4);
+    std::vector<double> of_spring;
+    for (const double damping : {0.0, 3.0}) {
+      const auto held = ring(place, 2, damping, {0.2, 0.1, -0.3});
+      const auto load = [&] {
+        Points p = strand.points();
+        p.v = v;
+        std::vector<double> f(v.size());
+        held->add_load(0, p, f);
+        return f;
+      };
+      Points p = strand.points();
+      p.v = v;
+      const std::vector<double> found = by_places(*held, p);
+      double worst = 0, most = 0;
+      for (std::size_t j = 0; j < v.size(); ++j) {
+        const double x = strand.x[j];
+        const auto d = central_difference(1e-6, [&](double e) {
+          strand.x[j] = x + e;
+          return load();
+        });
+        strand.x[j] = x;
+        for (std::size_t i = 0; i < v.size(); ++i) {
+          worst = std::max(worst, std::abs(found[i * v.size() + j] - d[i]));
+          most = std::max(most, std::abs(d[i]));
+        }
+      }
+      EXPECT_LT(worst, 1e-7 * most) << place.x << " " << damping;
+      if (damping == 0) {
+        of_spring = found;
+        continue;
+      }
+      // What the damper adds is there to be seen, but not of a held end.
+      EXPECT_EQ(held->inside(0, p).at_point, count == 5);
+      const bool at_end = held->inside(0, p).at_end;
+      EXPECT_EQ(at_end, place.z < 0);
+      EXPECT_EQ(apart(found, of_spring) > 0.1 * most, !at_end);
+    }
+  }
+}
+
 const ModelSettings soft{{"elements", "6"},
                          {"radius_m", "1e-3"},
                          {"youngs_modulus_pa", "1e4"},
@@ -86,7 +164,7 @@ const ModelSettings soft{{"elements", "6"},
 
 class RingOnModels : public testing::TestWithParam<std::string> {};
 
-/// The motion of the place along the strand is part of the tangent.
+/// The motion of the place along the strand is part of the tangent, with a damper too.
 TEST_P(RingOnModels, HasItsDerivativesInTheTangent) {
   const auto alone = make_model(GetParam(), soft);
   States at_start(*alone);
@@ -94,14 +172,16 @@ TEST_P(RingOnModels, HasItsDerivativesInTheTangent) {
   std::vector<double> x(3 * std::size_t(points.count()));
   points.positions(0, at_start.q, x);
   const Vec place = load3(&x[9]) + Vec{0.004, 0.003, 0.002};
-  const auto system = with_ring(GetParam(), soft, ring(place, 1e-2));
-  States s(*system);
-  s.shake(0.02);
-  for (const Weights w :
-       {Weights{1, 0.1, 0.01}, Weights{1, 0.05, 0}, Weights{400, 20, 1}}) {
-    const double off = tangent_error(*system, *system, s, w);
-    std::printf("%s: %.1e\n", GetParam().c_str(), off);
-    EXPECT_LE(off, tangent_tolerance);
+  for (const double damping : {0.0, 1e-3}) {
+    const auto system = with_ring(GetParam(), soft, ring(place, 1e-2, damping));
+    States s(*system);
+    s.shake(0.02);
+    for (const Weights w :
+         {Weights{1, 0.1, 0.01}, Weights{1, 0.05, 0}, Weights{400, 20, 1}}) {
+      const double off = tangent_error(*system, *system, s, w);
+      std::printf("%s: %.1e\n", GetParam().c_str(), off);
+      EXPECT_LE(off, tangent_tolerance) << damping;
+    }
   }
 }
 
