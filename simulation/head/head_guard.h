@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "models/head/head.h"
-#include "simulation/run/body_passages.h"
+#include "simulation/passages/body_passages.h"
 #include "simulation/run/method_dissipation.h"
 
 namespace tress::simulation {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/run/body_passages.h"
+#include "simulation/passages/body_passages.h"
 
 namespace tress::simulation {
 

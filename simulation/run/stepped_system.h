@@ -7,7 +7,7 @@
 
 #include "integrators/catalogue.h"
 #include "simulation/rest/supported_start.h"
-#include "simulation/run/body_depth.h"
+#include "simulation/passages/body_depth.h"
 #include "simulation/run/guards.h"
 #include "simulation/run/metered.h"
 

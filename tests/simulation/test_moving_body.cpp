@@ -10,7 +10,7 @@
 #include <string>
 
 #include "contract/input_error.h"
-#include "models/effects/body_passage.h"
+#include "models/passages/body_passage.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/run/world.h"

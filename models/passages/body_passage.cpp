@@ -1,4 +1,4 @@
-#include "models/effects/body_passage.h"
+#include "models/passages/body_passage.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "simulation/run/body_depth.h"
+#include "simulation/passages/body_depth.h"
 
 #include <algorithm>
 

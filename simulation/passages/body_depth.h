@@ -6,7 +6,7 @@
 
 #include "contract/forms/material_points.h"
 #include "models/effects/effect.h"
-#include "simulation/run/body_passages.h"
+#include "simulation/passages/body_passages.h"
 
 namespace tress::simulation {
 

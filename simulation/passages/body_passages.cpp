@@ -1,4 +1,4 @@
-#include "simulation/run/body_passages.h"
+#include "simulation/passages/body_passages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "models/effects/body_passage.h"
+#include "models/passages/body_passage.h"
 
 namespace tress::simulation {
 
