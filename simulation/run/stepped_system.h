@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "integrators/catalogue.h"
-#include "simulation/rest/supported_start.h"
 #include "simulation/passages/body_depth.h"
+#include "simulation/rest/supported_start.h"
 #include "simulation/run/guards.h"
 #include "simulation/run/metered.h"
 

@@ -9,11 +9,12 @@
 
 namespace tress::experiments::validation {
 
-/// How the scene of a contact test is run. The defaults are those of the table.
+/// Method and contact law of a run of a contact test. The defaults are those of the
+/// table.
 struct ContactRun {
   /// Integrator of tests with exact contact.
   std::string_view integrator = "backward_euler";
-  /// Whether surfaces are rigid. Empty: as the test has them.
+  /// Whether surfaces are rigid. Empty: those of the test.
   std::optional<bool> rigid = {};
   /// Rotation of the whole scene: strands, bodies and loads.
   Frame turned = {};
