@@ -188,10 +188,10 @@ class DerStrand {
     return substitute(m, w, placed, factors, correction);
   }
 
-  /// Begins a step: counts the turns of the twists, and takes the present frame of an
-  /// edge as its reference if it has turned by more than 60 degrees, as renew_reference()
-  /// in models/maximal/rod_edge.h. A second call changes nothing. Returns > 0 in lanes
-  /// where some has.
+  /// Begins a step: counts the turns of the twists and renews references. An edge that
+  /// has turned by more than 60 degrees takes its present frame as the new reference, as
+  /// renew_reference() in models/maximal/rod_edge.h. A second call changes nothing.
+  /// Returns > 0 in lanes where some has.
   T renew(DerEdge<T>* edges, const LaneClamp<T>& clamp, T* q, T* v) const {
     T some(0);
     FrameOf<T> before = clamp.frame;
