@@ -81,6 +81,7 @@ class HeadSceneRun {
     made.rejected = made.work.rejected;
     const std::size_t state = run_->hash();
     made.dissipation = run_->dissipation();
+    made.excess = run_->excess();
     made.no_dissipation = run_->no_dissipation();
     set_outcome_of_ranks(outcome);
     if (!ranks_.first()) {

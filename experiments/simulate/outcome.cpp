@@ -50,6 +50,12 @@ constexpr Column columns_of_outcome[] = {
     {"method_dissipated_rel",
      "method_dissipated_j over the energy of the motion: the highest above the "
      "lowest potential, and the work put in"},
+    {"energy_excess_j",
+     "largest energy of a strand above that of its start and the work of its loads, of "
+     "the strand that uses most of the guard's slack. Error of the steps: physics allows "
+     "none"},
+    {"energy_excess_rel",
+     "energy_excess_j over the slack, at which the guard ends the run"},
     {"not_smooth", "reason why the motion is not smooth, where forces jump"},
     {"pilot_elements",
      "[strand] tolerance_m: elements of these strands, by trials in motion; see "
@@ -187,6 +193,10 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("method_dissipated_rel", run.dissipation->share());
   } else if (!run.no_dissipation.empty()) {
     row.set("method_dissipated_missing", run.no_dissipation);
+  }
+  if (run.excess.slack > 0) {
+    row.set("energy_excess_j", run.excess.gained);
+    row.set("energy_excess_rel", run.excess.share());
   }
   if (replaces_steps(scene)) row.set("replaced_steps", work.replaced);
   if (!run.not_smooth.empty()) row.set("not_smooth", run.not_smooth);

@@ -147,6 +147,7 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
   }
   run.simulated_s = world->time();
   run.dissipation = world->dissipation();
+  run.excess = world->excess();
   run.no_dissipation = world->no_dissipation();
   if (!run.passed) run.passed = world->passed();
   if (run.not_smooth.empty()) run.not_smooth = world->not_smooth();

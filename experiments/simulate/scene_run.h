@@ -80,6 +80,7 @@ struct SceneRun {
   bool resumed = false;
   Exchanges exchanges = {};
   std::optional<MethodDissipation> dissipation = {};  // World::dissipation() at the end
+  Excess excess = {};                                 // energy that no work explains
   std::string no_dissipation = {};                    // why it is empty
   std::string not_smooth = {};               // World::not_smooth(), first that was seen
   std::optional<StrandPassage> passed = {};  // World::passed(), first that was seen

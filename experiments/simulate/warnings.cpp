@@ -25,6 +25,9 @@ std::string_view remedy_of_energy(const Scene& scene) {
              : "take a shorter dt_s, or a method of order 2, such as tr_bdf2";
 }
 
+/// Part of the slack of the guard from which on a run prints what it used.
+constexpr double told_excess = 0.1;
+
 }  // namespace
 
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
@@ -36,6 +39,12 @@ std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
         scene.integrator, of.dissipated > 0 ? "dissipated" : "created",
         std::abs(of.dissipated), of.uncertain, 100 * std::abs(of.share()),
         remedy_of_energy(scene)));
+  } else if (run.excess.share() > told_excess) {
+    all.push_back(fmt::format(
+        "a strand had {:.2g} J more energy than its start and its loads explain, {:.2g} "
+        "% "
+        "of the slack that the guard allows for coarse steps: {}",
+        run.excess.gained, 100 * run.excess.share(), remedy_of_energy(scene)));
   }
   if (!run.not_smooth.empty()) {
     all.push_back(fmt::format(

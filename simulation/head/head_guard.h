@@ -8,6 +8,7 @@
 
 #include "models/head/head.h"
 #include "simulation/passages/body_passages.h"
+#include "simulation/run/energy_account.h"
 #include "simulation/run/method_dissipation.h"
 
 namespace tress::simulation {
@@ -38,6 +39,8 @@ class HeadGuard {
   /// Returns the finding of the last judge(); empty: nothing.
   virtual std::string_view verdict(std::size_t place) const = 0;
 
+  /// Returns the energy that no work explains, of the strand that uses most of its slack.
+  virtual Excess excess() const = 0;
   /// Why there is no dissipation(); empty: there is one.
   virtual std::string no_dissipation() const = 0;
   /// Returns the sum over strands of what the method has dissipated.

@@ -425,6 +425,13 @@ void HeadRun::potentials(double t, std::vector<double>& each) {
   });
 }
 
+Excess HeadRun::excess() {
+  Excess most;
+  const Excess own = guarded_ ? guard_->excess() : Excess();
+  for (const Excess& one : ranks_->of_each(own)) most.take(one);
+  return most;
+}
+
 std::string HeadRun::no_dissipation() const {
   return guard_ ? guard_->no_dissipation() : "a batch of no scene has no guard";
 }

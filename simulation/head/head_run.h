@@ -73,6 +73,9 @@ class HeadRun {
   void positions(double t, std::vector<double>& x);
   /// Computes the energies of own strands, J.
   void energies(double t, std::vector<models::HeadEnergy>& each);
+  /// Returns the energy that no work explains, of the strand of any rank that uses most
+  /// of its slack. All ranks call it.
+  Excess excess();
   /// Why dissipation() is empty; empty: it is not.
   std::string no_dissipation() const;
   /// Returns what the method has dissipated on all strands of all ranks, which all call

@@ -49,6 +49,12 @@ class LaneGuard final : public HeadGuard {
   std::string_view verdict(std::size_t place) const override {
     return strands_[place].verdict;
   }
+  /// Returns that of the strand that uses most of its slack.
+  Excess excess() const override {
+    Excess most;
+    for (const OfStrand& one : strands_) most.take(one.account.excess());
+    return most;
+  }
   /// Lanes compute no power of internal friction and of the clamp.
   std::string no_dissipation() const override {
     return "SIMD lanes compute no power of internal friction and of the clamp: give "

@@ -52,6 +52,13 @@ class ReplicatedHead::Judge final : public HeadGuard {
     return head_.strands_[place].verdict;
   }
 
+  Excess excess() const override {
+    Excess most;
+    for (const OfStrand& one : head_.strands_) {
+      if (one.run.guard) most.take(one.run.guard->excess());
+    }
+    return most;
+  }
   std::string no_dissipation() const override {
     if (head_.touching_) return std::string(touching_strands);
     return head_.strands_.front().run.no_dissipation();

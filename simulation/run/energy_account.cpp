@@ -36,6 +36,7 @@ void EnergyAccount::start(double t, const EnergyMeasure& begin, double slack) {
   work_ = 0;
   frame_ = begin.frame;
   lowest_ = begin.potential;
+  excess_ = 0;
 }
 
 void EnergyAccount::gather(double t, const EnergyMeasure& now) {
@@ -44,6 +45,7 @@ void EnergyAccount::gather(double t, const EnergyMeasure& now) {
   power_ = now.power;
   frame_ = std::max(frame_, now.frame);
   lowest_ = std::min(lowest_, now.potential);
+  excess_ = std::max(excess_, gain(now) - (allowed() - slack_));
 }
 
 double EnergyAccount::gain(const EnergyMeasure& now) const {
@@ -59,7 +61,7 @@ double EnergyAccount::fastest(double mass) const {
 }
 
 EnergyAccount::Memory EnergyAccount::memory() const {
-  return {energy_, slack_, seen_, power_, work_, frame_, lowest_};
+  return {energy_, slack_, seen_, power_, work_, frame_, lowest_, excess_};
 }
 
 void EnergyAccount::recall(In memory) {
@@ -70,6 +72,7 @@ void EnergyAccount::recall(In memory) {
   work_ = memory[4];
   frame_ = memory[5];
   lowest_ = memory[6];
+  excess_ = memory[7];
 }
 
 }  // namespace tress::simulation

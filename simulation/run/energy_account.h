@@ -22,6 +22,20 @@ struct EnergyMeasure {
   void move_with(const RootPose& root, const Points& p, In load, Out u);
 };
 
+/// Energy of a motion above that of its start and the work of its loads. Physics allows
+/// none of it, but the error of coarse steps does.
+struct Excess {
+  double gained = 0;  // largest so far, J
+  double slack = 0;   // largest that a guard lets pass, J
+
+  /// Returns the part of the slack that is used.
+  double share() const { return slack > 0 ? gained / slack : 0; }
+  /// Takes the one of two strands that uses more of its slack.
+  void take(const Excess& other) {
+    if (other.share() > share()) *this = other;
+  }
+};
+
 /// Bound of the energy of a motion. In a frame that moves with the clamp, the clamp does
 /// no work. A point of mass m has position x and velocity v. The frame has velocity w = V
 /// + omega x r there, and u = v - w. The loads of all effects are f. Their non-potential
@@ -57,13 +71,15 @@ class EnergyAccount {
   double seen() const { return seen_; }  // s, when gathered last
   /// Returns the energy above that of the start, J.
   double gain(const EnergyMeasure& now) const;
+  /// Returns the largest energy that no work explains since start().
+  Excess excess() const { return {excess_, slack_}; }
   /// Returns the bound of gain(), J.
   double allowed() const;
   /// Bound of the speed of a point (m/s) of a strand of so much mass (kg).
   double fastest(double mass) const;
 
   /// All data gathered since start(); another account that recalls them goes on there.
-  static constexpr std::size_t remembered = 7;
+  static constexpr std::size_t remembered = 8;
   /// Numbers of an account.
   using Memory = std::array<double, remembered>;
   /// Returns what start() and gather() have found.
@@ -74,7 +90,7 @@ class EnergyAccount {
  private:
   double energy_ = 0, slack_ = 0;  // at the start
   double seen_ = 0, power_ = 0;    // when gathered last
-  double work_ = 0, frame_ = 0, lowest_ = 0;
+  double work_ = 0, frame_ = 0, lowest_ = 0, excess_ = 0;
 };
 
 }  // namespace tress::simulation

@@ -60,6 +60,8 @@ class Guard {
   /// Returns the dissipation of the method until the last check. Meaningless where
   /// impulses or other strands act.
   MethodDissipation dissipation() const;
+  /// Returns the energy that no work explains, at most until the last check.
+  Excess excess() const { return account_.excess(); }
 
   /// All data gathered since start(); recall() lets another guard of an identically
   /// constructed system continue from there.

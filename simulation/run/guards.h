@@ -57,6 +57,13 @@ class Guards {
     return sum;
   }
 
+  /// Returns the excess of the part that uses most of its slack.
+  Excess excess() const {
+    Excess most;
+    for (const Part& part : parts_) most.take(part.guard.excess());
+    return most;
+  }
+
   /// Returns the number of entries of memory().
   std::size_t remembered() const { return Guard::remembered * parts_.size(); }
   /// Returns all data gathered since start().

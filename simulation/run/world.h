@@ -91,6 +91,8 @@ class World {
   /// changes by other means than power: impulses of rigid contact and of friction between
   /// strands, other strands that move.
   std::optional<MethodDissipation> dissipation() const;
+  /// Returns the energy that no work explains, of the system that uses most of its slack.
+  Excess excess() const;
   /// Returns the reason why dissipation() is empty; empty: it is not.
   std::string no_dissipation() const;
   /// Returns the largest depth of a strand in a body since the last call, m. Looks at the

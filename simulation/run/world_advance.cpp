@@ -116,6 +116,14 @@ std::optional<MethodDissipation> World::dissipation() const {
   return sum;
 }
 
+Excess World::excess() const {
+  Excess most;
+  for (const Body& body : bodies_) {
+    if (body.guard) most.take(body.guard->excess());
+  }
+  return most;
+}
+
 std::string World::no_dissipation() const {
   if (!couplings_.empty()) return std::string(touching_strands);
   for (const Body& body : bodies_) {
