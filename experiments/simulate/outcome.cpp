@@ -51,9 +51,8 @@ constexpr Column columns_of_outcome[] = {
      "method_dissipated_j over the energy of the motion: the highest above the "
      "lowest potential, and the work put in"},
     {"energy_excess_j",
-     "largest energy of a strand above that of its start and the work of its loads, of "
-     "the strand that uses most of the guard's slack. Error of the steps: physics allows "
-     "none"},
+     "largest energy above the start and the work of the loads, of the strand that uses "
+     "most of the guard's slack. Physics allows none: it is an error of the steps"},
     {"energy_excess_rel",
      "energy_excess_j over the slack, at which the guard ends the run"},
     {"not_smooth", "reason why the motion is not smooth, where forces jump"},
