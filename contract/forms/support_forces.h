@@ -10,7 +10,7 @@ namespace tress {
 /// Work of natural strains that move over a step, at the places of its start and of its
 /// end, J. The mean of both is exact where strains move linearly.
 struct NaturalWork {
-  double at_start = 0, at_end = 0;
+  double at_start = 0, at_end = 0;  // at the places of the start, of the end
 };
 
 /// Forces of the supports that hold points of a strand, an optional capability of

@@ -40,7 +40,7 @@ struct Joint {
   /// Sections of the rod at both ends at the start, seen from those that the model has
   /// where half an edge is natural. None: the halves begin in their natural shape at
   /// t = 0.
-  std::optional<Frame> begin_a{}, begin_b{};
+  std::optional<Frame> begin_a{}, begin_b{};  // at either end
 };
 
 }  // namespace tress::models

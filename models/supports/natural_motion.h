@@ -15,7 +15,7 @@ class NaturalMotion {
   /// Natural turns of half an edge at the ends of a strand, from the middle of the edge
   /// to its end. They are twist and the two curvatures, rad.
   struct Halves {
-    Vec root{}, tip{};
+    Vec root{}, tip{};  // at the root, at the tip
   };
   /// Returns the halves of a strand in its natural shape.
   static Halves halves(const Strand& strand);

@@ -17,6 +17,7 @@ namespace tress::simulation {
 /// thickness in a step.
 class HeadPassages {
  public:
+  /// Takes the search that it decides about.
   explicit HeadPassages(BodyPassages passages) : passages_(std::move(passages)) {}
 
   /// Returns whether the step of h from t (s) must be searched.

@@ -27,7 +27,7 @@ class BodyDepth {
     double deepest = 0;                   // m, at the ends of steps and on passages
     std::optional<MissedContact> missed;  // the first
   };
-  Seen seen;
+  Seen seen;  // so far
 
  private:
   BodyPassages passages_;

@@ -41,8 +41,8 @@ class EdgeModel {
   using V = Vec3<Real>;
   /// Frame and motion of the root.
   using Clamp = LaneClamp<Real>;
-  static constexpr bool straight = true;  // whether elements are straight
-  static constexpr bool takes_bodies = true;
+  static constexpr bool straight = true;         // whether elements are straight
+  static constexpr bool takes_bodies = true;     // whether bodies may touch them
   static constexpr double most_stretched = 1.5;  // runs end where an edge is longer
   static constexpr double newton_part = 1e-2;    // as Block::newton_part()
   /// Remedy of errors.
