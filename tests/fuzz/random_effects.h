@@ -36,7 +36,7 @@ class Draw {
 };
 
 /// A body that strands touch, with regularised friction.
-std::string body(Draw& draw, double reach);
+std::string body(Draw& draw);
 /// A sphere that moves towards strands of this length by its own keyframes.
 std::string moving_body(Draw& draw, double length);
 /// Wind; always drawn.

@@ -66,7 +66,7 @@ std::string with_lanes(Draw& draw) {
     text += fmt::format("[effects.linear_drag]\ndrag_kg_m_s = {:.3g}\n",
                         draw.of_size(1e-6, 1e-2));
   }
-  if (draw.chance(0.4)) text += body(draw, length);
+  if (draw.chance(0.4)) text += body(draw);
   if (single && !nodes && draw.chance(0.3)) text += wind(draw);
   if (single && !nodes) text += further(draw, length);
   if (single && !nodes && draw.chance(0.2)) {
@@ -128,7 +128,7 @@ std::string effects(Draw& draw, double length, int count) {
   text += further(draw, length);
   if (draw.chance(0.15)) text += "[effects.self_contact]\n";
   if (draw.chance(0.25)) {
-    text += body(draw, length) + (draw.chance(0.4) ? "friction_law = \"exact\"\n" : "");
+    text += body(draw) + (draw.chance(0.4) ? "friction_law = \"exact\"\n" : "");
   }
   if (count > 1 && draw.chance(0.2)) {
     text += fmt::format("[effects.strand_interaction]\ncoupling = \"{}\"\n",

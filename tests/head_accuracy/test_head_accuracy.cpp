@@ -312,7 +312,7 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
   for (const Bad& bad :
        {Bad{"--scene strand.toml", "a [strand] cannot be combined with hairs",
             "give [groom]s only"},
-        Bad{"--scene der.toml", "no SIMD lanes for der", "super_helix"},
+        Bad{"--scene spline.toml", "no SIMD lanes for dynamic_spline", "super_helix"},
         Bad{"--scene springs.toml", "mass_spring: work is that of super-helices",
             "super_helix"},
         Bad{"--scene none.toml", "none.toml", "existing"},
@@ -323,8 +323,9 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
         Bad{"--elements 5", "--elements", "leave it out"}}) {
     Toy toy;
     toy.write("strand.toml", strand_scene);
-    toy.write("der.toml",
-              "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"der\"\n[groom]\n");
+    toy.write(
+        "spline.toml",
+        "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"dynamic_spline\"\n[groom]\n");
     toy.write("springs.toml",
               "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"mass_spring\"\n"
               "jacobian = \"filtered\"\n[integrator]\nid = \"linearly_implicit_euler\"\n"
