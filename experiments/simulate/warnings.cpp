@@ -57,7 +57,7 @@ std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
     all.push_back(fmt::format(
         "strand {} (segment {}) passed through {} within the step to t = {:.9g} s, "
         "{:.2g} m deep: contact acts at the ends of steps and did not see it; take a {} "
-        "below {:.2g}, or a thicker body",
+        "below {:.2g}, and elements no longer than the body is thick, or a thicker body",
         run.passed->strand, missed.point == 0 ? 0 : missed.point - 1,
         simulation::effect_names(scene)[missed.body], missed.t, missed.depth,
         scene.chooses_steps() ? "max_step_s" : "dt_s", missed.needed));

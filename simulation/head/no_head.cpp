@@ -222,6 +222,14 @@ std::optional<NoHead> no_effects(const Scene& scene) {
         return NoHead{fmt::format("[effects.{}], as {}", choice.entry->id, no->reason),
                       "leave it out"};
       }
+      if (steps_rods(scene) && !has_exact_tangent(scene) &&
+          effect->rigid_contact() != nullptr &&
+          choice.parameters.number("friction") > 0) {
+        return NoHead{fmt::format("[effects.{}] with friction on der by {}, whose single "
+                                  "correction needs all derivatives of the friction",
+                                  choice.entry->id, scene.integrator),
+                      "give friction = 0, or use [integrator] id = \"backward_euler\""};
+      }
       if (!bodies.empty() && needs_one_correction(scene, choice)) {
         return NoHead{fmt::format("[effects.{}] with {}", choice.entry->id, bodies),
                       with_others(scene)};

@@ -58,8 +58,8 @@ TEST_P(DissipationOfBatches, IsTheSumOverItsStrands) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, DissipationOfBatches,
-                         testing::Values("dynamic_spline", "kirchhoff_nodal",
-                                         "force_transport", "lifted_curls"),
+                         testing::Values("kirchhoff_nodal", "force_transport",
+                                         "lifted_curls"),
                          [](const auto& of) { return std::string(of.param); });
 
 // Lanes refuse; strands by themselves keep the account that the reason names.
@@ -82,7 +82,7 @@ TEST(DissipationOfBatches, IsRefusedForTheSameReasonsAsOfStrands) {
                   "impulses of exact contact"},
         std::pair{"[effects.strand_interaction]\ncoupling = \"lagged\"\n",
                   "strands that touch"}}) {
-    const Accounts of = accounts("dynamic_spline", "backward_euler", rest);
+    const Accounts of = accounts("lifted_curls", "backward_euler", rest);
     EXPECT_FALSE(of.batch->dissipation()) << reason;
     EXPECT_THAT(of.batch->no_dissipation(), testing::HasSubstr(reason));
     EXPECT_EQ(of.strands->no_dissipation(), of.batch->no_dissipation());

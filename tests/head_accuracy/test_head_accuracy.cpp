@@ -312,7 +312,7 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
   for (const Bad& bad :
        {Bad{"--scene strand.toml", "a [strand] cannot be combined with hairs",
             "give [groom]s only"},
-        Bad{"--scene spline.toml", "no SIMD lanes for dynamic_spline", "super_helix"},
+        Bad{"--scene curls.toml", "no SIMD lanes for lifted_curls", "super_helix"},
         Bad{"--scene springs.toml", "mass_spring: work is that of super-helices",
             "super_helix"},
         Bad{"--scene none.toml", "none.toml", "existing"},
@@ -324,8 +324,8 @@ TEST(HeadAccuracy, BadInputIsOneLineAndExitCodeTwo) {
     Toy toy;
     toy.write("strand.toml", strand_scene);
     toy.write(
-        "spline.toml",
-        "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"dynamic_spline\"\n[groom]\n");
+        "curls.toml",
+        "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"lifted_curls\"\n[groom]\n");
     toy.write("springs.toml",
               "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"mass_spring\"\n"
               "jacobian = \"filtered\"\n[integrator]\nid = \"linearly_implicit_euler\"\n"

@@ -985,6 +985,12 @@ INSTANTIATE_TEST_SUITE_P(
                     .integrator = "id = \"linearly_implicit_midpoint\"\ndt_s = 1e-3\n"},
                    "der by linearly_implicit_midpoint",
                    "\"backward_euler\""},
+        Replicated{"DerOnceWithFriction",
+                   {.model = "id = \"der\"\njacobian = \"elastic\"\n",
+                    .more = "[[effects.body]]\nshape = \"sphere\"\nradius_m = "
+                            "0.09\nfriction = 0.3\n"},
+                   "with friction on der by linearly_implicit_euler",
+                   "friction = 0"},
         Replicated{"RodsOfQuaternionsOnce",
                    {.model = "id = \"corde\"\n"},
                    "linearly_implicit_euler with an exact Jacobian",

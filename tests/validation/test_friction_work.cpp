@@ -101,8 +101,8 @@ TEST_P(FrictionWork, IsNotDoneOnASlide) {
               all.driven, all.steps, all.fastest);
 }
 
-/// Every scene with every model by a quarter of one of its runs in turn, or by a sixteenth
-/// of each other, which are `more`.
+/// Every scene with every model by a quarter of one of its runs in turn, or by a
+/// sixteenth of each other, which are `more`.
 std::vector<Rubbing> rubbing(bool more) {
   std::vector<Rubbing> all;
   std::size_t turn = 0;
