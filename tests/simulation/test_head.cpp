@@ -989,7 +989,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {.model = "id = \"der\"\njacobian = \"elastic\"\n",
                     .more = "[[effects.body]]\nshape = \"sphere\"\nradius_m = "
                             "0.09\nfriction = 0.3\n"},
-                   "with friction on der by linearly_implicit_euler",
+                   "[effects.body] with friction on der by linearly_implicit_euler",
                    "friction = 0"},
         Replicated{"RodsOfQuaternionsOnce",
                    {.model = "id = \"corde\"\n"},
