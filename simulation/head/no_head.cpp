@@ -61,6 +61,13 @@ std::optional<NoHead> no_integrator(const Scene& scene) {
                 "\"tr_bdf2\""};
 }
 
+/// An option of the model that lanes have with this word only.
+std::optional<NoHead> no_other(const Parameters& p, const char* key,
+                               std::string_view word) {
+  if (p.word(key) == word) return {};
+  return no_option(p, key, fmt::format("give [model] {} = \"{}\"", key, word));
+}
+
 /// Lanes eliminate along the strand.
 std::optional<NoHead> no_solver(const Parameters& p) {
   if (p.word("solver") == "auto") return {};
@@ -70,12 +77,8 @@ std::optional<NoHead> no_solver(const Parameters& p) {
 std::optional<NoHead> no_springs(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (auto no = no_integrator(scene)) return no;
-  if (p.word("bending") != "angular") {
-    return no_option(p, "bending", "give [model] bending = \"angular\"");
-  }
-  if (p.word("torsion") != "none") {
-    return no_option(p, "torsion", "give [model] torsion = \"none\"");
-  }
+  if (auto no = no_other(p, "bending", "angular")) return no;
+  if (auto no = no_other(p, "torsion", "none")) return no;
   if (auto no = no_solver(p)) return no;
   return no_jacobian(scene, "filtered");
 }
@@ -83,12 +86,8 @@ std::optional<NoHead> no_springs(const Scene& scene) {
 std::optional<NoHead> no_rods(const Scene& scene) {
   const Parameters& p = scene.model_options;
   if (auto no = no_integrator(scene)) return no;
-  if (p.word("stretch") != "extensible") {
-    return no_option(p, "stretch", "give [model] stretch = \"extensible\"");
-  }
-  if (p.word("twist") != "dynamic") {
-    return no_option(p, "twist", "give [model] twist = \"dynamic\"");
-  }
+  if (auto no = no_other(p, "stretch", "extensible")) return no;
+  if (auto no = no_other(p, "twist", "dynamic")) return no;
   if (auto no = no_solver(p)) return no;
   // Lanes leave out how friction changes with lengthening (DerForces::ByLengthening):
   // iterations mend that, a single correction does not.
@@ -104,9 +103,7 @@ std::optional<NoHead> no_rods(const Scene& scene) {
 
 std::optional<NoHead> no_quaternions(const Scene& scene) {
   const Parameters& p = scene.model_options;
-  if (p.word("coordinates") != "quaternion") {
-    return no_option(p, "coordinates", "give [model] coordinates = \"quaternion\"");
-  }
+  if (auto no = no_other(p, "coordinates", "quaternion")) return no;
   if (auto no = no_integrator(scene)) return no;
   // Long steps of a motion that is not smooth have several solutions, and a lane has
   // fewer ways to stay on one of them than a strand by itself.

@@ -39,10 +39,9 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
     std::vector<Real> tensions;  // of take_stresses()
   };
 
-  /// `units`, which are whole with the first strand, must outlive it.
+  /// As EdgeModel.
   DerModel(const LaneOptions& options, const HeadUnits& units)
-      : Base(options),
-        units_(units),
+      : Base(options, units),
         turning_(options.rotary_inertia),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -88,17 +87,10 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   Real renew(Element* elements, const Clamp& clamp, Real* q, Real* v) const {
     return kernel_.renew(elements, clamp, q, v);
   }
-  /// Exact ones are found at the states of newton() and again().
-  void find_loads(const Strand& strand, std::span<const NearBody> bodies,
-                  const RootPose& pose, const HeadUnits& /*units*/, double h,
-                  const Real* q, const Real* v, Scratch& scratch) const {
-    scratch.loads.meet(bodies, units_, h, Base::root_at(strand, pose.frame),
-                       strand.material, q, v, Kernel::per_element);
-  }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
-    const auto* loads = loads_at(strand, q, v, scratch);
+    const auto* loads = Base::loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
       size = kernel_.newton(strand.material, elements, clamp, w, q, v, a, loads,
@@ -110,7 +102,7 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
-    const auto* loads = loads_at(strand, q, v, scratch);
+    const auto* loads = Base::loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a, loads,
@@ -133,12 +125,6 @@ class DerModel : public EdgeModel<Pack, DerStrand<Pack, exact>::per_element> {
   }
 
  private:
-  const typename Kernel::Load* loads_at(const Strand& strand, const Real* q,
-                                        const Real* v, Scratch& scratch) const {
-    return scratch.loads.at(units_, strand.material, q, v, Kernel::per_element);
-  }
-
-  const HeadUnits& units_;
   bool turning_;
   Kernel kernel_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "contract/basics.h"
 #include "math/instructions.h"
@@ -10,6 +11,7 @@
 #include "models/head/head.h"
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
+#include "models/head/near_bodies.h"
 #include "models/maximal/nodal_strand.h"
 #include "models/motion/root_motion.h"
 
@@ -49,9 +51,11 @@ class EdgeModel {
   static constexpr const char* use_others =
       "use super_helix, or run the strands one by one";
 
-  /// Reads the options common to all such models.
-  explicit EdgeModel(const LaneOptions& options)
-      : n_(static_cast<std::size_t>(options.elements)),
+  /// Reads the options common to all such models. `units`, which are whole with the first
+  /// strand, must outlive this.
+  EdgeModel(const LaneOptions& options, const HeadUnits& units)
+      : units_(units),
+        n_(static_cast<std::size_t>(options.elements)),
         drag_(options.drag),
         mass_damping_(options.mass_damping) {}
 
@@ -164,6 +168,21 @@ class EdgeModel {
     }
   }
 
+  /// Begins the loads of a stage, the `loads` (EdgeLoads) of a model's Scratch.
+  template <class Strand, class Scratch>
+  void find_loads(const Strand& strand, std::span<const NearBody> bodies,
+                  const RootPose& pose, const HeadUnits& /*units*/, double h,
+                  const Real* q, const Real* v, Scratch& scratch) const {
+    scratch.loads.meet(bodies, units_, h, root_at(strand, pose.frame), strand.material, q,
+                       v, per_element);
+  }
+  /// Returns those at a state of the stage; null: none.
+  template <class Strand, class Scratch>
+  const auto* loads_at(const Strand& strand, const Real* q, const Real* v,
+                       Scratch& scratch) const {
+    return scratch.loads.at(units_, strand.material, q, v, per_element);
+  }
+
   /// The root, seen from the head's position.
   template <class Strand>
   static V root_at(const Strand& strand, const Frame& head) {
@@ -173,6 +192,7 @@ class EdgeModel {
  private:
   static FrameOf<Real> frame_of(const Frame& f) { return {f.e0, f.e1, f.e2}; }
 
+  const HeadUnits& units_;
   std::size_t n_;
   double drag_, mass_damping_;  // kg/(m s), 1/s
 };

@@ -38,10 +38,9 @@ class QuaternionModel
     EdgeLoads<Real, true> loads;
   };
 
-  /// `units`, which are whole with the first strand, must outlive it.
+  /// As EdgeModel.
   QuaternionModel(const LaneOptions& options, const HeadUnits& units)
-      : Base(options),
-        units_(units),
+      : Base(options, units),
         kind_(rod_kind<EdgeOf<double>>(options.model ? &*options.model : nullptr)),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
@@ -99,22 +98,15 @@ class QuaternionModel
              Real* /*v*/) const {
     return Real(0);
   }
-  /// They are found at the states of newton() and again().
-  void find_loads(const Strand& strand, std::span<const NearBody> bodies,
-                  const RootPose& pose, const HeadUnits& /*units*/, double /*h*/,
-                  const Real* q, const Real* v, Scratch& scratch) const {
-    scratch.loads.meet(bodies, units_, 0, Base::root_at(strand, pose.frame),
-                       strand.material, q, v, Kernel::per_element);
-  }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
     Real size;
     by_registers_of<Real>([&] {
-      size =
-          kernel_.newton(strand.material, elements, clamp, w, q, v, a,
-                         loads(strand, q, v, scratch), correction, scratch.factors.data(),
-                         scratch.forces.data(), scratch.stresses.data());
+      size = kernel_.newton(strand.material, elements, clamp, w, q, v, a,
+                            Base::loads_at(strand, q, v, scratch), correction,
+                            scratch.factors.data(), scratch.forces.data(),
+                            scratch.stresses.data());
     });
     return size;
   }
@@ -124,7 +116,7 @@ class QuaternionModel
     Real size;
     by_registers_of<Real>([&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a,
-                           loads(strand, q, v, scratch), correction,
+                           Base::loads_at(strand, q, v, scratch), correction,
                            scratch.factors.data(), scratch.forces.data());
     });
     return size;
@@ -141,12 +133,6 @@ class QuaternionModel
   }
 
  private:
-  const auto* loads(const Strand& strand, const Real* q, const Real* v,
-                    Scratch& scratch) const {
-    return scratch.loads.at(units_, strand.material, q, v, Kernel::per_element);
-  }
-
-  const HeadUnits& units_;
   QuaternionRodKind<EdgeOf<double>> kind_;
   Kernel kernel_;
 };

@@ -40,10 +40,9 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
     std::vector<Real> tensions;  // of take_stresses()
   };
 
-  /// `units`, which are whole with the first strand, must outlive it.
+  /// As EdgeModel.
   SpringModel(const LaneOptions& options, const HeadUnits& units)
-      : Base(options),
-        units_(units),
+      : Base(options, units),
         kernel_(options.elements,
                 V((units.time * units.time / units.length) * options.gravity)) {}
 
@@ -84,17 +83,10 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
     return Real(0);
   }
 
-  /// Exact ones are found at the states of newton() and again().
-  void find_loads(const Strand& strand, std::span<const NearBody> bodies,
-                  const RootPose& pose, const HeadUnits& /*units*/, double h,
-                  const Real* q, const Real* v, Scratch& scratch) const {
-    scratch.loads.meet(bodies, units_, h, Base::root_at(strand, pose.frame),
-                       strand.material, q, v, Kernel::per_element);
-  }
   Real newton(const Strand& strand, const Element* elements, const Clamp& clamp,
               Weights w, const Real* q, const Real* v, const Real* a, Real* correction,
               Scratch& scratch) const {
-    const auto* loads = loads_at(strand, q, v, scratch);
+    const auto* loads = Base::loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
       const auto solve = [&](auto*... tensions) {
@@ -113,7 +105,7 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   Real again(const Strand& strand, const Element* elements, const Clamp& clamp, Weights w,
              const Real* q, const Real* v, const Real* a, Real* correction,
              Scratch& scratch) const {
-    const auto* loads = loads_at(strand, q, v, scratch);
+    const auto* loads = Base::loads_at(strand, q, v, scratch);
     Real size;
     by_registers_of<Real>([&] {
       size = kernel_.again(strand.material, elements, clamp, w, q, v, a, loads,
@@ -135,12 +127,6 @@ class SpringModel : public EdgeModel<Pack, SpringStrand<Pack, exact>::per_elemen
   }
 
  private:
-  const typename Kernel::Load* loads_at(const Strand& strand, const Real* q,
-                                        const Real* v, Scratch& scratch) const {
-    return scratch.loads.at(units_, strand.material, q, v, Kernel::per_element);
-  }
-
-  const HeadUnits& units_;
   Kernel kernel_;
 };
 
