@@ -133,15 +133,18 @@ double points_apart(const std::string& batch, const std::string& strands) {
   const auto one = frames_of(batch), other = frames_of(strands);
   if (one.size() != other.size()) return never;
   double most = 0, low = never, high = -never;
+  bool compared = false;
   for (std::size_t f = 0; f < one.size(); ++f) {
-    // Curves are drawn with as many points as they bend: others of another motion.
+    // A curve's number of points follows its bending, so a frame can have another one.
     if (one[f].size() != other[f].size()) continue;
+    compared = true;
     for (std::size_t i = 0; i < one[f].size(); ++i) {
       most = std::max(most, std::abs(one[f][i] - other[f][i]));
       low = std::min(low, other[f][i]);
       high = std::max(high, other[f][i]);
     }
   }
+  if (!compared) return never;
   return most > 0 ? most / (high - low) : 0;
 }
 

@@ -28,8 +28,9 @@ struct Apart {
 /// all uniform loads.
 Apart apart(const Columns& batch, const Columns& strands, std::size_t rows);
 
-/// Largest difference of the points of all frames of two .usda files, over the extent of
-/// the strands; infinite where they have other numbers of frames or points.
+/// Largest difference of the points of two .usda files, over the extent of the strands.
+/// Frames with the same number of points are compared; infinite where there is none, or
+/// where the files have different numbers of frames.
 double points_apart(const std::string& batch, const std::string& strands);
 
 /// A strand that failed, as a program prints it.

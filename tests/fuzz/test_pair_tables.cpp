@@ -45,13 +45,12 @@ TEST(PairTables, CompareTheColumnsThatBothHave) {
   EXPECT_EQ(apart(table, other, 2).most(), 0);
 }
 
-std::string usd(const std::string& name, const std::string& last) {
+std::string usd(const std::string& name, const std::string& last,
+                const std::string& first = "1, 0, 0") {
   const auto file = std::filesystem::temp_directory_path() / ("tress_pair_" + name);
   std::ofstream(file)
-      << "    point3f[] points.timeSamples = {\n"
-         "            0: [(0, 0, 0), (1, 0, 0)],\n            1.5: [(0, 0, "
-         "0), (" +
-             last + ")],\n    }\n";
+      << "    point3f[] points.timeSamples = {\n            0: [(0, 0, 0), (" + first +
+             ")],\n            1.5: [(0, 0, 0), (" + last + ")],\n    }\n";
   return file.string();
 }
 
@@ -59,7 +58,10 @@ TEST(PairTables, ComparePointsOfAllFrames) {
   const std::string one = usd("one", "1, 0.5, 0");
   EXPECT_EQ(points_apart(one, one), 0);
   EXPECT_DOUBLE_EQ(points_apart(usd("other", "1, 0.25, 0"), one), 0.25);
-  EXPECT_TRUE(std::isinf(points_apart(usd("more", "1, 0.5, 0), (1, 1, 1"), one)));
+  const std::string more = usd("more", "1, 0.5, 0), (1, 1, 1", "1, 0.25, 0");
+  EXPECT_DOUBLE_EQ(points_apart(more, one), 0.25);
+  const std::string others = usd("others", "1, 1, 1), (1, 1, 1", "1, 1, 1), (1, 1, 1");
+  EXPECT_TRUE(std::isinf(points_apart(others, one)));
   EXPECT_TRUE(std::isinf(points_apart("none", one)));
 }
 
