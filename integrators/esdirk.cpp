@@ -123,7 +123,7 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
   stage_.places(t, q, v, place_);
   stage_.slides(t, q, v, slides_[0]);
   impact_ = stopped(t, q, v, gently);
-  if (impact_) return damped(t, h, q, v);
+  if (impact_) return damped(t, h, q, v, gently);
   std::ranges::copy(v, v_[0].begin());
   std::ranges::copy(a, a_[0].begin());
   std::ranges::copy(lambda, lambda_.begin());
@@ -149,17 +149,18 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
     stage_.slides(t + h * table_.c(i), stage_.q(), stage_.v(), slides_[i]);
   }
   impact_ = stopped(t, q, v, gently);
-  return impact_ ? damped(t, h, q, v) : Status::ok;
+  return impact_ ? damped(t, h, q, v, gently) : Status::ok;
 }
 
-Status EsdirkStages::backward_euler(double t, double h, In q, In v) noexcept {
+Status EsdirkStages::backward_euler(double t, double h, In q, In v,
+                                    double gently) noexcept {
   stage_.leave(t, q);
   stage_.places(t, q, v, place_);
-  return damped(t, h, q, v);
+  return damped(t, h, q, v, gently);
 }
 
 /// From where step() and backward_euler() have left the stage.
-Status EsdirkStages::damped(double t, double h, In q, In v) noexcept {
+Status EsdirkStages::damped(double t, double h, In q, In v, double gently) noexcept {
   forget();
   shifted(q_bar_, q, h, v);
   std::ranges::copy(place_, stage_.place_bar().begin());
@@ -168,7 +169,9 @@ Status EsdirkStages::damped(double t, double h, In q, In v) noexcept {
   if (s != Status::ok) return s;
   for (std::size_t i = 0; i < q.size(); ++i) v_[0][i] = stage_.q()[i] - q_bar_[i];
   std::ranges::copy(stage_.v(), v_[last()].begin());
-  if (ContactForm* contacts = dynamics_.system().contact_form()) contacts->release();
+  // Forces of an impulse over h do not act on. Those of contacts without one do: without
+  // them the next step would start from a free acceleration, and could slip.
+  if (stopped(t, q, v, gently)) dynamics_.system().contact_form()->release();
   return dynamics_.accelerate(t + h, stage_.q(), stage_.v(), a_[last()], lambda_);
 }
 

@@ -61,7 +61,7 @@ class EsdirkStages {
               Effort effort = Effort::whole) noexcept;
 
   /// A backward Euler step instead, which also ends with consistent accelerations.
-  Status backward_euler(double t, double h, In q, In v) noexcept;
+  Status backward_euler(double t, double h, In q, In v, double gently) noexcept;
 
   /// The next step does not guess from the last one.
   void forget() { steps_.forget(); }
@@ -81,7 +81,7 @@ class EsdirkStages {
 
  private:
   bool stopped(double t, In q, In v, double gently) noexcept;
-  Status damped(double t, double h, In q, In v) noexcept;
+  Status damped(double t, double h, In q, In v, double gently) noexcept;
   std::size_t last() const { return table_.stages - 1; }
   void guess(std::size_t i, double h) noexcept;
 

@@ -56,12 +56,13 @@ class Guarded final : public FixedStep, public Impulsive {
   void lose_matrix() override { dynamics_.lose_matrix(); }
 
   Status step(double t, double h) override {
-    Status s = stages_.step(t, h, q_, v_, a_, lambda_, h * earth_gravity);
+    const double gently = h * earth_gravity;
+    Status s = stages_.step(t, h, q_, v_, a_, lambda_, gently);
     if (s == Status::fatal) return s;
     if (s == Status::retry || gains(t, h)) {
       ++dynamics_.stats.replaced;
       dynamics_.reached = 0;
-      s = stages_.backward_euler(t, h, q_, v_);
+      s = stages_.backward_euler(t, h, q_, v_, gently);
     }
     take_end(stages_);
     return s;

@@ -104,9 +104,7 @@ TEST_P(TurningBody, WhatSticksStaysWhereItIs) {
         farthest = std::max(farthest, norm(load3(&now[i]) - load3(&start[i])));
       }
     }
-    // guarded_esdirk43 creeps by 2e-6 m in 3 s with der and corde.
-    const bool creeps = GetParam().integrator == "guarded_esdirk43";
-    EXPECT_LT(farthest, creeps ? 3e-6 : 1e-6) << step;
+    EXPECT_LT(farthest, 1e-6) << step;
   }
 }
 
