@@ -25,7 +25,8 @@ std::string_view remedy_of_energy(const Scene& scene) {
              : "take a shorter dt_s, or a method of order 2, such as tr_bdf2";
 }
 
-/// Part of the slack of the guard from which on a run prints what it used.
+/// Part of the slack of the guard from which on a run prints what it used. A run that
+/// used all of it ended, and said so.
 constexpr double told_excess = 0.1;
 
 }  // namespace
@@ -35,15 +36,14 @@ std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
   if (run.dissipation && simulation::warns(*run.dissipation)) {
     const MethodDissipation& of = *run.dissipation;
     all.push_back(fmt::format(
-        "{} {} {:.2g} J (within {:.2g} J), {:.2g} % of the energy of the motion: {}",
+        "{} {} {:.2g} J (within {:.2g} J), {:.3g} % of the energy of the motion: {}",
         scene.integrator, of.dissipated > 0 ? "dissipated" : "created",
         std::abs(of.dissipated), of.uncertain, 100 * std::abs(of.share()),
         remedy_of_energy(scene)));
-  } else if (run.excess.share() > told_excess) {
+  } else if (run.excess.share() > told_excess && run.excess.share() <= 1) {
     all.push_back(fmt::format(
-        "a strand had {:.2g} J more energy than its start and its loads explain, {:.2g} "
-        "% "
-        "of the slack that the guard allows for coarse steps: {}",
+        "a strand had {:.2g} J more energy than its start and its loads explain, "
+        "{:.3g} % of the slack that the guard allows for coarse steps: {}",
         run.excess.gained, 100 * run.excess.share(), remedy_of_energy(scene)));
   }
   if (!run.not_smooth.empty()) {

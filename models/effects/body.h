@@ -52,6 +52,9 @@ class Body final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return contact_.body.penetration(t, x);
   }
+  double surface_speed(double t, In x) const override {
+    return contact_.body.surface_speed(t, x);
+  }
   double next_breakpoint(double t) const noexcept override {
     return contact_.body.next_breakpoint(t);
   }

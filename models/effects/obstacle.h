@@ -25,6 +25,9 @@ class Obstacle final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return body_->penetration(t, x);
   }
+  double surface_speed(double t, In x) const override {
+    return body_->surface_speed(t, x);
+  }
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
   /// Returns shape, place and motion.
   const RigidBody& body() const { return *body_; }

@@ -118,19 +118,37 @@ bool RigidBody::reaches(const BodyPose& now, const Ball& ball) const {
       shape_);
 }
 
-double RigidBody::penetration(double t, In x) const {
-  const BodyPose now = pose(t);
-  double deepest = 0;
+/// Calls see(place, distance) for the points at x in contact with the surface.
+template <class See>
+void RigidBody::for_touching(const BodyPose& now, In x, See see) const {
   const auto look = [&](const auto& shape) {
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
+      const Vec place = load3(&x[i]);
       NearestOf<double> at;
-      if (nearest(shape, now.frame.back(load3(&x[i]) - now.x), offset_, at)) {
-        deepest = std::max(deepest, offset_ - at.to.value);
+      if (nearest(shape, now.frame.back(place - now.x), offset_, at)) {
+        see(place, at.to.value);
       }
     }
   };
   std::visit(look, shape_);
+}
+
+double RigidBody::penetration(double t, In x) const {
+  double deepest = 0;
+  for_touching(pose(t), x, [&](const Vec&, double distance) {
+    deepest = std::max(deepest, offset_ - distance);
+  });
   return deepest;
+}
+
+double RigidBody::surface_speed(double t, In x) const {
+  if (!motion_) return 0;
+  const BodyPose now = pose(t);
+  double fastest = 0;
+  for_touching(now, x, [&](const Vec& place, double) {
+    fastest = std::max(fastest, norm(now.surface_velocity(place)));
+  });
+  return fastest;
 }
 
 }  // namespace tress::models

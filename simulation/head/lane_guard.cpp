@@ -95,7 +95,9 @@ class LaneGuard::Reader {
     if (!sees_points()) return now;
     each_effect([&](const Effect& effect) {
       now.potential += potential(effect);
-      if (guard_.works_) now.power += effect.power(t_, points());
+      if (!guard_.works_) return;
+      now.power += effect.power(t_, points());
+      now.touch(effect, t_, points().x, one.mass);
     });
     if (!guard_.moves_) return now;
     std::ranges::fill(load_, 0.0);

@@ -18,10 +18,15 @@ void EnergyMeasure::move_with(const RootPose& root, const Points& p, In load, Ou
     const Vec turning = cross(root.omega, r), w = root.v + turning, relative = v - w;
     const Vec carried = root.a + cross(root.alpha, r) + cross(root.omega, turning);
     kinetic += m * (dot(w, w) / 2 - dot(v, w));
-    frame += m * dot(w, w) / 2;
+    driven += m * dot(w, w) / 2;
     power -= dot(load3(&load[3 * i]), w) + m * dot(carried, relative);
     store3(relative, &u[3 * i]);
   }
+}
+
+void EnergyMeasure::touch(const Effect& effect, double t, In x, double mass) {
+  const double speed = effect.surface_speed(t, x);
+  driven += mass * speed * speed / 2;
 }
 
 double EnergyAccount::share(double kinetic, double elastic) {
@@ -34,7 +39,7 @@ void EnergyAccount::start(double t, const EnergyMeasure& begin, double slack) {
   seen_ = t;
   power_ = begin.power;
   work_ = 0;
-  frame_ = begin.frame;
+  driven_ = begin.driven;
   lowest_ = begin.potential;
   excess_ = 0;
 }
@@ -43,7 +48,7 @@ void EnergyAccount::gather(double t, const EnergyMeasure& now) {
   work_ += std::max({0.0, power_, now.power}) * (t - seen_) + now.work;
   seen_ = t;
   power_ = now.power;
-  frame_ = std::max(frame_, now.frame);
+  driven_ = std::max(driven_, now.driven);
   lowest_ = std::min(lowest_, now.potential);
   excess_ = std::max(excess_, gain(now) - (allowed() - slack_));
 }
@@ -53,7 +58,7 @@ double EnergyAccount::gain(const EnergyMeasure& now) const {
 }
 
 double EnergyAccount::allowed() const {
-  return slack_ + (1 + sound_share) * work_ + frame_;
+  return slack_ + (1 + sound_share) * work_ + driven_;
 }
 
 double EnergyAccount::fastest(double mass) const {
@@ -61,7 +66,7 @@ double EnergyAccount::fastest(double mass) const {
 }
 
 EnergyAccount::Memory EnergyAccount::memory() const {
-  return {energy_, slack_, seen_, power_, work_, frame_, lowest_, excess_};
+  return {energy_, slack_, seen_, power_, work_, driven_, lowest_, excess_};
 }
 
 void EnergyAccount::recall(In memory) {
@@ -70,7 +75,7 @@ void EnergyAccount::recall(In memory) {
   seen_ = memory[2];
   power_ = memory[3];
   work_ = memory[4];
-  frame_ = memory[5];
+  driven_ = memory[5];
   lowest_ = memory[6];
   excess_ = memory[7];
 }

@@ -7,6 +7,7 @@
 
 namespace tress::simulation {
 
+using models::Effect;
 using models::Points;
 using models::RootPose;
 
@@ -14,12 +15,16 @@ using models::RootPose;
 struct EnergyMeasure {
   double kinetic = 0, potential = 0;  // J, in the moving frame
   double power = 0;                   // W, into it
-  double frame = 0;                   // J, of the frame's own motion
-  double work = 0;                    // J, into it since the last measure, next to power
+  /// J, of the masses at the velocities of what moves them: the frame, bodies in contact.
+  double driven = 0;
+  double work = 0;  // J, into it since the last measure, next to power
 
   /// Transforms points under a load (3 numbers each, N) from the world's frame to the
   /// clamp's. Writes the relative velocities to `u`.
   void move_with(const RootPose& root, const Points& p, In load, Out u);
+  /// Adds what a body that moves can give to a strand of this mass (kg), if it is in
+  /// contact with some of its points, at x (3 numbers each) in the world.
+  void touch(const Effect& effect, double t, In x, double mass);
 };
 
 /// Energy of a motion above that of its start and the work of its loads. Physics allows
@@ -48,10 +53,12 @@ struct Excess {
 /// of the right-hand side, taking the larger of the two ends of each interval. A motion
 /// satisfies
 ///
-///     E <= E(0) + slack + 1.1 W + largest sum m w^2/2,
+///     E <= E(0) + slack + 1.1 W + largest D,   D = sum m w^2/2 + m s^2/2,
 ///
 /// where a tenth of W allows for the error of its sums over points and intervals. The
-/// last term allows for sums over lumped masses; a root at rest has w = 0. Without the
+/// first part of D allows for sums over lumped masses; a root at rest has w = 0. The
+/// second allows for the impulses of bodies, whose power is sampled: s is the largest
+/// speed of a body's surface in contact with the strand of mass m. Without the
 /// tenth a weightless strand in wind breaks the bound by 1 % however short its steps: the
 /// energy is the model's, the work is that on lumped masses.
 ///
@@ -72,7 +79,7 @@ class EnergyAccount {
   /// Returns the energy above that of the start, J.
   double gain(const EnergyMeasure& now) const;
   /// Returns the largest energy that no work explains since start().
-  Excess excess() const { return {excess_, slack_}; }
+  Excess excess() const { return {excess_, slack_ + driven_}; }
   /// Returns the bound of gain(), J.
   double allowed() const;
   /// Bound of the speed of a point (m/s) of a strand of so much mass (kg).
@@ -90,7 +97,7 @@ class EnergyAccount {
  private:
   double energy_ = 0, slack_ = 0;  // at the start
   double seen_ = 0, power_ = 0;    // when gathered last
-  double work_ = 0, frame_ = 0, lowest_ = 0, excess_ = 0;
+  double work_ = 0, driven_ = 0, lowest_ = 0, excess_ = 0;
 };
 
 }  // namespace tress::simulation

@@ -138,7 +138,10 @@ EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double 
   std::size_t first = 0;
   for (const GuardedStrand& strand : strands_) {
     const Points p = points_of(strand, first);
-    for (const auto& effect : strand.effects) now.power += effect->power(t, p);
+    for (const auto& effect : strand.effects) {
+      now.power += effect->power(t, p);
+      now.touch(*effect, t, p.x, strand.mass);
+    }
     if (strand.root) move_with(t, strand, p, first, now);
     first += strand.rest.size();
   }

@@ -70,6 +70,9 @@ class Metered final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return effect_->penetration(t, x);
   }
+  double surface_speed(double t, In x) const override {
+    return effect_->surface_speed(t, x);
+  }
   std::optional<Outline> outline(double t) const override { return effect_->outline(t); }
   bool contact() const override { return effect_->contact(); }
   /// Returns a copy for one strand whose energy is also recorded by this effect.
