@@ -20,6 +20,9 @@ install(TARGETS ${tress_libraries} EXPORT tressTargets COMPONENT development)
 install(DIRECTORY ${tress_rooms} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress
         COMPONENT development FILES_MATCHING PATTERN "*.h")
 
+install(FILES ${PROJECT_BINARY_DIR}/generated/models/head/long_packs.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tress/models/head COMPONENT development)
+
 set(tress_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tress)
 # A package has its copy of SUNDIALS in Release, for Debian's is compiled at -O0.
 set(own_sundials OFF)

@@ -122,19 +122,13 @@ bool iterates(const Kind& kind) {
   return kind.method == HeadMethod::backward_euler || kind.method == HeadMethod::tr_bdf2;
 }
 
-constexpr HeadPack packs[] = {{HeadNumber::float64, 1},
-                              {HeadNumber::float64, 4},
-                              {HeadNumber::float64, 8},
-                              {HeadNumber::float32, 8},
-                              {HeadNumber::float32, 16}};
-
 /// Every pack and number of threads under drag; what else acts, and others than the first
 /// kind, as far as it takes to compare costs and bits.
 bool wanted(const Kind& kind, int strands, HeadPack pack, int threads, Acting acting) {
   // One hair at a time is there for the comparison of bits and of cost by hair.
   if (pack.lanes == 1 && strands > 20000) return false;
   if (pack.number == HeadNumber::float32 && !kind.narrow) return false;
-  const bool widest = pack.lanes == (pack.number == HeadNumber::float64 ? 8 : 16);
+  const bool widest = pack == models::longest_pack(pack.number);
   if (threads > 1 && pack.lanes != 8 && !(first(kind) && widest && threads == 2)) {
     return false;
   }
@@ -169,7 +163,7 @@ std::vector<Case> cases(const CommandLine& line) {
     const int frames = own.whole(iterates(kind) ? "newton_frames" : "frames");
     for (const Acting acting :
          {Acting::drag, Acting::none, Acting::body, Acting::interaction}) {
-      for (const HeadPack& pack : packs) {
+      for (const HeadPack& pack : models::compiled_packs()) {
         for (const int threads : {1, 2, 3}) {
           if (!wanted(kind, strands, pack, threads, acting)) continue;
           add_one({kind, static_cast<std::size_t>(strands), n, pack, threads, dt, frames,

@@ -79,8 +79,8 @@ void declare(CLI::App& app, Arguments& a) {
          "--simd-width", a.lanes,
          "strands per SIMD pack of a batch: 1, 4 or 8 with --precision 64, 8 or "
          "16 with --precision 32. The default is the largest: 8 and 16. The first "
-         "build of ./tress simulate has 4 with --precision 64 only. Results are "
-         "bitwise identical")
+         "build of ./tress simulate has 4 with --precision 64 only, and a build of "
+         "./tress test has 1, 4 and 8. Results are bitwise identical")
       ->check(CLI::IsMember({1, 4, 8, 16}));
   app.add_option("--device", a.device,
                  "device for the time steps of a batch: cpu, gpu or auto (default "

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <memory>
@@ -12,9 +11,7 @@
 
 #include "contract/newton_work.h"
 #include "contract/parameters.h"
-#include "math/instructions.h"
 #include "models/effects/effect.h"
-#include "models/head/packs.h"
 #include "models/motion/root_motion.h"
 #include "models/strand/strand.h"
 
@@ -64,26 +61,20 @@ enum class HeadNumber { float64, float32 };
 struct HeadPack {
   HeadNumber number = HeadNumber::float64;  // number type
   int lanes = 4;                            // 1, 4, 8; of float32 8, 16
+  bool operator==(const HeadPack&) const = default;
 };
+/// Returns the packs for which this build has kernels, those of float64 first, the
+/// longest of each number type last.
+std::span<const HeadPack> compiled_packs();
 /// Returns the pack of this number type that has the width of `doubles` doubles.
 inline HeadPack pack_as_long_as(int doubles, HeadNumber number) {
   return {number, number == HeadNumber::float64 ? doubles : 2 * doubles};
 }
-/// Returns the widest pack that the machine's registers hold.
-inline HeadPack widest_pack(HeadNumber number) {
-  return pack_as_long_as(widest_instructions() == Instructions::avx512 ? 8 : 4, number);
-}
+/// Returns the widest pack of this build that the machine's registers hold.
+HeadPack widest_pack(HeadNumber number);
 /// Returns the longest pack of this build, which also runs on machines with narrower
 /// registers.
-inline HeadPack longest_pack(HeadNumber number) {
-  constexpr int doubles = std::max({
-#define TRESS_PACK(Number, width) \
-  static_cast<int>(width * sizeof(Number) / sizeof(double)),
-      TRESS_EACH_PACK(TRESS_PACK)
-#undef TRESS_PACK
-  });
-  return pack_as_long_as(doubles, number);
-}
+HeadPack longest_pack(HeadNumber number);
 
 /// A strand without a solution: it stays where it was, the others go on.
 struct HeadLoss {

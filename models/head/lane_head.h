@@ -16,6 +16,7 @@
 #include "models/head/head_losses.h"
 #include "models/head/head_units.h"
 #include "models/head/lane_root.h"
+#include "models/head/packs.h"
 
 /// Common code of all batches, whatever their kernel.
 namespace tress::models {
@@ -88,7 +89,7 @@ inline constexpr std::string_view packs_of_build =
 #undef TRESS_NAME_OF_float
 
 /// The remedy where packs are missing, empty if none is.
-#ifdef TRESS_ONE_PACK
+#if defined(TRESS_ONE_PACK) || !TRESS_LONG_PACKS
 inline constexpr std::string_view other_packs =
     "; ./tress build compiles the other packs";
 #else

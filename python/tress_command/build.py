@@ -1,11 +1,12 @@
 """./tress build."""
 
 from .command import Command, read_words
-from .tree import build_programs
+from .tree import ALL_PACKS, build_programs
 
 
 def _run(words, machine):
-    build_programs(machine, *read_words("build", words, names=True).names)
+    names = read_words("build", words, names=True).names
+    build_programs(machine, *names, options=(ALL_PACKS,))
 
 
 COMMAND = Command(

@@ -9,7 +9,7 @@ from .messages import BAD_INPUT, DONE, ROWS_FAILED, Ended, echo, refuse, say
 from .processes import run
 from .rename import present_name
 from .report import make_report, write_pages
-from .tree import PROGRAMS, RELEASE, build, names_in
+from .tree import ALL_PACKS, PROGRAMS, RELEASE, build, names_in
 
 
 class Plan:
@@ -56,7 +56,7 @@ class Plan:
 def _run(words, machine):
     plan = Plan(words)
     machine.ensure()
-    build(RELEASE, "experiments")
+    build(RELEASE, "experiments", options=(ALL_PACKS,))
     plan.complete()
     os.makedirs("results", exist_ok=True)
     plan.check()

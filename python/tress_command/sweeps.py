@@ -4,7 +4,7 @@ import os
 
 from . import sundials
 from .command import Command
-from .tree import PROGRAMS, RELEASE, build
+from .tree import ALL_PACKS, PROGRAMS, RELEASE, build
 
 
 def _cluster(words, machine):
@@ -14,7 +14,7 @@ def _cluster(words, machine):
     programs = os.environ.get("TRESS_PROGRAMS")
     if not programs and words[:1] and words[0] in BUILT:
         machine.ensure()
-        build(RELEASE, "experiments")
+        build(RELEASE, "experiments", options=(ALL_PACKS,))
     return cluster(words, programs or PROGRAMS)
 
 

@@ -13,7 +13,7 @@ from .package import LISTS, build_packages, packages
 from .packages import npm_packages
 from .scripts import (TEST_ADVICE, TEST_CLUSTER, TEST_CORPUS, TEST_LIMITS, TEST_MUTANTS,
                       TEST_PACKAGES, TEST_READERS)
-from .tree import PROGRAMS, RELEASE, build
+from .tree import ALL_PACKS, PROGRAMS, RELEASE, SHORT_PACKS, build
 
 PAIRED = ("experiments/simulate", "20")  # strands of a batch
 
@@ -88,8 +88,8 @@ def _packages(_, __, machine):
     must(*TEST_PACKAGES, *packages())
 
 
-def _ctest(preset, *words):
-    build(preset)
+def _ctest(preset, options, *words):
+    build(preset, options=options)
     began = time.time()
     # One more than processors: a test that waits for a disk or a browser leaves one free.
     must("ctest", "--preset", preset, "-j", str(len(os.sched_getaffinity(0)) + 1), *words)
@@ -102,11 +102,12 @@ def _ctest(preset, *words):
 
 
 def _usual(preset, words, _):
-    _ctest(preset, "--label-exclude", "^long$", *words)
+    there = os.path.exists(f"build/{preset}/CMakeCache.txt")
+    _ctest(preset, () if there else (SHORT_PACKS,), "--label-exclude", "^long$", *words)
 
 
 def _all(preset, words, _):
-    _ctest(preset, *words)
+    _ctest(preset, (ALL_PACKS,), *words)
 
 
 TESTS = {"all": _all, "fuzz": _fuzz, "mutants": _mutants, "corpus": _corpus, "extremes": _extremes,
@@ -134,7 +135,8 @@ COMMAND = Command(
     options=(
         ("--sanitize", "build with sanitizers (preset debug)"),
         ("--all", "in addition the tests of label `long`, which repeat the others on more models, "
-         "methods, scenes and strands"),
+         "methods, scenes and strands, and SIMD packs of 512 bits, which a new build without "
+         "--all leaves out"),
         ("--fuzz [-- SECONDS SEED [READER...]]", "corrupted files for the reader of scenes, each "
          "reader of grooms (hair, data, bin, ply, usda, vtp) and of meshes (mesh.obj, mesh.ply, "
          "mesh.stl), under sanitizers (default: 60 s of processor time each, seed 1)"),

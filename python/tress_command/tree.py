@@ -12,6 +12,9 @@ from .processes import quietly
 RELEASE = "release"
 FIRST = "first"  # compiles sooner; its programs are slower
 PROGRAMS = place.PROGRAMS
+# The SIMD packs of batches. Without either option a tree keeps those that it has.
+ALL_PACKS = "-DTRESS_PACKS=all"
+SHORT_PACKS = "-DTRESS_PACKS=short"  # compile sooner
 COMPLAINT = re.compile("FAILED:|error:|CMake Error")
 AFTER, MOST = 8, 60  # lines shown of a log
 
@@ -59,20 +62,20 @@ def compile_targets(preset, *targets):
             *(("--target", *targets) if targets else ()))
 
 
-def build(preset, *targets):
+def build(preset, *targets, options=()):
     """Configures a tree and compiles targets. An installed tree has its programs."""
     if not place.INSTALLED:
-        configure(preset)
+        configure(preset, *options)
         compile_targets(preset, *targets)
 
 
-def build_programs(machine, *names):
+def build_programs(machine, *names, options=()):
     """Builds programs of the experiments, all or those named, and prints how long that took."""
     if place.INSTALLED:
         return
     machine.ensure()
     watch = Stopwatch()
-    build(RELEASE, *(names or ("experiments",)))
+    build(RELEASE, *(names or ("experiments",)), options=options)
     watch.say("build")
 
 

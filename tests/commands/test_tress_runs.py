@@ -64,9 +64,17 @@ class Runs(House):
 
     def test_long_tests_run_with_all(self):
         self.stand_in("ctest", 'echo "ctest $*"')
+        self.stand_in("cmake", 'echo "cmake $*" >>asked')
         self.ends(0, r"ctest --preset release -j \d+ --label-exclude \^long\$ -R head\n",
                   self.tress("test", "--", "-R", "head"))
         self.ends(0, r"ctest --preset debug -j \d+\n", self.tress("test", "--sanitize", "--all"))
+        # Long packs are compiled with --all, and stay.
+        cache = self.house / "build/release/CMakeCache.txt"
+        cache.write_text(f"CMAKE_HOME_DIRECTORY:INTERNAL={self.house}\n")
+        self.tress("test")
+        asked = re.findall("(?m)^cmake --preset (.*)$", (self.house / "asked").read_text())
+        self.assertEqual([re.findall(r"TRESS_PACKS=(\w+)", words) for words in asked],
+                         [["short"], ["all"], []], asked)
 
     def test_an_interrupted_experiment_names_what_is_left(self):
         self.experiments("heads", "full", "rubs")

@@ -8,11 +8,14 @@
 
 namespace tress::testing_support {
 
-/// All packs. `narrow`: whether single precision is among them.
+/// Packs of this build; those of 512 bits are in builds of ./tress test --all. `narrow`:
+/// whether single precision is among them.
 inline std::vector<models::HeadPack> packs_of_build(bool narrow = true) {
-  using enum models::HeadNumber;
-  std::vector<models::HeadPack> packs{{float64, 1}, {float64, 4}, {float64, 8}};
-  if (narrow) packs.insert(packs.end(), {{float32, 8}, {float32, 16}});
+  const auto all = models::compiled_packs();
+  std::vector<models::HeadPack> packs(all.begin(), all.end());
+  std::erase_if(packs, [narrow](const models::HeadPack& pack) {
+    return !narrow && pack.number == models::HeadNumber::float32;
+  });
   return packs;
 }
 /// The longest of them.
