@@ -35,7 +35,7 @@ struct Work {
   Scene scene;
   Pace pace;
   SceneCriteria criteria;
-  double horizon;  // s
+  double horizon;  // s; 0: the scene's duration
   WorkLimit limit;
 };
 
@@ -44,8 +44,9 @@ void measure(const Work& work, Row& row) {
   try {
     const Scene scene =
         driven(work.scene, *work.scene.model, find_integrator(work.scene.integrator));
-    s = survive(scene, work.pace, work.criteria, std::min(work.horizon, scene.duration),
-                work.limit);
+    const double t_end =
+        work.horizon > 0 ? std::min(work.horizon, scene.duration) : scene.duration;
+    s = survive(scene, work.pace, work.criteria, t_end, work.limit);
     row.set("measure_name", s.measured).set("limit", s.limit);
     row.set("criterion", s.criterion);
   } catch (const InputError& refused) {

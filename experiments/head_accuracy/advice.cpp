@@ -30,16 +30,17 @@ std::string hairs(const Row& row) {
                      row.text("strands"));
 }
 
-/// "800 guides for 10000 hairs, 9 elements, steps of 5.6 ms, 32-bit precision: ... in 1.2
-/// ms a frame"
+/// "800 guides for 10000 hairs, 9 elements, steps of 5.6 ms, 32-bit precision: ... over
+/// 0.5 s, in 1.2 ms a frame"
 std::string run(const Row& row) {
   return fmt::format(
       "{}, {} elements, steps of {:.3g} ms, {}-bit precision: 95 % of hairs within "
-      "{:.2g} % of their length (mean {:.2g} %, largest {:.2g} %) in {:.2g} ms a "
-      "frame",
+      "{:.2g} % of their length (mean {:.2g} %, largest {:.2g} %) over {:.3g} s, in "
+      "{:.2g} ms a frame",
       hairs(row), row.text("elements"), 1e3 * row.number("dt_s"), row.text("precision"),
       1e2 * row.number("error_p95_rel"), 1e2 * row.number("error_mean_rel"),
-      1e2 * row.number("error_max_rel"), row.number("ms_per_frame"));
+      1e2 * row.number("error_max_rel"), row.number("horizon_s"),
+      row.number("ms_per_frame"));
 }
 
 std::string why_every(const Row& row) {
