@@ -292,7 +292,7 @@ TEST(EnergyAccount, AllowsATenthMoreThanItsWork) {
   account.gather(1, {.power = 3});  // W: the larger of both ends
   account.gather(2, {.power = -5});
   EXPECT_DOUBLE_EQ(account.allowed(), 2 + 1.1 * 6);
-  account.gather(3, {.kinetic = 8, .frame = 0.5});
+  account.gather(3, {.kinetic = 8, .driven = 0.5});
   EXPECT_DOUBLE_EQ(account.allowed(), 2 + 1.1 * 6 + 0.5);
   EXPECT_DOUBLE_EQ(account.gain({.kinetic = 8, .potential = 1}), 9);
   EnergyAccount other;
