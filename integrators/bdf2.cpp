@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/constants.h"
 #include "contract/forms/moving_history.h"
 #include "integrators/bdf2_formula.h"
 #include "integrators/control/step_sequence.h"
@@ -22,7 +23,9 @@ constexpr double share = 1.8;
 constexpr Contact controlled_contact = Contact::regular;
 
 /// Bdf2Formula for y = q and y = v, started by backward Euler. Order 2, L-stable, damps
-/// high frequencies.
+/// high frequencies. A step in which a rigid contact stops points (Stage::stops) is a
+/// backward Euler step, and so is the next one: through the position before the impact
+/// the formula would throw a point back by up to half its speed.
 class Bdf2 final : public FixedStep {
  public:
   Bdf2(System& system, const Options& options)
@@ -53,23 +56,37 @@ class Bdf2 final : public FixedStep {
   }
 
   Status step(double t, double h) override {
-    const auto [c0, c1, bh] = Bdf2Formula(h, h_previous_ > 0 ? h / h_previous_ : 0);
+    // By so much what rests falls in a step, and makes no impact.
+    const double gently = h * earth_gravity;
+    stage_.leave(t, q_);
+    stage_.places(t, q_, v_, place_);
+    bool impact = stage_.stops(t, q_, v_, gently);
+    const double ratio = h_previous_ > 0 && !impact ? h / h_previous_ : 0;
+    Status s = solve(t, h, ratio);
+    if (!impact && s != Status::fatal && stage_.stops(t, q_, v_, gently)) {
+      impact = true;
+      std::ranges::fill(a_, 0.0);
+      if (ratio > 0) s = solve(t, h, 0);
+    }
+    place_previous_ = place_;
+    q_previous_ = q_;
+    v_previous_ = v_;
+    h_previous_ = impact ? 0 : h;
+    take(stage_.q(), stage_.v());
+    return s;
+  }
+
+  /// With the step over the one before, 0: by backward Euler.
+  Status solve(double t, double h, double ratio) {
+    const auto [c0, c1, bh] = Bdf2Formula(h, ratio);
     for (std::size_t i = 0; i < q_.size(); ++i) {
       v_bar_[i] = c0 * v_[i] - c1 * v_previous_[i];
       q_bar_[i] = c0 * q_[i] - c1 * q_previous_[i] + bh * v_bar_[i];
     }
-    stage_.leave(t, q_);
-    stage_.places(t, q_, v_, place_);
     for (std::size_t i = 0; i < place_.size(); ++i) {
       stage_.place_bar()[i] = c0 * place_[i] - c1 * place_previous_[i];
     }
-    place_previous_ = place_;
-    const Status s = stage_.solve(t + h, q_bar_, v_bar_, {1, bh, bh * bh}, a_, lambda_);
-    q_previous_ = q_;
-    v_previous_ = v_;
-    h_previous_ = h;
-    take(stage_.q(), stage_.v());
-    return s;
+    return stage_.solve(t + h, q_bar_, v_bar_, {1, bh, bh * bh}, a_, lambda_);
   }
 
   Stage stage_;

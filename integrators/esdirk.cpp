@@ -110,19 +110,13 @@ void EsdirkStages::guess(std::size_t i, double h) noexcept {
   }
 }
 
-/// Whether contacts that are closed now stop points that moved on at the step's start.
-bool EsdirkStages::stopped(double t, In q, In v, double gently) noexcept {
-  ContactForm* contacts = dynamics_.system().contact_form();
-  return contacts != nullptr && contacts->approach(t, q, v) > gently;
-}
-
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
                           Effort effort) noexcept {
   if (steps_.begin(t, h) == StepSequence::Start::next) a_before_.swap(a_[0]);
   stage_.leave(t, q);
   stage_.places(t, q, v, place_);
   stage_.slides(t, q, v, slides_[0]);
-  impact_ = stopped(t, q, v, gently);
+  impact_ = stage_.stops(t, q, v, gently);
   if (impact_) return damped(t, h, q, v, gently);
   std::ranges::copy(v, v_[0].begin());
   std::ranges::copy(a, a_[0].begin());
@@ -145,11 +139,13 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
         t + h * table_.c(i), q_bar_, v_bar_, {1, hg, hg * hg}, a_[i], lambda_,
         i == 1 ? Stage::Matrix::own : Stage::Matrix::shared, effort);
     if (s != Status::ok) return s;
+    // A later stage may open the contact again, thrown back by this one's impulse.
+    impact_ = stage_.stops(t, q, v, gently);
+    if (impact_) return damped(t, h, q, v, gently);
     std::ranges::copy(stage_.v(), v_[i].begin());
     stage_.slides(t + h * table_.c(i), stage_.q(), stage_.v(), slides_[i]);
   }
-  impact_ = stopped(t, q, v, gently);
-  return impact_ ? damped(t, h, q, v, gently) : Status::ok;
+  return Status::ok;
 }
 
 Status EsdirkStages::backward_euler(double t, double h, In q, In v,
@@ -171,7 +167,7 @@ Status EsdirkStages::damped(double t, double h, In q, In v, double gently) noexc
   std::ranges::copy(stage_.v(), v_[last()].begin());
   // Forces of an impulse over h do not act on. Those of contacts without one do: without
   // them the next step would start from a free acceleration, and could slip.
-  if (stopped(t, q, v, gently)) dynamics_.system().contact_form()->release();
+  if (stage_.stops(t, q, v, gently)) dynamics_.system().contact_form()->release();
   return dynamics_.accelerate(t + h, stage_.q(), stage_.v(), a_[last()], lambda_);
 }
 

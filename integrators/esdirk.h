@@ -43,7 +43,8 @@ struct EsdirkTable {
 /// one matrix serves all stages (Refresh::every_step: one per step). Positions along
 /// bodies (ContactForm) follow the same rule: X_i = X + h sum_{j<=i} a_ij U_j.
 ///
-/// A step in which a rigid contact stops points (ContactForm) is a backward Euler step.
+/// A step in one of whose stages a rigid contact stops points (Stage::stops) is a
+/// backward Euler step.
 /// Velocities jump there, and the stages of a higher-order method would weight the
 /// impulse with coefficients of either sign. The error estimate is the difference of
 /// positions to the free motion, which falls with the step. It excludes velocities, whose
@@ -80,7 +81,6 @@ class EsdirkStages {
   void difference(double h, Out dq, Out dv) const noexcept;
 
  private:
-  bool stopped(double t, In q, In v, double gently) noexcept;
   Status damped(double t, double h, In q, In v, double gently) noexcept;
   std::size_t last() const { return table_.stages - 1; }
   void guess(std::size_t i, double h) noexcept;

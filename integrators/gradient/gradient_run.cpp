@@ -32,11 +32,11 @@ std::optional<NoGradient> no_contact_gradient(const IntegratorEntry& method,
     return NoGradient{"exact friction on a surface that gives way has no derivative",
                       "use normal = \"rigid\", or friction_law = \"regularised\""};
   }
-  if (method.stages > 1) {
+  if (method.contact != Contact::exact_rebounding) {
     return NoGradient{std::string(method.id) +
                           " changes its formula at an impact with exact contact, which "
                           "has no derivative",
-                      std::string("use backward_euler or bdf2, or ") + regularised};
+                      std::string("use backward_euler, or ") + regularised};
   }
   if (system.layout().constraints > 0) {
     return NoGradient{"exact contact of a model with constraints has no derivative",

@@ -74,6 +74,13 @@ class Stage {
     if (contacts_ != nullptr) contacts_->slides(t, q, v, u);
   }
 
+  /// Whether rigid contacts that the last solution closed stop points: at (q, v) at t,
+  /// the start of the step, some approach their surface faster than `gently` (m/s).
+  /// Velocities jump there, and only a step that forgets those of before may follow.
+  bool stops(double t, In q, In v, double gently) noexcept {
+    return contacts_ != nullptr && contacts_->approach(t, q, v) > gently;
+  }
+
   In q() const { return equations_.q(); }  // of the last call
   /// Returns the rates of the last solution.
   In v() const { return equations_.v(); }
