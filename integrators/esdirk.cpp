@@ -10,6 +10,7 @@
 #include "integrators/controlled_stage.h"
 #include "integrators/fixed_step.h"
 #include "linear/vector_ops.h"
+#include "math/vec3.h"
 
 namespace tress::integrators {
 namespace {
@@ -83,7 +84,9 @@ EsdirkStages::EsdirkStages(Dynamics& dynamics, const Options& options,
       lambda_(static_cast<std::size_t>(dynamics.m())),
       slides_(table.stages, std::vector<double>(stage_.place_bar().size())),
       place_(slides_.front()),
-      a_before_(q_bar_) {}
+      a_before_(q_bar_),
+      a_begun_(q_bar_),
+      stuck_(options.tolerance > 0 ? options.contact_tolerance : 0) {}
 
 /// By the polynomial through the last stages, of which the start of the step before is
 /// one.
@@ -110,16 +113,49 @@ void EsdirkStages::guess(std::size_t i, double h) noexcept {
   }
 }
 
+/// Whether a point that slid at the step's start faster than `gently` sticks in a stage.
+bool EsdirkStages::sticks(std::size_t stage, double gently) const noexcept {
+  if (stuck_ == 0) return false;
+  for (std::size_t k = 0; k < slides_[0].size(); k += 3) {
+    if (norm(load3(&slides_[0][k])) > std::max(gently, stuck_) &&
+        norm(load3(&slides_[stage][k])) <= stuck_) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Where steps begin, accelerations include no forces of contacts, which are found in
+/// stages only. Those of a backward Euler step, which is not taken, are near.
+void EsdirkStages::begin_in_contact(double t, double h, In q, In v, In lambda) noexcept {
+  if (dynamics_.system().contact_form() == nullptr) return;
+  shifted(q_bar_, q, h, v);
+  std::ranges::copy(place_, stage_.place_bar().begin());
+  std::ranges::fill(a_begun_, 0.0);
+  std::ranges::copy(lambda, lambda_.begin());
+  if (stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_begun_, lambda_) != Status::ok) {
+    return;
+  }
+  begun_ = dynamics_.accelerate(t, q, v, a_begun_, lambda_) == Status::ok;
+}
+
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
                           Effort effort) noexcept {
-  if (steps_.begin(t, h) == StepSequence::Start::next) a_before_.swap(a_[0]);
+  const StepSequence::Start start = steps_.begin(t, h);
+  if (start == StepSequence::Start::next) a_before_.swap(a_[0]);
+  if (start != StepSequence::Start::again) begun_ = false;
   stage_.leave(t, q);
   stage_.places(t, q, v, place_);
   stage_.slides(t, q, v, slides_[0]);
   impact_ = stage_.stops(t, q, v, gently);
   if (impact_) return damped(t, h, q, v, gently);
+  if (start == StepSequence::Start::anew) {
+    begin_in_contact(t, h, q, v, lambda);
+    impact_ = stage_.stops(t, q, v, gently);
+    if (impact_) return damped(t, h, q, v, gently);
+  }
   std::ranges::copy(v, v_[0].begin());
-  std::ranges::copy(a, a_[0].begin());
+  std::ranges::copy(begun_ ? In(a_begun_) : a, a_[0].begin());
   std::ranges::copy(lambda, lambda_.begin());
   const double hg = h * table_.gamma();
   for (std::size_t i = 1; i < table_.stages; ++i) {
@@ -139,11 +175,11 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
         t + h * table_.c(i), q_bar_, v_bar_, {1, hg, hg * hg}, a_[i], lambda_,
         i == 1 ? Stage::Matrix::own : Stage::Matrix::shared, effort);
     if (s != Status::ok) return s;
-    // A later stage may open the contact again, thrown back by this one's impulse.
-    impact_ = stage_.stops(t, q, v, gently);
-    if (impact_) return damped(t, h, q, v, gently);
     std::ranges::copy(stage_.v(), v_[i].begin());
     stage_.slides(t + h * table_.c(i), stage_.q(), stage_.v(), slides_[i]);
+    // A later stage may open the contact again, thrown back by this one's impulse.
+    impact_ = stage_.stops(t, q, v, gently) || sticks(i, gently);
+    if (impact_) return damped(t, h, q, v, gently);
   }
   return Status::ok;
 }

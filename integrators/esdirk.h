@@ -51,7 +51,9 @@ struct EsdirkTable {
 /// difference does not fall.
 class EsdirkStages {
  public:
-  /// Works on `dynamics`, which must outlive it, as must `table`.
+  /// Works on `dynamics`, which must outlive it, as must `table`. With a tolerance, a
+  /// step in which a sliding point sticks also is a backward Euler step: accelerations
+  /// jump, and steps that resolve the jump chatter between the bounds of friction.
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
                Stage::Ending ending);
 
@@ -81,7 +83,9 @@ class EsdirkStages {
   void difference(double h, Out dq, Out dv) const noexcept;
 
  private:
+  void begin_in_contact(double t, double h, In q, In v, In lambda) noexcept;
   Status damped(double t, double h, In q, In v, double gently) noexcept;
+  bool sticks(std::size_t stage, double gently) const noexcept;
   std::size_t last() const { return table_.stages - 1; }
   void guess(std::size_t i, double h) noexcept;
 
@@ -94,7 +98,10 @@ class EsdirkStages {
   std::vector<double> place_;                // of the step's start
   StepSequence steps_;
   std::vector<double> a_before_;  // at its start
+  std::vector<double> a_begun_;   // where steps begin, with forces of contacts
+  bool begun_ = false;            // whether a_begun_ is that of this step
   bool impact_ = false;           // the last step was that of an impact
+  double stuck_;                  // m/s: slower points stick; 0 without a tolerance
 };
 
 /// The method with a fixed step, or with Options::tolerance. `table` must outlive it.
