@@ -47,6 +47,7 @@ _PATTERNS = [
     (r"\btwo (independent )?methods\b", "the references of the family"),
     (r"\bby halves\b|\btwice\s+as\s+short\b|\bpowers of two\b", "how the family searches steps"),
     (r"\bfirst five significant digits\b", "the digits that ./tress compare compares"),
+    (r"\bfirst 0\.5 s of the scene\b|\bhorizon_s=2\b", "the default of horizon_s, and another"),
     (r"\b1 is ideal\b", "the ideal of a ratio of times"),
     (r"\bthree of its hairs\b|\bof which +has three\b", "the hairs of family --quick"),
     (r"\bfifteen\s+(other\s+)?materials\b|\bthree groups\b", "the materials of the second family, and the groups of the first"),
