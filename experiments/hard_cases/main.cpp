@@ -35,7 +35,7 @@ constexpr Column columns[] = {
     {"why", "reason for the outcome: what was refused, what became unstable and when"},
     {"t_s", "time simulated"},
     {"steps", "steps done"},
-    {"newton_iterations", "linear solves"},
+    {"newton_iterations", "Newton iterations, summed over the run"},
     {"replaced_steps",
      "steps that are backward Euler steps, of guarded and guarded_esdirk43"},
     {"wall_s", "wall time of the run, and of its reference in the row that made it",

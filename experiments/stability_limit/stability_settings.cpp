@@ -38,9 +38,11 @@ constexpr Parameter settings_of_rows[] = {
      .min = 1.0001},
     {.name = "scenes", .help = "scene files instead of our scenes", .text = true},
     {.name = "horizon_s",
-     .help = "time that a run simulates (s), of a scene file (at most the scene's) and "
-             "of study nodal. 0: 0.5, of study nodal 1, with --quick 0.25, explicit "
-             "methods 0.02",
+     .help =
+         "simulated time (s) of study nodal; of a scene file the least time, at most "
+         "the scene's. A step of a scene file is judged over five times the duration, as "
+         "far as 2000 steps reach. 0: 0.5, of study nodal 1, with --quick 0.25, "
+         "explicit methods 0.02",
      .number = 0,
      .min = 0,
      .max = 1e3},

@@ -35,7 +35,8 @@ constexpr Parameter own_parameters[] = {
     {.name = "guides",
      .help =
          "number of strands that are simulated, chosen among all; the others follow them "
-         "in pictures; 0: every strand is simulated",
+         "in pictures; 0: every strand is simulated. A scene with guides has at most "
+         "10000 strands in all",
      .number = 0,
      .min = 0,
      .max = 1e5,

@@ -48,9 +48,9 @@ scene does not name is not built and costs nothing. Everything else has the defa
 Numbers are in SI units. Most keys end with their unit, without signs; the description has the exact
 unit in parentheses. `stiffness_n_m` is in N m at `[root]`, but in N/m at a tether. Vectors are lists,
 `[x, y, z]`; rows are lists of lists. z is up, a head faces x. Several strands, grooms or effects of one kind are written
-`[[strand]]`, `[[groom]]`, `[[effects.body]]`. Files are named relative to the scene's folder. What is
-misspelt, out of range, of no effect or refused by a model or an integrator is reported with
-file:line:column.
+`[[strand]]`, `[[groom]]`, `[[effects.body]]`. Files are named relative to the scene's folder. A key
+that is misspelt, out of range, without effect, or refused by a model or integrator is reported
+with file:line:column.
 )";
 
 void add_keys(std::string& page, std::span<const Parameter> parameters,

@@ -106,6 +106,13 @@ def accepted(tables):
     return span(judged(tables)["error_limit"].dropna(), percent)
 
 
+def criteria_table(tables):
+    """Returns the criterion of each case; cases with the same criterion share a row."""
+    rows = tables["hard_cases"]
+    return table(["cases", "a run passes if"], [[code(members["case"].unique()), criterion]
+                                                for criterion, members in groups(rows, "criterion")])
+
+
 def longest_step_table(tables, cases=None):
     """Returns, for each method at the longest step: survivors, accurate runs, and the errors of survivors. `cases`: those
     counted; all by default."""
