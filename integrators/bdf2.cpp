@@ -24,8 +24,8 @@ constexpr Contact controlled_contact = Contact::regular;
 
 /// Bdf2Formula for y = q and y = v, started by backward Euler. Order 2, L-stable, damps
 /// high frequencies. A step in which a rigid contact stops points (Stage::stops) is a
-/// backward Euler step, and so is the next one: through the position before the impact
-/// the formula would throw a point back by up to half its speed.
+/// backward Euler step, and so is the next one. Through the position before the impact
+/// the formula would throw a point back, by up to half its speed.
 class Bdf2 final : public FixedStep {
  public:
   Bdf2(System& system, const Options& options)

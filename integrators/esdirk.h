@@ -52,8 +52,9 @@ struct EsdirkTable {
 class EsdirkStages {
  public:
   /// Works on `dynamics`, which must outlive it, as must `table`. With a tolerance, a
-  /// step in which a sliding point sticks also is a backward Euler step: accelerations
-  /// jump, and steps that resolve the jump chatter between the bounds of friction.
+  /// step in which a sliding point sticks is a backward Euler step, too. Accelerations
+  /// jump there, and steps short enough to resolve the jump chatter between the bounds
+  /// of friction.
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
                Stage::Ending ending);
 

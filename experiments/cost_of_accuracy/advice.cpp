@@ -94,9 +94,16 @@ bool cut(const Row& row) {
 /// Advice for a search that ended early.
 std::string more(const Row& row) {
   const bool by_the_clock = row.text("search").find("clock") != row.text("search").npos;
-  return fmt::format("the search is incomplete ({}): continue with a larger {}",
-                     row.text("search"),
-                     by_the_clock ? "--timeout" : "--set search_work");
+  return fmt::format(
+      "the search is incomplete ({}): continue with a larger {}", row.text("search"),
+      by_the_clock ? "answer_s (--set answer_s, --timeout)" : "--set search_work");
+}
+
+/// Whether a run that misses the target has a larger error than the file as given.
+bool worse_than_given(const std::vector<Row>& rows, const Row& best) {
+  const Row* given = find(rows, "as_given");
+  return best.status() == "no_answer" && given != nullptr &&
+         given->number("error_rel") < best.number("error_rel");
 }
 
 /// If no run meets the target.
@@ -105,9 +112,11 @@ std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& be
   std::vector<std::string> lines{
       cut(best) ? fmt::format("no run within {:.3g} % so far", target)
                 : fmt::format("no run within {:.3g} % with any method tried", target),
-      "best so far " + configuration_and_price(best)};
+      fmt::format("best so far {}{}", limits(best), configuration_and_price(best))};
   if (const Row* given = find(rows, "as_given")) {
-    lines.push_back("your file: " + configuration_and_price(*given));
+    lines.push_back(fmt::format("your file{}: {}",
+                                worse_than_given(rows, best) ? " is better" : "",
+                                configuration_and_price(*given)));
   }
   if (cut(best)) lines.push_back(more(best));
   return lines;
@@ -155,6 +164,12 @@ std::string next_best(const Row* next) {
 }
 
 }  // namespace
+
+bool may_be_written(const std::vector<Row>& rows) {
+  const Row* best = advised(rows);
+  return best != nullptr && best->status() != "file_differs" &&
+         !worse_than_given(rows, *best);
+}
 
 const Row* advised(const std::vector<Row>& rows) {
   if (const Row* budget = find(rows, "budget")) return budget;
@@ -221,10 +236,12 @@ std::string configuration_and_price(const Row& row) {
 
 std::string advised_text(const Scene& given, const Row& row, double rate) {
   const Configuration taken = configuration(row);
-  return fmt::format(
-      "# {} as advised for {} frames per second: {}, {}.\n# {}{}\n\n{}", given.name, rate,
-      price(row), validity(row), limits(row), what(row),
-      scene_text(trial_scene(given, taken.method, taken.elements, taken.accuracy, rate)));
+  Scene made = trial_scene(given, taken.method, taken.elements, taken.accuracy, rate);
+  // Beyond, nothing is promised, and it may not run.
+  if (row.text("horizon_cut") == "true") made.duration = row.number("horizon_s");
+  return fmt::format("# {} as advised for {} frames per second: {}, {}.\n# {}{}\n\n{}",
+                     given.name, rate, price(row), validity(row), limits(row), what(row),
+                     scene_text(made));
 }
 
 }  // namespace tress::experiments::cost_of_accuracy

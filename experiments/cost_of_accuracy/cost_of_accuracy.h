@@ -133,7 +133,12 @@ std::string validity(const Row& row);
 /// simpler.
 const Row* advised(const std::vector<Row>& rows);
 
-/// The scene file as advised, for `simulate`.
+/// Whether a file may be written as advised: it is the scene of advised(), and no worse
+/// than the file as given where no run meets the target.
+bool may_be_written(const std::vector<Row>& rows);
+
+/// The scene file as advised, for `simulate`. Its duration is the time for which the
+/// references agree.
 std::string advised_text(const Scene& given, const Row& row, double rate);
 
 }  // namespace tress::experiments::cost_of_accuracy

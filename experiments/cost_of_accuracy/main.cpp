@@ -280,7 +280,7 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
   lines.push_back("table: " + line.out);
   print_advice(lines);
   const Row* best = advised(rows);
-  if (best == nullptr || best->status() == "file_differs" || line.out == "-") return;
+  if (!may_be_written(rows) || line.out == "-") return;
   const Scene given = read_open_scene(file);
   write_advised("cost_of_accuracy", line, given.name,
                 advised_text(given, *best, own.number("fps")));

@@ -26,14 +26,21 @@ constexpr double slow_run = 1.15;
 /// decide.
 constexpr double never_ended_s = 0.05;
 
-// Stages of a search end when so many times its work is done.
+/// A stage of a search ends when this multiple of its work is done, or this part of the
+/// time is over.
+struct Share {
+  double work, time;
+};
+/// One run of every method, in a search that is short of time.
+constexpr Share probe_share{0.6, 0.25};
 /// Climbing; the rest of the work refines the best runs, which on the ladders cost up to
 /// `ladder_slack` times what they come to.
-constexpr double coarse_share = 0.6;
+constexpr Share coarse_share{0.6, 0.5};
+constexpr Share refine_share{1, 0.6};
 /// The sweep over runs that are cheaper than the best.
-constexpr double sweep_share = 3;
+constexpr Share sweep_share{3, 0.7};
 /// Replacing each choice of the winners.
-constexpr double last_share = 4;
+constexpr Share last_share{4, 0.8};
 
 /// Counts the work of a search. The time until the deadline matters only in an emergency;
 /// each stage leaves some of it to later ones.
@@ -49,18 +56,25 @@ class Work {
   void add(const Method& method, int elements, int substeps) {
     done_ += steps_ * frame_work(method, elements, substeps);
   }
-  /// True when this fraction of the work is done, or the time is over.
-  std::function<bool()> until(double share) const {
-    return [this, share] { return done_ >= share * most_ || late(share); };
+  /// True when this share of the work is done, or of the time is over.
+  std::function<bool()> until(const Share& share) {
+    return [this, share] {
+      if (done_ >= share.work * most_) return true;
+      cut_by_clock_ = cut_by_clock_ || late(share);
+      return late(share);
+    };
   }
-  bool late(double share) const {
-    return deadline_.remaining_s() < (1 - 0.8 * share / last_share) * time_s_;
+  bool late(const Share& share) const {
+    return deadline_.remaining_s() < (1 - share.time) * time_s_;
   }
+  /// Whether the clock ended a stage.
+  bool cut_by_clock() const { return cut_by_clock_; }
 
  private:
   double most_, steps_, done_ = 0;
   const Deadline& deadline_;
   double time_s_;
+  bool cut_by_clock_ = false;
 };
 
 /// Tells a heartbeat how far a search is, and the best run so far.
@@ -218,14 +232,14 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
                                        run.substeps, change, deadline.remaining_s());
       },
       work.until(coarse_share));
-  search.coarse();
-  search.go_on(work.until(1));
+  search.coarse(work.until(probe_share));
+  search.go_on(work.until(refine_share));
   search.refine();
   search.go_on(work.until(sweep_share));
   search.sweep();
-  std::string how =
-      fmt::format("{}: {} of {} methods climbed", search.cut() ? "cut" : "whole",
-                  search.tried(), study.methods.size());
+  const bool whole = !search.cut() && search.tried() == study.methods.size();
+  std::string how = fmt::format("{}: {} of {} methods climbed", whole ? "whole" : "cut",
+                                search.tried(), study.methods.size());
   search.go_on(work.until(last_share));
   bounded = false;  // what replaces a winner's choice may take longer
   Finalists finalists(search, study.given, study.methods, [&](const Trial& run) {
@@ -257,7 +271,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
   }
   add_given(study, plan.advise ? deadline.remaining_s() : never, rows);
   if (search.cut()) how += ", cut while settling";
-  if (work.late(last_share)) how += ", by the clock";
+  if (work.cut_by_clock()) how += ", by the clock";
   for (Row& row : rows) {
     row.set("runs", search.runs().size()).set("passed_over", search.passed_over());
     row.set("work", 1e-6 * work.done()).set("search", how);

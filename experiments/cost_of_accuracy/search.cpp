@@ -270,13 +270,21 @@ bool Search::follow(std::size_t method) {
 /// By expected cost to a factor of 2, then in the order of the catalogue: the same order
 /// under any load of the machine. An error above the target needs more elements and more
 /// substeps, each by its order.
-std::vector<std::size_t> Search::promising_first() {
+std::vector<std::size_t> Search::promising_first(const std::function<bool()>& probed) {
+  std::vector<std::size_t> probes;
+  for (const bool first_of_kind : {true, false}) {
+    for (std::size_t method = 0; method < methods_; ++method) {
+      const bool first = !plan_.kind || plan_.kind(method) == method;
+      if (first == first_of_kind) probes.push_back(method);
+    }
+  }
   const int elements = plan_.elements[plan_.elements.size() / 2];
   const int substeps = plan_.substeps[plan_.substeps.size() / 3];
   const double tightest = plan_.targets.back();
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t method = 0; method < methods_; ++method) {
-    const Trial* probe = run(method, elements, substeps * unit(method));
+  for (const std::size_t method : probes) {
+    const Trial* probe =
+        probed && probed() ? nullptr : run(method, elements, substeps * unit(method));
     const auto [space, time] = orders(method);
     const auto price = [&](const Trial& of) {
       return std::log2(of.wall_s) +
@@ -291,8 +299,8 @@ std::vector<std::size_t> Search::promising_first() {
   return methods;
 }
 
-void Search::coarse() {
-  order_ = promising_first();
+void Search::coarse(const std::function<bool()>& probed) {
+  order_ = promising_first(probed);
   for (const std::size_t method : order_) {
     if (stopped()) return;
     if (!follow(method)) climb(method);

@@ -45,8 +45,9 @@ double ladder_slack(const SearchPlan& plan, double noise);
 
 /// Search for the cheapest run for each target error, in stages:
 ///
-/// - probe: every method runs once in the middle of the ladders. Those that would meet
-///   the tightest target soonest, by their orders, climb first.
+/// - probe: every method runs once in the middle of the ladders, one of each kind before
+///   the others. Those that would meet the tightest target soonest, by their orders,
+///   climb first.
 /// - coarse: a method climbs from few elements and long steps. It takes more substeps
 ///   until they gain little (the remaining error is spatial), then more elements. A
 ///   method of a kind that has climbed begins near the answer of that kind.
@@ -77,7 +78,8 @@ class Search {
   Search(SearchPlan plan, std::size_t methods, Measure measure, Changed changed,
          std::function<bool()> stop);
 
-  void coarse();  // with the probe
+  /// With the probe, which ends early where `probed` is true.
+  void coarse(const std::function<bool()>& probed = {});
   void refine();
   void sweep();  // after coarse()
   /// One method for one target, from its cheapest run so far. Runs are not tried if they
@@ -130,7 +132,7 @@ class Search {
   double neighbour_error(const Trial& run, Neighbour which);
   void price(Trial& measured);
   bool stopped();
-  std::vector<std::size_t> promising_first();
+  std::vector<std::size_t> promising_first(const std::function<bool()>& probed);
   void climb(std::size_t method);
   /// One method with this many elements.
   void sweep(std::size_t method, int elements, double target);

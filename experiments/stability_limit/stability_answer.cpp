@@ -59,6 +59,13 @@ std::string not_found(const Row& row) {
 
 std::string by_step(const Row& row) {
   if (!row.has("dt_max_s")) return fmt::format("{}: {}", method(row), not_found(row));
+  const bool ended = row.text("search_done") != "false";
+  if (!ended && row.number("stable_runs") == 1) {
+    return fmt::format(
+        "{}: no limit found in the work given: one run, with {}, was stable, and no "
+        "shorter step was tried: raise it by --set row_work=X",
+        method(row), duration(row.number("dt_max_s")));
+  }
   std::string line = fmt::format("{}: {}", method(row), tried_in_words(row));
   if (row.text("limited_by") == "cap") {
     if (row.number("runs") > 1) line += ", the longest that was tried";
@@ -71,7 +78,7 @@ std::string by_step(const Row& row) {
   } else if (row.has("at_1_5")) {
     line += fmt::format(", unstable at 1.5 times that ({})", row.text("at_1_5"));
   }
-  if (row.text("search_done") == "false") line += "; shorter steps were not checked";
+  if (!ended) line += "; shorter steps were not checked";
   line += fmt::format("; judged over {}", duration(row.number("t_end_s")));
   if (row.number("stable_runs") > 1) line += " at the longest step";
   if (row.has("realtime_factor")) {

@@ -76,8 +76,8 @@ const double pull = 20'000 * TestRod().force();
 
 /// How far the rope has moved down at its tip, until it is farther than `distance`. The
 /// pulls rise together in a fifth of the time; with 0.01 % more than the strand bears it
-/// is `away` in the rest of the time. The cylinder makes so many `turns` in it, towards
-/// the root.
+/// is `away` in the rest of the time. The cylinder makes `turns` turns in it,
+/// towards the root.
 double moved(const ModelTrial& trial, const Strand& strand, double ratio, double distance,
              double turns = 0) {
   const ContactRun& run = trial.contact;

@@ -5,6 +5,7 @@
 
 #include "contract/parameters.h"
 #include "models/effects/air_law.h"
+#include "models/effects/catalogue.h"
 #include "models/effects/effect.h"
 #include "models/motion/wind_field.h"
 
@@ -122,6 +123,11 @@ inline constexpr Parameter c_tangential_parameter{
     .number = 0.01,
     .min = 0,
     .max = 1e6};
+
+/// Parameters that apply to one choice of the coefficients only.
+inline constexpr EffectUse use_of_constant{"coefficients", "constant", "c_normal"};
+inline constexpr EffectUse use_of_reynolds{"coefficients", "reynolds",
+                                           "air_viscosity_pa_s"};
 
 /// Returns make(law) for the AnisotropicAirLaw that the parameters above describe.
 template <class Make>

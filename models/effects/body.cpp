@@ -138,6 +138,19 @@ constexpr Parameter parameters_of_body[] = {
      .min = 0,
      .max = 1e3}};
 
+constexpr EffectUse uses_of_body[] = {
+    {"shape", "sphere", "radius_m"},
+    {"shape", "capsule", "radius_m|length_m"},
+    {"shape", "ellipsoid", "half_axes_m"},
+    {"shape", "sdf", "sdf_file"},
+    {"shape", "mesh", "mesh_file|mesh_scale|mesh_spacing_m"},
+    {"moves", "keyframes", "keyframes|axis"},
+    {"moves", "poses", "poses"},
+    {"friction_law", "exact", "normal|restitution"},
+    {"friction_law", "regularised", "slip_speed_m_s"},
+    {"normal", "compliant", "stiffness_n_m2|damping_s_m"},
+    {"normal", "rigid", "restitution"}};
+
 MeshGrid mesh_of(const Parameters& parameters) {
   const std::string file(parameters.word("mesh_file"));
   refuse_if(file.empty(), "no mesh_file", "effect body, shape = mesh",
@@ -173,13 +186,6 @@ Frame turned_by(const Vec& turn) {
 /// The prescribed motion of the body; none: it is fixed.
 std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion& head) {
   const std::string_view moves = parameters.word("moves");
-  for (const Parameter& rows : parameters_of_body) {
-    if (!rows.rows || rows.name == moves) continue;
-    const std::string name(rows.name);
-    refuse_if(parameters.text(name) != rows.default_text(),
-              name + " of a body that does not follow them", "effect body",
-              "set moves = \"" + name + "\", or leave them out");
-  }
   const Vec axis = parameters.vec("axis"), centre = parameters.vec("centre_m");
   if (moves == "keyframes") {
     return keyframe_motion(parameters.numbers("keyframes"), {&axis, 1}, centre);
@@ -194,6 +200,7 @@ std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion&
 }  // namespace
 
 std::span<const Parameter> body_parameters() { return parameters_of_body; }
+std::span<const EffectUse> body_uses() { return uses_of_body; }
 
 std::string surface_in_words(const Parameters& parameters) {
   if (parameters.word("shape") != "mesh") return {};

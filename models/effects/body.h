@@ -7,12 +7,15 @@
 
 #include "contract/parameters.h"
 #include "models/contact/body_contact.h"
+#include "models/effects/catalogue.h"
 #include "models/effects/rigid_body.h"
 
 namespace tress::models {
 
 /// Returns the parameters of the effect.
 std::span<const Parameter> body_parameters();
+/// Returns which of them apply to which shape, motion and law.
+std::span<const EffectUse> body_uses();
 /// Returns the size of the grid of a body with shape = mesh and how far it is true to the
 /// mesh, in words; nothing for other shapes. Throws InputError as make_body() does.
 std::string surface_in_words(const Parameters& parameters);
@@ -52,8 +55,8 @@ class Body final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return contact_.body.penetration(t, x);
   }
-  double surface_speed(double t, In x) const override {
-    return contact_.body.surface_speed(t, x);
+  double surface_speed(double t, In x, double near) const override {
+    return contact_.body.surface_speed(t, x, near);
   }
   double next_breakpoint(double t) const noexcept override {
     return contact_.body.next_breakpoint(t);

@@ -12,6 +12,12 @@ namespace tress::models {
 
 struct RootMotion;
 
+/// Parameters that apply to one value of another one, separated by '|'. Those that are
+/// named for no value always apply.
+struct EffectUse {
+  std::string_view choice, word, keys;  // the other one, its value, the parameters
+};
+
 /// One line of the list of effects, which a scene names as [effects.id]. `./tress new
 /// effect` adds one.
 struct EffectEntry {
@@ -23,8 +29,9 @@ struct EffectEntry {
   /// effects between strands, which are made for all of them at once (StrandInteraction,
   /// StrandFriction, ControlMesh).
   std::unique_ptr<const Effect> (*make)(const Parameters&, const RootMotion& head);
-  bool many = false;     // a scene may name several: [[effects.id]]
-  bool contact = false;  // its load begins where parts meet
+  bool many = false;                     // a scene may name several: [[effects.id]]
+  bool contact = false;                  // its load begins where parts meet
+  std::span<const EffectUse> uses = {};  // of its parameters
 };
 
 /// Returns the effects of tress, then those of plug-ins.

@@ -176,9 +176,11 @@ class Effect {
   /// Largest depth (m) of the strand's surface in the body over the points at `x` (3 per
   /// point), 0 without contact. Empty if the effect is not a body.
   virtual std::optional<double> penetration(double /*t*/, In /*x*/) const { return {}; }
-  /// Largest speed (m/s) of a moving body's surface at the points in contact with it, of
-  /// those at `x` (3 per point); 0 without contact and for what is no body.
-  virtual double surface_speed(double /*t*/, In /*x*/) const { return 0; }
+  /// Largest speed (m/s) of a moving body's surface, at those of the points at `x` (3 per
+  /// point) that are in contact or less than `near` (m) from it. 0: no body moves there.
+  virtual double surface_speed(double /*t*/, In /*x*/, double /*near*/) const {
+    return 0;
+  }
   /// Empty if there is nothing to draw.
   virtual std::optional<Outline> outline(double /*t*/) const { return {}; }
   /// Whether its loads are forces of contact.

@@ -31,8 +31,8 @@ class ExactBody final : public Effect, private Multipliers {
   std::optional<double> penetration(double t, In x) const override {
     return body_->penetration(t, x);
   }
-  double surface_speed(double t, In x) const override {
-    return body_->surface_speed(t, x);
+  double surface_speed(double t, In x, double near) const override {
+    return body_->surface_speed(t, x, near);
   }
   double next_breakpoint(double t) const noexcept override {
     return body_->next_breakpoint(t);

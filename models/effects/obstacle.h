@@ -25,8 +25,8 @@ class Obstacle final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return body_->penetration(t, x);
   }
-  double surface_speed(double t, In x) const override {
-    return body_->surface_speed(t, x);
+  double surface_speed(double t, In x, double near) const override {
+    return body_->surface_speed(t, x, near);
   }
   std::optional<Outline> outline(double t) const override { return body_->outline(t); }
   /// Returns shape, place and motion.

@@ -118,14 +118,14 @@ bool RigidBody::reaches(const BodyPose& now, const Ball& ball) const {
       shape_);
 }
 
-/// Calls see(place, distance) for the points at x in contact with the surface.
+/// Calls see(place, distance) for the points at x whose distance is below `reach`.
 template <class See>
-void RigidBody::for_touching(const BodyPose& now, In x, See see) const {
+void RigidBody::for_within(double reach, const BodyPose& now, In x, See see) const {
   const auto look = [&](const auto& shape) {
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
       const Vec place = load3(&x[i]);
       NearestOf<double> at;
-      if (nearest(shape, now.frame.back(place - now.x), offset_, at)) {
+      if (nearest(shape, now.frame.back(place - now.x), reach, at)) {
         see(place, at.to.value);
       }
     }
@@ -135,17 +135,17 @@ void RigidBody::for_touching(const BodyPose& now, In x, See see) const {
 
 double RigidBody::penetration(double t, In x) const {
   double deepest = 0;
-  for_touching(pose(t), x, [&](const Vec&, double distance) {
+  for_within(offset_, pose(t), x, [&](const Vec&, double distance) {
     deepest = std::max(deepest, offset_ - distance);
   });
   return deepest;
 }
 
-double RigidBody::surface_speed(double t, In x) const {
+double RigidBody::surface_speed(double t, In x, double near) const {
   if (!motion_) return 0;
   const BodyPose now = pose(t);
   double fastest = 0;
-  for_touching(now, x, [&](const Vec& place, double) {
+  for_within(offset_ + near, now, x, [&](const Vec& place, double) {
     fastest = std::max(fastest, norm(now.surface_velocity(place)));
   });
   return fastest;

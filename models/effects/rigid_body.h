@@ -48,8 +48,9 @@ class RigidBody {
   std::optional<Outline> outline(double t) const;
   /// Largest depth (m) of the strand's surface in the body over the points at x.
   double penetration(double t, In x) const;
-  /// Largest speed (m/s) of the surface at those of the points at x in contact with it.
-  double surface_speed(double t, In x) const;
+  /// Largest speed (m/s) of the surface, at those of the points at x that are in contact
+  /// or less than `near` (m) from it.
+  double surface_speed(double t, In x, double near) const;
 
   /// Returns the shape.
   const BodyShape& shape() const { return shape_; }
@@ -99,7 +100,7 @@ class RigidBody {
 
  private:
   template <class See>
-  void for_touching(const BodyPose& now, In x, See see) const;
+  void for_within(double reach, const BodyPose& now, In x, See see) const;
   /// The place on a shape, if the distance is below `reach`; most others are excluded
   /// without a search.
   template <class Shape>

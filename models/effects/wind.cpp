@@ -86,6 +86,17 @@ constexpr Parameter parameters_of_wind[] = {
     c_normal_parameter,
     c_tangential_parameter};
 
+constexpr EffectUse uses_of_wind[] = {
+    {"profile", "sine", "frequency_hz"},
+    {"profile", "gusts", "gust_speed_m_s|gust_length_m|gust_time_s|seed"},
+    {"law", "linear", "drag_kg_m_s"},
+    {"law", "force", "force_n_m"},
+    {"law", "quadratic",
+     "strand_radius_m|air_density_kg_m3|air_viscosity_pa_s|coefficients|c_normal|"
+     "c_tangential"},
+    use_of_constant,
+    use_of_reynolds};
+
 template <class Law>
 std::unique_ptr<const Effect> in_wind(const Law& law, const Parameters& parameters) {
   const auto blow = [&law]<class Wind>(Wind wind) -> std::unique_ptr<const Effect> {
@@ -119,6 +130,11 @@ StandingAirLaw standing_law(const Parameters& parameters) {
 }  // namespace
 
 std::span<const Parameter> wind_parameters() { return parameters_of_wind; }
+std::span<const EffectUse> quadratic_drag_uses() {
+  static constexpr EffectUse all[] = {use_of_constant, use_of_reynolds};
+  return all;
+}
+std::span<const EffectUse> wind_uses() { return uses_of_wind; }
 
 std::unique_ptr<const Effect> make_wind(const Parameters& parameters, const RootMotion&) {
   const std::string_view law = parameters.word("law");

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "contract/parameters.h"
+#include "models/effects/catalogue.h"
 #include "models/effects/effect.h"
 #include "models/motion/root_motion.h"
 
@@ -11,6 +12,8 @@ namespace tress::models {
 
 /// Returns the parameters of quadratic_drag.
 std::span<const Parameter> quadratic_drag_parameters();
+/// Returns which of them apply to which coefficients.
+std::span<const EffectUse> quadratic_drag_uses();
 
 /// Quadratic drag of still air, different across and along the strand
 /// (AnisotropicAirLaw, effects/air_law.h). In moving air use the effect `wind` instead.
@@ -19,6 +22,8 @@ std::unique_ptr<const Effect> make_quadratic_drag(const Parameters& parameters,
 
 /// Returns the parameters of wind.
 std::span<const Parameter> wind_parameters();
+/// Returns which of them apply to which profile and law.
+std::span<const EffectUse> wind_uses();
 
 /// Makes the load of moving air from a field of effects/wind_field.h (`profile`) and a
 /// law of effects/air_law.h (`law`) for the relative velocity. Laws of a relative

@@ -22,7 +22,8 @@ struct Knots {
 
 void check(const std::vector<double>& times, const std::vector<double>& values,
            std::size_t least = 2) {
-  bool good = times.size() >= least && times.size() == values.size();
+  if (times.size() < least) refuse("fewer than two keyframes");
+  bool good = times.size() == values.size();
   for (std::size_t i = 0; good && i < times.size(); ++i) {
     good = std::isfinite(times[i]) && std::isfinite(values[i]) &&
            (i == 0 || times[i] > times[i - 1]);

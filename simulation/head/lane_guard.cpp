@@ -97,7 +97,7 @@ class LaneGuard::Reader {
       now.potential += potential(effect);
       if (!guard_.works_) return;
       now.power += effect.power(t_, points());
-      now.touch(effect, t_, points().x, one.mass);
+      now.touch(effect, t_, points().x, strand().length, one.mass);
     });
     if (!guard_.moves_) return now;
     std::ranges::fill(load_, 0.0);

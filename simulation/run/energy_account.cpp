@@ -24,9 +24,10 @@ void EnergyMeasure::move_with(const RootPose& root, const Points& p, In load, Ou
   }
 }
 
-void EnergyMeasure::touch(const Effect& effect, double t, In x, double mass) {
-  const double speed = effect.surface_speed(t, x);
-  driven += mass * speed * speed / 2;
+void EnergyMeasure::touch(const Effect& effect, double t, In x, double segment,
+                          double mass) {
+  const double thrown = 2 * effect.surface_speed(t, x, segment);
+  driven += mass * thrown * thrown / 2;
 }
 
 double EnergyAccount::share(double kinetic, double elastic) {

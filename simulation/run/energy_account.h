@@ -15,16 +15,16 @@ using models::RootPose;
 struct EnergyMeasure {
   double kinetic = 0, potential = 0;  // J, in the moving frame
   double power = 0;                   // W, into it
-  /// J, of the masses at the velocities of what moves them: the frame, bodies in contact.
+  /// J, of the masses at the velocities that the frame and bodies in contact can give.
   double driven = 0;
   double work = 0;  // J, into it since the last measure, next to power
 
   /// Transforms points under a load (3 numbers each, N) from the world's frame to the
   /// clamp's. Writes the relative velocities to `u`.
   void move_with(const RootPose& root, const Points& p, In load, Out u);
-  /// Adds what a body that moves can give to a strand of this mass (kg), if it is in
-  /// contact with some of its points, at x (3 numbers each) in the world.
-  void touch(const Effect& effect, double t, In x, double mass);
+  /// Adds what a moving body can give to a strand of this mass (kg), if it is in contact
+  /// with a point of it or nearer than a segment (m). Points are at x (3 numbers each).
+  void touch(const Effect& effect, double t, In x, double segment, double mass);
 };
 
 /// Energy of a motion above that of its start and the work of its loads. Physics allows
@@ -53,12 +53,12 @@ struct Excess {
 /// of the right-hand side, taking the larger of the two ends of each interval. A motion
 /// satisfies
 ///
-///     E <= E(0) + slack + 1.1 W + largest D,   D = sum m w^2/2 + m s^2/2,
+///     E <= E(0) + slack + 1.1 W + largest D,   D = sum m w^2/2 + 2 m s^2,
 ///
 /// where a tenth of W allows for the error of its sums over points and intervals. The
 /// first part of D allows for sums over lumped masses; a root at rest has w = 0. The
-/// second allows for the impulses of bodies, whose power is sampled: s is the largest
-/// speed of a body's surface in contact with the strand of mass m. Without the
+/// second allows for the impulses of bodies, whose power is sampled: a body at the speed
+/// s throws a strand of mass m to 2 s at most. Without the
 /// tenth a weightless strand in wind breaks the bound by 1 % however short its steps: the
 /// energy is the model's, the work is that on lumped masses.
 ///

@@ -140,7 +140,7 @@ EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double 
     const Points p = points_of(strand, first);
     for (const auto& effect : strand.effects) {
       now.power += effect->power(t, p);
-      now.touch(*effect, t, p.x, strand.mass);
+      now.touch(*effect, t, p.x, std::ranges::max(strand.rest), strand.mass);
     }
     if (strand.root) move_with(t, strand, p, first, now);
     first += strand.rest.size();

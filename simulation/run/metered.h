@@ -70,8 +70,8 @@ class Metered final : public Effect {
   std::optional<double> penetration(double t, In x) const override {
     return effect_->penetration(t, x);
   }
-  double surface_speed(double t, In x) const override {
-    return effect_->surface_speed(t, x);
+  double surface_speed(double t, In x, double near) const override {
+    return effect_->surface_speed(t, x, near);
   }
   std::optional<Outline> outline(double t) const override { return effect_->outline(t); }
   bool contact() const override { return effect_->contact(); }

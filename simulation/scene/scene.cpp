@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "contract/input_error.h"
 #include "contract/read_file.h"
@@ -296,11 +297,20 @@ class Reader {
               fmt::format("did you mean '{}'?", near));
   }
 
+  static void refuse_unused(const Table& read, std::span<const models::EffectUse> uses) {
+    std::map<std::string_view, std::vector<Use>> by_choice;
+    for (const auto& [choice, word, keys] : uses) {
+      by_choice[choice].push_back({word, keys});
+    }
+    for (const auto& [choice, of_words] : by_choice) read.refuse_unused(choice, of_words);
+  }
+
   void read_effect(const EffectEntry& entry, const toml::node& node) {
     const std::string name = fmt::format("effects.{}", entry.id);
     for (const toml::table* one : each(node, name, entry.many)) {
       const Table read =
           read_table(*one, entry.parameters, fmt::format("[{}]", name), file_);
+      refuse_unused(read, entry.uses);
       scene_.effects.push_back({&entry, read.values()});
       places_.effects.push_back(read.place());
       if (scene_.effects.size() > most_effects) {

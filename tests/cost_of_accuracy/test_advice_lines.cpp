@@ -32,6 +32,20 @@ TEST(Advice, TakesWhatIsBothCheaperAndMoreAccurate) {
       "take super_helix,"));
 }
 
+TEST(Advice, KeepsTheFileAsGivenWhereNoRunIsBetter) {
+  Row best = configured("winner", 0.042, 1);
+  best.failed("no_answer", "no run within the target").set("search", "cut: 0 of 204");
+  std::vector<Row> rows{best, configured("as_given", 0.011, 2)};
+  const auto lines = advice(rows);
+  EXPECT_TRUE(lines[0].starts_with("no run within 1 % so far")) << lines[0];
+  EXPECT_TRUE(lines[2].starts_with("your file is better: der,")) << lines[2];
+  EXPECT_TRUE(lines[3].starts_with("the search is incomplete (cut: 0 of 204)"));
+  EXPECT_FALSE(may_be_written(rows));
+  rows[1] = configured("as_given", 0.05, 2);
+  EXPECT_TRUE(advice(rows)[2].starts_with("your file: der,"));
+  EXPECT_TRUE(may_be_written(rows));
+}
+
 TEST(Advice, CallsATieATie) {
   const auto lines = advice({configured("winner", 0.009, 1),
                              configured("runner_up", 0.0095, 1.05).set("tied", true)});

@@ -83,6 +83,18 @@ std::vector<Known> some_methods(std::mt19937& random) {
   return all;
 }
 
+/// A probe that is short of time leaves the rest of it to climbing.
+TEST(Search, ClimbsWithTheMethodsThatWereProbed) {
+  std::mt19937 random(3);
+  Counted counted{some_methods(random)};
+  Search search(plan({0.1}), counted.methods.size(), counted.measure(), steady, no_end);
+  search.coarse([&counted] { return counted.runs >= 2; });
+  EXPECT_EQ(search.tried(), counted.methods.size());
+  EXPECT_GT(search.runs().size(), counted.methods.size());
+  EXPECT_LT(search.runs().front().method, 2U);
+  EXPECT_LT(search.runs()[2].method, 2U);  // the first climbs, not the third probe
+}
+
 TEST(Search, FindsTheCheapestOfKnownErrorsAndCosts) {
   std::mt19937 random(1);
   int looked = 0;

@@ -176,9 +176,12 @@ std::string sentence(double dt_max, double finest, int runs, int stable, bool do
 
 TEST(LimitInWords, SaysNoMoreThanWasTried) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(sentence(0.1, 0.1, 1, 1, false, "cap"),
-            "s, m: i: stable at 100 ms, the only step tried; shorter steps were not "
-            "checked; judged over 500 ms");
+  EXPECT_EQ(
+      sentence(0.1, 0.1, 1, 1, false, "cap"),
+      "s, m: i: no limit found in the work given: one run, with 100 ms, was stable, "
+      "and no shorter step was tried: raise it by --set row_work=X");
+  EXPECT_EQ(sentence(0.1, 0.1, 1, 1, true, "cap"),
+            "s, m: i: stable at 100 ms, the only step tried; judged over 500 ms");
   EXPECT_EQ(sentence(0.1, 0.02, 4, 4, false, "cap"),
             "s, m: i: stable at every one of 4 steps tried from 20 ms to 100 ms, the "
             "longest that was tried; shorter steps were not checked; judged over 500 ms "
@@ -186,9 +189,10 @@ TEST(LimitInWords, SaysNoMoreThanWasTried) {
   EXPECT_EQ(sentence(0.003, 0.0003, 15, 8, true, "energy"),
             "s, m: i: stable at every one of 8 steps tried from 300 us to 3 ms; judged "
             "over 500 ms at the longest step");
-  EXPECT_EQ(sentence(1e-4, 1e-4, 9, 1, false, "energy"),
-            "s, m: i: stable at 100 us, the shortest step tried; shorter steps were not "
-            "checked; judged over 500 ms");
+  EXPECT_EQ(
+      sentence(1e-4, 1e-4, 9, 1, false, "energy"),
+      "s, m: i: no limit found in the work given: one run, with 100 us, was stable, "
+      "and no shorter step was tried: raise it by --set row_work=X");
   EXPECT_EQ(sentence(none, none, 0, 0, false, ""),
             "s, m: i: no stable step found in the work given (not even one run ended): "
             "raise it by --set row_work=X");

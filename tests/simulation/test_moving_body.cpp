@@ -255,8 +255,8 @@ TEST(MovingBody, RefusesKeyframesThatItDoesNotFollow) {
   const struct {
     const char *keys, *reason;
   } bad[] = {
-      {"poses = [[0, 0, 0, 0, 0, 0, 0]]", "does not follow them"},
-      {"keyframes = [[0, 0, 0, 0, 0]]", "does not follow them"},
+      {"poses = [[0, 0, 0, 0, 0, 0, 0]]", "poses does nothing with moves = \"fixed\""},
+      {"keyframes = [[0, 0, 0, 0, 0]]", "leave it out, or choose moves = keyframes"},
       {"moves = \"keyframes\"\nkeyframes = [[1, 0, 0, 0, 0], [0, 0, 0, 0, 0]]",
        "not in order"},
       {"moves = \"keyframes\"\naxis = [0, 0, 0]\nkeyframes = [[0, 0, 0, 0, 0], [1, "
