@@ -115,6 +115,24 @@ TEST(Guard, LetsAMovingBodyStrikeAWeightlessStrand) {
   EXPECT_EQ(ending(parse_scene(struck, "struck.toml")), "");
 }
 
+/// A rigid plane rises under a free strand without weight, and stops: all energy is that
+/// of impulses.
+TEST(Guard, LetsARigidPlaneThrowAStrand) {
+  for (const char* method : {"backward_euler", "bdf2", "tr_bdf2", "esdirk43"}) {
+    const std::string thrown =
+        std::string(
+            "title = \"thrown\"\nduration_s = 0.1\n[model]\nid = "
+            "\"super_helix\"\n[integrator]\nid = \"") +
+        method +
+        "\"\ndt_s = 2e-3\n[strand]\nlength_m = 0.08\nelements = 8\nposition_m = [0, 0, "
+        "0.002]\nroot_tangent = [0, 1, 0]\nnormal = [0, 0, 1]\n[root]\nmotion = "
+        "\"free\"\n[effects.body]\nshape = \"plane\"\nfriction_law = \"exact\"\n"
+        "normal = \"rigid\"\nmoves = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], "
+        "[0.06, 0, 0, 0.03, 0]]\n";
+    EXPECT_EQ(ending(parse_scene(thrown, "thrown.toml")), "") << method;
+  }
+}
+
 /// A hair swings through a rod of 2 mm while no frame is near it, and its points pass
 /// before and behind it.
 TEST(World, TakesTheDepthInBodiesAtAllSteps) {
