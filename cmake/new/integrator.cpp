@@ -22,9 +22,11 @@ class Method final : public FixedStep {
         v_bar_(vector_n()) {}
 
  private:
-  /// FILL IN: q_bar_ and v_bar_ from q_, v_ and a_, the state and the acceleration at the
-  /// start of the step of length h. Returns the weights {1, w.vel, w.pos}. shifted() and
-  /// add() of linear/vector_ops.h do the sums.
+  /// FILL IN: q_bar_ and v_bar_ from q_ and v_, the state at the start of the step of
+  /// length h. Returns the weights {1, w.vel, w.pos}. shifted() and add() of
+  /// linear/vector_ops.h do the sums. a_ is the acceleration of the last solve, 0 in the
+  /// first step. If the formula needs that of the start, override reset() with
+  /// dynamics_.accelerate(), and state() to return a_ too.
   Weights known_part(double /*h*/) {
     fill_in("q_bar_, v_bar_ and the weights of the stage");
   }

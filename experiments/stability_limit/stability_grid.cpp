@@ -80,8 +80,27 @@ std::vector<int> element_counts(const CommandLine& line) {
   return {1, 2, 5, 10, usual_elements, 40};
 }
 
+/// Every pair of --models and --integrators that `all` has not, if the user gives both.
+std::vector<Variation> named_pairs(const CommandLine& line,
+                                   std::span<const Variation> all) {
+  std::vector<Variation> more;
+  if (line.models.empty() || line.integrators.empty()) return more;
+  for (const ModelEntry* model : strand_models()) {
+    if (!wanted(line.models, model->id)) continue;
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
+      const bool there = std::ranges::any_of(all, [&](const Variation& one) {
+        return one.model == model->id && one.integrator == entry.id;
+      });
+      if (there || !considered(line, entry)) continue;
+      more.push_back({model->id, entry.id, first_word(*model, "solver"),
+                      first_word(*model, "jacobian")});
+    }
+  }
+  return more;
+}
+
 /// `others`: also every other fixed-step integrator, by the linear-time solver with the
-/// exact Jacobian.
+/// exact Jacobian, and named_pairs().
 std::vector<Variation> all_methods(const CommandLine& line, bool others) {
   std::vector<Variation> all(std::begin(methods), std::end(methods));
   for (const ModelEntry* model : strand_models()) {
@@ -97,6 +116,8 @@ std::vector<Variation> all_methods(const CommandLine& line, bool others) {
     all.push_back({"super_helix", entry.id, "recursive", "exact"});
     if (line.full) all.push_back({"articulated_chain", entry.id, "recursive", "exact"});
   }
+  const std::vector<Variation> named = named_pairs(line, all);
+  all.insert(all.end(), named.begin(), named.end());
   return all;
 }
 

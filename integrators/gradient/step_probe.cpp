@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "integrators/catalogue.h"
 #include "integrators/gradient/run_phases.h"
@@ -43,7 +44,15 @@ bool StepTable::operator==(const StepTable& other) const {
 
 StepProbe::StepProbe(std::string_view method, const Options& options)
     : method_(make_integrator(method, *this, linear_options(options))),
-      fixed_(dynamic_cast<FixedStep&>(*method_)) {}
+      fixed_(dynamic_cast<FixedStep&>(*method_)) {
+  for (const InOut x : fixed_.state()) {
+    if (is_vector(x) || x.size() == 1) continue;
+    throw std::logic_error(
+        "state() of " + std::string(method) + " has a span of " +
+        std::to_string(x.size()) +
+        " numbers: return vectors of n, and single numbers as spans of one");
+  }
+}
 
 StepTable StepProbe::start(double t) {
   std::vector<double> q(static_cast<std::size_t>(most_vectors)), v(q);

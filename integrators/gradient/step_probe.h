@@ -53,7 +53,8 @@ class StepProbe final : public System,
                         private ExplicitForm,
                         private MovingHistory {
  public:
-  /// `options`: of the run.
+  /// Takes the `options` of the run. Throws std::logic_error where FixedStep::state() has
+  /// a span that is neither a vector of n nor a single number.
   StepProbe(std::string_view method, const Options& options);
 
   /// Starts the method at time t.

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "integrators/gradient/gradient_run.h"
+#include "integrators/gradient/step_memory.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
@@ -17,24 +16,21 @@ namespace {
 using integrators::GradientRun;
 using integrators::RunParameter;
 
-/// Methods of GradientRun whose step depends on what they keep from the steps before.
-constexpr std::string_view methods_with_memory[] = {"bdf2", "generalized_alpha"};
-
-bool has_memory(std::string_view method) {
-  return std::ranges::count(methods_with_memory, method) > 0;
-}
-
 void check_step(const Scene& scene, System& system) {
   check_derivatives(scene);
   const std::string place = gradient_place(scene);
-  std::vector<std::string_view> able;
-  for (const IntegratorEntry& entry : integrator_catalogue()) {
-    if (entry.stages > 0 && !has_memory(entry.id)) able.push_back(entry.id);
+  if (integrators::remembers_steps(scene.integrator)) {
+    std::vector<std::string_view> able;
+    for (const IntegratorEntry& entry : integrator_catalogue()) {
+      if (entry.stages > 0 && !integrators::remembers_steps(entry.id)) {
+        able.push_back(entry.id);
+      }
+    }
+    throw InputError(
+        fmt::format("a step of {} depends on the steps before, not on (q, v) alone",
+                    scene.integrator),
+        place, fmt::format("use one of: {}", fmt::join(able, ", ")));
   }
-  refuse_if(has_memory(scene.integrator),
-            fmt::format("a step of {} depends on the steps before, not on (q, v) alone",
-                        scene.integrator),
-            place, fmt::format("use one of: {}", fmt::join(able, ", ")));
   refuse_if(system.layout().constraints > 0,
             "no matrices of a step of a model with constraints, whose coordinates do not "
             "change independently",

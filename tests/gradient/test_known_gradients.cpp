@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <numbers>
+#include <stdexcept>
 
 #include "contract/forms/sparse_form.h"
 #include "integrators/esdirk43.h"
@@ -81,7 +82,9 @@ class Reference {
     }
     if (method == "implicit_midpoint") return midpoint();
     if (method == "tr_bdf2") return runge_kutta(tr_bdf2_entries::table);
-    return runge_kutta(esdirk43_table());
+    if (method == "esdirk43") return runge_kutta(esdirk43_table());
+    throw std::invalid_argument("no reference of " + method +
+                                ": add one to Reference::of()");
   }
 
  private:
