@@ -125,18 +125,13 @@ bool EsdirkStages::sticks(std::size_t stage, double gently) const noexcept {
   return false;
 }
 
-/// Where steps begin, accelerations include no forces of contacts, which are found in
-/// stages only. Those of a backward Euler step, which is not taken, are near.
-void EsdirkStages::begin_in_contact(double t, double h, In q, In v, In lambda) noexcept {
-  if (dynamics_.system().contact_form() == nullptr) return;
+/// Solves a backward Euler step, from where step() and backward_euler() have left the
+/// stage.
+Status EsdirkStages::euler(double t, double h, In q, In v) noexcept {
   shifted(q_bar_, q, h, v);
   std::ranges::copy(place_, stage_.place_bar().begin());
-  std::ranges::fill(a_begun_, 0.0);
-  std::ranges::copy(lambda, lambda_.begin());
-  if (stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_begun_, lambda_) != Status::ok) {
-    return;
-  }
-  begun_ = dynamics_.accelerate(t, q, v, a_begun_, lambda_) == Status::ok;
+  std::ranges::fill(a_[last()], 0.0);
+  return stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_[last()], lambda_);
 }
 
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
@@ -149,14 +144,18 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
   stage_.slides(t, q, v, slides_[0]);
   impact_ = stage_.stops(t, q, v, gently);
   if (impact_) return damped(t, h, q, v, gently);
-  if (start == StepSequence::Start::anew) {
-    begin_in_contact(t, h, q, v, lambda);
+  std::ranges::copy(lambda, lambda_.begin());
+  // Where steps begin, accelerations include no forces of contacts, which are found in
+  // stages only. Those of a backward Euler step, which is not taken, are near.
+  if (start == StepSequence::Start::anew &&
+      dynamics_.system().contact_form() != nullptr && euler(t, h, q, v) == Status::ok) {
     impact_ = stage_.stops(t, q, v, gently);
-    if (impact_) return damped(t, h, q, v, gently);
+    if (impact_) return take_euler(t, h, q, v, gently);
+    begun_ = dynamics_.accelerate(t, q, v, a_begun_, lambda_) == Status::ok;
+    std::ranges::copy(lambda, lambda_.begin());
   }
   std::ranges::copy(v, v_[0].begin());
   std::ranges::copy(begun_ ? In(a_begun_) : a, a_[0].begin());
-  std::ranges::copy(lambda, lambda_.begin());
   const double hg = h * table_.gamma();
   for (std::size_t i = 1; i < table_.stages; ++i) {
     std::ranges::copy(v, v_bar_.begin());
@@ -191,14 +190,14 @@ Status EsdirkStages::backward_euler(double t, double h, In q, In v,
   return damped(t, h, q, v, gently);
 }
 
-/// From where step() and backward_euler() have left the stage.
 Status EsdirkStages::damped(double t, double h, In q, In v, double gently) noexcept {
+  const Status s = euler(t, h, q, v);
+  return s == Status::ok ? take_euler(t, h, q, v, gently) : s;
+}
+
+/// Ends the step with the solution of euler().
+Status EsdirkStages::take_euler(double t, double h, In q, In v, double gently) noexcept {
   forget();
-  shifted(q_bar_, q, h, v);
-  std::ranges::copy(place_, stage_.place_bar().begin());
-  std::ranges::fill(a_[last()], 0.0);
-  Status s = stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_[last()], lambda_);
-  if (s != Status::ok) return s;
   for (std::size_t i = 0; i < q.size(); ++i) v_[0][i] = stage_.q()[i] - q_bar_[i];
   std::ranges::copy(stage_.v(), v_[last()].begin());
   // Forces of an impulse over h do not act on. Those of contacts without one do: without

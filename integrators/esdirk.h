@@ -84,7 +84,8 @@ class EsdirkStages {
   void difference(double h, Out dq, Out dv) const noexcept;
 
  private:
-  void begin_in_contact(double t, double h, In q, In v, In lambda) noexcept;
+  Status euler(double t, double h, In q, In v) noexcept;
+  Status take_euler(double t, double h, In q, In v, double gently) noexcept;
   Status damped(double t, double h, In q, In v, double gently) noexcept;
   bool sticks(std::size_t stage, double gently) const noexcept;
   std::size_t last() const { return table_.stages - 1; }

@@ -95,7 +95,7 @@ constexpr Column table_columns[] = {
     {"tied", "whether the time cannot be distinguished from that of the winner", true},
     {"runs", "runs that the search took", true},
     {"work", "million elements x steps of all of them", true},
-    {"passed_over", "cheaper runs whose neighbours miss a target: lucky", true},
+    {"passed_over", "cheaper runs left out because their neighbours miss a target", true},
     {"search",
      "whole: every method was tried wherever it costs less than the winner; cut: the "
      "search used up its work before",

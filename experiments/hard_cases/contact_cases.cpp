@@ -105,9 +105,8 @@ std::vector<HardCase> contact_cases() {
                         "that are far from each other along the strand",
                  .measure = "overlap_over_radius",
                  .criterion =
-                     "turns overlap by less than their radius, half of the "
-                     "distance at which they touch: they have not passed through "
-                     "each other; the tip stays within reach",
+                     "turns overlap by less than their radius, so that they have not "
+                     "passed through each other; the tip stays within reach of the root",
                  .settings = {{"motion", "fixed"},
                               {"root_tangent", "x"},
                               {"elements", "20"},
@@ -131,9 +130,9 @@ std::vector<HardCase> contact_cases() {
                      "friction: 1/30 s moves it by a hundred of its diameters along "
                      "the plane, and by ten into it",
                  .measure = "penetration_over_bound",
-                 .criterion = "no point is deeper than the strand's radius and what the "
-                              "last quadrature point leaves of the tip: its axis stays "
-                              "outside; reach and speed as for driven roots",
+                 .criterion = "no point is deeper than the radius of the strand and the "
+                              "part of the tip beyond the last quadrature point; reach "
+                              "and speed are bounded as for driven roots",
                  .settings = {{"motion", "swing"},
                               {"root_tangent", "x"},
                               {"gravity_m_s2", "0"},
@@ -155,9 +154,9 @@ std::vector<HardCase> contact_cases() {
               "ends hit head-on, and what sticks below 1 mm/s turns round "
               "within one of Newton's steps at 0.3 m/s",
        .measure = "penetration_over_bound",
-       .criterion = "no point is deeper than the strand's radius and what the "
-                    "last quadrature point leaves of the tip; energy grows by "
-                    "less than 1 % of the fall to the apex",
+       .criterion = "no point is deeper than the radius of the strand and the part of "
+                    "the tip beyond the last quadrature point; the energy rises by less "
+                    "than 1 % of the fall to the apex",
        .settings = {{"motion", "free"}, {"root_tangent", "x"}, {"spin_rad_s", "0"}},
        .t_end = 0.2,
        .horizon = 0.08,

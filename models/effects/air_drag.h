@@ -124,8 +124,9 @@ inline constexpr Parameter c_tangential_parameter{
     .min = 0,
     .max = 1e6};
 
-/// Parameters that apply to one choice of the coefficients only.
+/// Parameter that applies to constant coefficients only.
 inline constexpr EffectUse use_of_constant{"coefficients", "constant", "c_normal"};
+/// Parameter that applies to coefficients by the Reynolds number only.
 inline constexpr EffectUse use_of_reynolds{"coefficients", "reynolds",
                                            "air_viscosity_pa_s"};
 

@@ -79,6 +79,8 @@ RULES = (
     of_cluster("./tress cluster"),
     of_cluster("mpirun"),
     Rule("docs/compare.md", "./tress compare HEAD~1", left_out="builds two commits"),
+    Rule("docs/compare.md", "git commit", left_out="commits the reader's change"),
+    Rule("docs/compare.md", "./tress run", left_out="runs a study for minutes"),
     Rule("docs/compare.md", "./tress compare build/bench", left_out="needs two builds of the benchmarks"),
     Rule("docs/reproduce.md", "./tress", left_out="builds, for which a copy of the sources has no tree",
          by="tests/commands/test_reproduce.py"),

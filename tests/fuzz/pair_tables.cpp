@@ -144,7 +144,7 @@ double points_apart(const std::string& batch, const std::string& strands) {
       high = std::max(high, other[f][i]);
     }
   }
-  if (!compared) return never;
+  if (!compared) return std::numeric_limits<double>::quiet_NaN();
   return most > 0 ? most / (high - low) : 0;
 }
 

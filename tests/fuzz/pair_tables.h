@@ -16,11 +16,14 @@ Columns columns(const std::string& file);
 struct Apart {
   double energy = 0;  // over the largest energy
   double place = 0;   // of further columns, such as the mean tip, over the largest one
-  double points = 0;  // of all strands, over their extent
+  double points = 0;  // of all strands, over their extent; NaN: not compared
   /// First column or file that must be equal and is not; empty: none.
   std::string unequal;
 
-  double most() const { return std::max({energy, place, points}); }
+  double most() const {
+    const double seen = std::max(energy, place);
+    return points > seen ? points : seen;
+  }
 };
 
 /// Compares the columns that both tables have, in their first `rows` rows. Times and
@@ -29,7 +32,7 @@ struct Apart {
 Apart apart(const Columns& batch, const Columns& strands, std::size_t rows);
 
 /// Largest difference of the points of two .usda files, over the extent of the strands.
-/// Frames with the same number of points are compared; infinite where there is none, or
+/// Frames with the same number of points are compared; NaN where there is none. Infinite
 /// where the files have different numbers of frames.
 double points_apart(const std::string& batch, const std::string& strands);
 

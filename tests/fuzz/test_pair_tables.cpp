@@ -61,7 +61,8 @@ TEST(PairTables, ComparePointsOfAllFrames) {
   const std::string more = usd("more", "1, 0.5, 0), (1, 1, 1", "1, 0.25, 0");
   EXPECT_DOUBLE_EQ(points_apart(more, one), 0.25);
   const std::string others = usd("others", "1, 1, 1), (1, 1, 1", "1, 1, 1), (1, 1, 1");
-  EXPECT_TRUE(std::isinf(points_apart(others, one)));
+  EXPECT_TRUE(std::isnan(points_apart(others, one)));
+  EXPECT_EQ((Apart{.energy = 1, .points = points_apart(others, one)}.most()), 1);
   EXPECT_TRUE(std::isinf(points_apart("none", one)));
 }
 
