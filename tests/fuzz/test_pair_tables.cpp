@@ -62,7 +62,10 @@ TEST(PairTables, ComparePointsOfAllFrames) {
   EXPECT_DOUBLE_EQ(points_apart(more, one), 0.25);
   const std::string others = usd("others", "1, 1, 1), (1, 1, 1", "1, 1, 1), (1, 1, 1");
   EXPECT_TRUE(std::isnan(points_apart(others, one)));
-  EXPECT_EQ((Apart{.energy = 1, .points = points_apart(others, one)}.most()), 1);
+  Apart not_drawn;
+  not_drawn.energy = 1;
+  not_drawn.points = points_apart(others, one);
+  EXPECT_EQ(not_drawn.most(), 1);
   EXPECT_TRUE(std::isinf(points_apart("none", one)));
 }
 
