@@ -38,9 +38,8 @@ class Bdf2 final : public FixedStep {
         place_(stage_.place_bar().size()),
         place_previous_(place_) {}
 
-  std::vector<InOut> state() override {
-    return {q_, v_, q_previous_, v_previous_, {&h_previous_, 1}};
-  }
+  std::vector<InOut> state() override { return {q_, v_, q_previous_, v_previous_}; }
+  std::vector<double*> numbers() override { return {&h_previous_}; }
 
  private:
   Status reset(double /*t*/) override {

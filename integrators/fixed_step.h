@@ -27,10 +27,13 @@ class FixedStep : public Integrator {
   Stats stats() const final { return dynamics_.stats; }
   std::string failure() const final { return failure_; }
   Limit limit() const final { return limit_; }
-  /// All on which the next step depends: q, v and what the method keeps of the motion
-  /// before, vectors of n and single numbers. A method that is started and given these
-  /// continues another's run up to the error of its equations.
+  /// Vectors of n on which the next step depends: q, v and what the method keeps of the
+  /// motion before. A method that is started and given these and numbers() continues
+  /// another's run up to the error of its equations.
   virtual std::vector<InOut> state() { return {q_, v_}; }
+  /// Returns the single numbers on which the next step depends, such as the length of the
+  /// last one.
+  virtual std::vector<double*> numbers() { return {}; }
 
  protected:
   /// Forgets history; the state is q_, v_ at time t.

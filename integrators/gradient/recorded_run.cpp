@@ -143,9 +143,7 @@ void RecordedRun::write(Tape& tape) {
 
 std::vector<double> RecordedRun::numbers() const {
   std::vector<double> all;
-  for (const InOut x : fixed().state()) {
-    if (x.size() == 1) all.push_back(x[0]);
-  }
+  for (const double* x : fixed().numbers()) all.push_back(*x);
   return all;
 }
 
@@ -154,6 +152,7 @@ RecordedRun::Place RecordedRun::place() const {
   for (const InOut x : fixed().state()) {
     place.state.insert(place.state.end(), x.begin(), x.end());
   }
+  for (const double* x : fixed().numbers()) place.state.push_back(*x);
   return place;
 }
 
@@ -170,6 +169,7 @@ Status RecordedRun::go_to(const Place& place) {
     std::copy_n(from, x.size(), x.begin());
     from += static_cast<std::ptrdiff_t>(x.size());
   }
+  for (double* x : fixed().numbers()) *x = *from++;
   numbers_ = numbers();
   key_.clear();
   watched_.forget();

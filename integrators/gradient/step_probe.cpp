@@ -46,18 +46,18 @@ StepProbe::StepProbe(std::string_view method, const Options& options)
     : method_(make_integrator(method, *this, linear_options(options))),
       fixed_(dynamic_cast<FixedStep&>(*method_)) {
   for (const InOut x : fixed_.state()) {
-    if (is_vector(x) || x.size() == 1) continue;
+    if (x.size() == most_vectors) continue;
     throw std::logic_error(
         "state() of " + std::string(method) + " has a span of " +
         std::to_string(x.size()) +
-        " numbers: return vectors of n, and single numbers as spans of one");
+        " numbers: return vectors of n, and single numbers by numbers()");
   }
 }
 
 StepTable StepProbe::start(double t) {
   std::vector<double> q(static_cast<std::size_t>(most_vectors)), v(q);
   begin(2);
-  for (const InOut x : vectors_of_state()) std::ranges::fill(x, 0.0);
+  for (const InOut x : fixed_.state()) std::ranges::fill(x, 0.0);
   set_unit(q, 0);
   set_unit(v, 1);
   if (method_->start(t, q, v) != Status::ok) throw std::logic_error(method_->failure());
@@ -65,7 +65,7 @@ StepTable StepProbe::start(double t) {
 }
 
 StepTable StepProbe::step(double t, const WatchedSystem& run) {
-  const std::vector<InOut> state = vectors_of_state();
+  const std::vector<InOut> state = fixed_.state();
   begin(state.size());
   for (std::size_t k = 0; k < state.size(); ++k) set_unit(state[k], k);
   moves_ = run.moved();
@@ -77,15 +77,7 @@ StepTable StepProbe::step(double t, const WatchedSystem& run) {
 void StepProbe::go_to(double t, In numbers) {
   start(t);
   std::size_t next = 0;
-  for (const InOut x : fixed_.state()) {
-    if (!is_vector(x)) x[0] = numbers[next++];
-  }
-}
-
-std::vector<InOut> StepProbe::vectors_of_state() {
-  std::vector<InOut> all = fixed_.state();
-  std::erase_if(all, [](InOut x) { return !is_vector(x); });
-  return all;
+  for (double* x : fixed_.numbers()) *x = numbers[next++];
 }
 
 void StepProbe::begin(std::size_t inputs) {
@@ -97,7 +89,7 @@ void StepProbe::begin(std::size_t inputs) {
 
 StepTable StepProbe::taken() {
   table_.vectors = next_;
-  for (const InOut x : vectors_of_state()) table_.results.push_back(terms(x, next_));
+  for (const InOut x : fixed_.state()) table_.results.push_back(terms(x, next_));
   return std::move(table_);
 }
 

@@ -54,7 +54,7 @@ class StepProbe final : public System,
                         private MovingHistory {
  public:
   /// Takes the `options` of the run. Throws std::logic_error where FixedStep::state() has
-  /// a span that is neither a vector of n nor a single number.
+  /// a span that is no vector of n.
   StepProbe(std::string_view method, const Options& options);
 
   /// Starts the method at time t.
@@ -90,8 +90,6 @@ class StepProbe final : public System,
   std::vector<double> memory() const override { return {}; }
   void recall(In /*memory*/) override {}
 
-  static bool is_vector(InOut x) { return x.size() == most_vectors; }
-  std::vector<InOut> vectors_of_state();
   void begin(std::size_t inputs);
   void note(Kind kind, std::array<In, 3> of, Weights w) const;
   void give(InOut x) const;

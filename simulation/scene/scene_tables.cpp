@@ -47,8 +47,9 @@ constexpr Parameter top[] = {
          "or compressed by more than half, a point faster than the energy allows, or "
          "too much energy. The energy may exceed its initial value by m g L and a tenth "
          "of the initial kinetic and elastic energy. To this, 1.1 times the work of "
-         "loads and root is added. Coarse steps need that margin. A run prints the "
-         "energy that the method created within it. See failed_strands",
+         "loads and root is added. Coarse steps need that margin. A run warns "
+         "of a method that creates or dissipates a tenth of the energy of the motion. "
+         "See failed_strands",
      .choices = "true|false"},
     {.name = "failed_strands",
      .help =

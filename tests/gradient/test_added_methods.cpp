@@ -39,10 +39,14 @@ class Added final : public FixedStep {
   std::vector<InOut> state() override {
     std::vector<InOut> all{q_, v_};
     if (keeps == Keeps::the_step_before) {
-      all.insert(all.end(), {q_previous_, v_previous_, {&h_previous_, 1}});
+      all.insert(all.end(), {q_previous_, v_previous_});
     }
     if (keeps == Keeps::a_span_of_three) all.emplace_back(three_);
     return all;
+  }
+  std::vector<double*> numbers() override {
+    if (keeps == Keeps::the_step_before) return {&h_previous_};
+    return {};
   }
 
  private:

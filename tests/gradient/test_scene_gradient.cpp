@@ -236,6 +236,34 @@ INSTANTIATE_TEST_SUITE_P(Methods, SceneGradientOf,
                                          "generalized_alpha"),
                          [](const auto& c) { return std::string(c.param); });
 
+/// One coordinate: vectors of the method's state are as long as its single numbers.
+TEST(SceneGradient, OfOneCoordinateIsTheSameForwardAndBackward) {
+  for (const char* method : {"bdf2", "generalized_alpha", "tr_bdf2", "backward_euler"}) {
+    const auto by = [&](const std::string& way) {
+      return scene_gradient(
+                 parse_scene("title = \"one\"\nduration_s = 0.3\nframes_per_s = 20\n"
+                             "[model]\nid = \"super_helix\"\nmodes = "
+                             "\"bend_planar\"\n[integrator]\nid = \"" +
+                                 std::string(method) +
+                                 "\"\ndt_s = 0.005\nnewton_tolerance = 1e-12\n"
+                                 "[strand]\nelements = 1\n[root]\n"
+                                 "[effects.gravity]\n[effects.linear_drag]\n"
+                                 "[gradient]\nby = [\"youngs_modulus_pa\"]\nway = \"" +
+                                 way + "\"\n",
+                             "one.toml"))
+          .strands.front()
+          .by[0]
+          .back();
+    };
+    const std::vector<double> forward = by("forward"), adjoint = by("adjoint");
+    ASSERT_EQ(forward.size(), adjoint.size());
+    for (std::size_t i = 0; i < forward.size(); ++i) {
+      // Both solve the same linear equations, to rounding and Newton's tolerance.
+      EXPECT_NEAR(adjoint[i], forward[i], 1e-7 * std::abs(forward.back())) << method;
+    }
+  }
+}
+
 std::string refused(const std::string& by) {
   return refusal([&] { parse_scene(scene_text("[gradient]\n" + by), "s.toml"); });
 }
