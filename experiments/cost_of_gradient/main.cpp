@@ -9,10 +9,9 @@ namespace {
 
 constexpr Column columns[] = {
     {"part",
-     "time: errors by steps on a curl that swings. space: the same by elements. contact: "
-     "errors by steps of straight hair that falls on a plane. fit: parameters of the "
-     "curl "
-     "fitted to the tip of a much finer run"},
+     "part of the study. In time, errors by steps on a curl that swings. In space, the "
+     "same by elements. In contact, errors by steps of straight hair that falls on a "
+     "plane. In fit, parameters of the curl fitted to the tip of a much finer run"},
     {"law", "part = contact: law of contact"},
     {"model", "catalogue id"},
     {"integrator", "method"},
@@ -28,8 +27,8 @@ constexpr Column columns[] = {
      "the fitted run"},
     {"gradient_error_rel",
      "largest of the errors of the four parameters: of the derivative of the tip at ten "
-     "frames over its size, root mean squares. part = fit: of the fitted value over the "
-     "true one"},
+     "frames, over its size (root mean squares). In part fit, the error of the fitted "
+     "value over the true one"},
     {"modulus_error_rel", "error of the derivative by Young's modulus, or of its fit"},
     {"friction_error_rel", "error of the derivative by the internal friction"},
     {"drag_error_rel", "error of the derivative by the drag"},
