@@ -80,6 +80,8 @@ class EsdirkStages {
   /// Returns the multipliers at the end of the last step.
   In lambda() const { return lambda_; }
 
+  /// Whether the last step was that of an impact.
+  bool impact() const { return impact_; }
   /// The method minus its embedded comparison over the last step, of length h.
   void difference(double h, Out dq, Out dv) const noexcept;
 

@@ -76,6 +76,8 @@ class ErrorControlled : public Integrator, public Rewindable {
 
   /// Speed (m/s) of a point whose error is as large as one step may have.
   double seen_speed() const { return threshold_ * norm_.typical_speed(); }
+  /// Returns the time (s) in which the body falls about its own size.
+  double typical_time() const { return norm_.typical_time(); }
 
  private:
   Status end_run(Status status, const std::string& what);

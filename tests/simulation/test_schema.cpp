@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
@@ -70,6 +72,27 @@ TEST(SceneDefaults, AreDefaults) {
 }
 
 /// A scene with the table `entry`, all of whose keys that every choice takes are there.
+/// Whether a key of an effect applies where all others have their defaults.
+bool used_by_default(const models::EffectEntry& effect, std::string_view key) {
+  std::map<std::string_view, std::vector<Use>> by_choice;
+  for (const auto& [choice, word, keys] : effect.uses) {
+    by_choice[choice].push_back({word, keys});
+  }
+  return std::ranges::all_of(by_choice, [&](const auto& one) {
+    const Parameter& choice =
+        *std::ranges::find(effect.parameters, one.first, &Parameter::name);
+    return used(one.second, words_of(choice.choices).front(), key);
+  });
+}
+
+bool used_by_default(const TableEntry& entry, std::string_view key) {
+  constexpr std::string_view of_effect = "effects.";
+  if (!entry.name.starts_with(of_effect)) return true;
+  const std::string_view id = std::string_view(entry.name).substr(of_effect.size());
+  const auto effect = std::ranges::find(models::effects(), id, &models::EffectEntry::id);
+  return effect == models::effects().end() || used_by_default(*effect, key);
+}
+
 std::string with_table(const TableEntry& entry) {
   std::string text = "title = \"t\"\n";
   if (entry.name != "strand" && entry.name != "groom") text += "[strand]\n";
@@ -85,6 +108,7 @@ std::string with_table(const TableEntry& entry) {
     const bool says_nothing = (p.rows || p.text) && p.fallback.empty();
     const bool excluded = p.name == "poisson_ratio";  // by shear_modulus_pa
     if (says_nothing || excluded || !used(entry.uses, word, p.name)) continue;
+    if (!used_by_default(entry, p.name)) continue;
     text += std::string(p.name) + " = " + default_value(p) + "\n";
   }
   return text;

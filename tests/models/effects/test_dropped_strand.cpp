@@ -89,6 +89,40 @@ TEST_P(DroppedStrand, LandsAndSlidesToRest) {
   EXPECT_NEAR(reached, expected, late);
 }
 
+/// A clamped strand swings down on a slope, on which its parts land one after the other.
+/// Tolerances bound the errors of impacts too, and no step falls below 1e-7 s.
+TEST(SwingingStrand, LandsOnASlopeWithAnyTolerance) {
+  for (const char* method : {"tr_bdf2", "esdirk43"}) {
+    std::vector<double> finest;
+    for (const double tolerance : {1e-6, 1e-5, 1e-4}) {
+      Material material;
+      material.youngs_modulus = 1e7;
+      Strand strand = make_strand(material, {radius, radius},
+                                  {.elements = 6, .length = 0.1}, uniform_shape({}));
+      const ExactContact law{{.stiffness = 1, .offset = radius}, true, mu};
+      const StrandPlace slope{{0.05, 0, -0.05}, rotation({0, 1, 0}, 0.6)};
+      const ModelEntry& model = find_model("super_helix");
+      const auto system =
+          model.on_strand(strand, Parameters(model.parameters, "test"),
+                          {std::make_shared<Gravity>(Vec{0, 0, -g}),
+                           std::make_shared<ExactBody>(Plane{}, slope, law)});
+      Options options;
+      options.tolerance = tolerance;
+      Drive drive(method, *system, options);
+      ASSERT_EQ(drive.to(0.16), Status::ok)
+          << method << ' ' << tolerance << ": " << drive.integrator->failure();
+      MaterialPoints& points = *system->material_points();
+      std::vector<double> x(3 * static_cast<std::size_t>(points.count()));
+      points.positions(drive.integrator->time(), drive.integrator->q(), x);
+      if (finest.empty()) finest = x;
+      // Some tens of impacts, each within the tolerance.
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        EXPECT_NEAR(x[i], finest[i], 30 * tolerance * 0.1) << method << ' ' << tolerance;
+      }
+    }
+  }
+}
+
 std::vector<Dropped> dropped() {
   std::vector<Dropped> all;
   for (const ModelEntry& model : model_catalogue()) {
