@@ -10,7 +10,6 @@
 #include "integrators/controlled_stage.h"
 #include "integrators/fixed_step.h"
 #include "linear/vector_ops.h"
-#include "math/vec3.h"
 
 namespace tress::integrators {
 namespace {
@@ -42,6 +41,9 @@ class FixedEsdirk final : public FixedStep {
 /// A jump of velocities below this part of what the tolerance sees needs no step of its
 /// own.
 constexpr double unseen_part = 0.1;
+/// Part of the tolerance that the error of an impact may be: a strand lands in tens of
+/// them.
+constexpr double impact_part = 0.1;
 /// Steps of this part of the typical time, in which the laws of contact hold, are not
 /// rejected. They move the impact of a strand that falls from its own height by 1e-6 of
 /// its length.
@@ -52,7 +54,8 @@ class ControlledEsdirk final : public ErrorControlled {
   ControlledEsdirk(System& system, const Options& options, const EsdirkTable& table)
       : ErrorControlled(system, options, 1 + std::min(table.order, table.embedded_order),
                         threshold(options, table)),
-        of_impact_(threshold(options, table) / options.tolerance),
+        of_impact_(
+            std::min(1.0, threshold(options, table) / (impact_part * options.tolerance))),
         stages_(dynamics(), controlled_options(dynamics(), options), table,
                 controlled_ending(dynamics())) {}
 
@@ -69,8 +72,8 @@ class ControlledEsdirk final : public ErrorControlled {
     if (s != Status::ok) return s;
     to.take_end(stages_);
     stages_.difference(h, error_q, error_v);
-    // Errors of smooth steps add up over a run, of which an impact is one event: its
-    // error may be the tolerance, and falls with h only.
+    // Errors of smooth steps add up over a run, of which an impact is one event. Its
+    // error falls with h only.
     if (stages_.impact()) {
       for (double& error : error_q) error *= of_impact_;
     }
@@ -140,9 +143,12 @@ void EsdirkStages::guess(std::size_t i, double h) noexcept {
 /// Whether a point that slid at the step's start faster than `gently` sticks in a stage.
 bool EsdirkStages::sticks(std::size_t stage, double gently) const noexcept {
   if (stuck_ == 0) return false;
+  const auto speed = [](const std::vector<double>& u, std::size_t k) {
+    return std::hypot(u[k], u[k + 1], u[k + 2]);
+  };
   for (std::size_t k = 0; k < slides_[0].size(); k += 3) {
-    if (norm(load3(&slides_[0][k])) > std::max(gently, stuck_) &&
-        norm(load3(&slides_[stage][k])) <= stuck_) {
+    if (speed(slides_[0], k) > std::max(gently, stuck_) &&
+        speed(slides_[stage], k) <= stuck_) {
       return true;
     }
   }

@@ -97,6 +97,7 @@ TEST(SwingingStrand, LandsOnASlopeWithAnyTolerance) {
     for (const double tolerance : {1e-6, 1e-5, 1e-4}) {
       Material material;
       material.youngs_modulus = 1e7;
+      material.internal_friction = 1e-10;
       Strand strand = make_strand(material, {radius, radius},
                                   {.elements = 6, .length = 0.1}, uniform_shape({}));
       const ExactContact law{{.stiffness = 1, .offset = radius}, true, mu};
