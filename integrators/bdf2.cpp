@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contract/constants.h"
 #include "contract/forms/moving_history.h"
 #include "integrators/bdf2_formula.h"
 #include "integrators/control/step_sequence.h"
@@ -55,8 +54,7 @@ class Bdf2 final : public FixedStep {
   }
 
   Status step(double t, double h) override {
-    // By so much what rests falls in a step, and makes no impact.
-    const double gently = h * earth_gravity;
+    const double gently = Stage::gentle_speed(h);
     stage_.leave(t, q_);
     stage_.places(t, q_, v_, place_);
     bool impact = stage_.stops(t, q_, v_, gently);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "contract/constants.h"
 #include "integrators/control/error_controlled.h"
 #include "integrators/controlled_stage.h"
 #include "integrators/fixed_step.h"
@@ -29,8 +28,7 @@ class FixedEsdirk final : public FixedStep {
   Status reset(double t) override { return dynamics_.accelerate(t, q_, v_, a_, lambda_); }
 
   Status step(double t, double h) override {
-    // By so much what rests falls in a step, and makes no impact.
-    const Status s = stages_.step(t, h, q_, v_, a_, lambda_, h * earth_gravity);
+    const Status s = stages_.step(t, h, q_, v_, a_, lambda_, Stage::gentle_speed(h));
     take_end(stages_);
     return s;
   }

@@ -44,11 +44,10 @@ struct EsdirkTable {
 /// bodies (ContactForm) follow the same rule: X_i = X + h sum_{j<=i} a_ij U_j.
 ///
 /// A step in one of whose stages a rigid contact stops points (Stage::stops) is a
-/// backward Euler step.
-/// Velocities jump there, and the stages of a higher-order method would weight the
-/// impulse with coefficients of either sign. The error estimate is the difference of
-/// positions to the free motion, which falls with the step. It excludes velocities, whose
-/// difference does not fall.
+/// backward Euler step. Velocities jump there, and the stages of a higher-order method
+/// would weight the impulse with coefficients of either sign. The error estimate is the
+/// difference of positions to the free motion, which falls with the step. It excludes
+/// velocities, whose difference does not fall.
 class EsdirkStages {
  public:
   /// Works on `dynamics`, which must outlive it, as must `table`. With a tolerance, a

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contract/constants.h"
 #include "contract/forms/energetics.h"
 #include "integrators/control/impulsive.h"
 #include "integrators/entry.h"
@@ -56,7 +55,7 @@ class Guarded final : public FixedStep, public Impulsive {
   void lose_matrix() override { dynamics_.lose_matrix(); }
 
   Status step(double t, double h) override {
-    const double gently = h * earth_gravity;
+    const double gently = Stage::gentle_speed(h);
     Status s = stages_.step(t, h, q_, v_, a_, lambda_, gently);
     if (s == Status::fatal) return s;
     if (s == Status::retry || gains(t, h)) {

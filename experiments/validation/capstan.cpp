@@ -108,14 +108,20 @@ bool slides(const ModelTrial& trial, const Strand& strand, double ratio,
 
 double ratio_of(double friction) { return std::exp(friction * wrapped); }
 
-double found_ratio(const ModelTrial& trial, double distance, double width) {
-  const Strand strand = rope(trial.elements, tail);
-  const auto slid = [&](double ratio) { return slides(trial, strand, ratio, distance); };
+/// The least ratio of pulls at which `slid` is true.
+template <class Slid>
+double least_ratio(const ModelTrial& trial, const Slid& slid, double width) {
   const double low = ratio_of(trial.parameter) / 1.1,
                high = ratio_of(trial.parameter) * 1.1;
   if (slid(low)) throw std::runtime_error("slides at much less pull");
   if (!slid(high)) throw std::runtime_error("holds against much more pull");
   return threshold(slid, low, high, width);
+}
+
+double found_ratio(const ModelTrial& trial, double distance, double width) {
+  const Strand strand = rope(trial.elements, tail);
+  return least_ratio(
+      trial, [&](double ratio) { return slides(trial, strand, ratio, distance); }, width);
 }
 
 double measured_ratio(const ModelTrial& trial) { return found_ratio(trial, away, 1e-3); }
@@ -126,11 +132,7 @@ double measured_ratio_on_drum(const ModelTrial& trial) {
   const auto falls = [&](double ratio) {
     return moved(trial, strand, ratio, a_little_away, 1) > a_little_away;
   };
-  const double low = ratio_of(trial.parameter) / 1.1,
-               high = ratio_of(trial.parameter) * 1.1;
-  if (falls(low)) throw std::runtime_error("the drum does not lift the rope's tip");
-  if (!falls(high)) throw std::runtime_error("the drum holds much more pull");
-  return threshold(falls, low, high, 1e-3);
+  return least_ratio(trial, falls, 1e-3);
 }
 
 /// Two thirds of the elements are on the cylinder; the first and the last of them turn by

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "contract/constants.h"
 #include "contract/forms/contact_form.h"
 #include "contract/forms/stage_watcher.h"
 #include "integrators/stage/contact_forces.h"
@@ -77,9 +78,13 @@ class Stage {
   /// Whether rigid contacts that the last solution closed stop points: at (q, v) at t,
   /// the start of the step, some approach their surface faster than `gently` (m/s).
   /// Velocities jump there, and only a step that forgets those of before may follow.
+  /// Methods with a fixed step take gentle_speed().
   bool stops(double t, In q, In v, double gently) noexcept {
     return contacts_ != nullptr && contacts_->approach(t, q, v) > gently;
   }
+
+  /// Returns the speed (m/s) by which what rests falls in a step of h (s): no impact.
+  static double gentle_speed(double h) { return h * earth_gravity; }
 
   In q() const { return equations_.q(); }  // of the last call
   /// Returns the rates of the last solution.
