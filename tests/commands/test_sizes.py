@@ -14,6 +14,13 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = Path(sys.argv.pop()) if len(sys.argv) > 1 else ROOT / "build/release/experiments"
 SECONDS = {"s": 1, "min": 60}
 OTHER_MACHINES = 4  # a shipped table may be of a faster or slower one
+# Studies with rows for each pack of SIMD lanes, of which `./tress test` compiles some.
+OF_PACKS = ["heads"]
+
+
+def has_all_packs():
+    cache = PROGRAMS.parent / "CMakeCache.txt"
+    return "TRESS_PACKS:STRING=all\n" in cache.read_text(encoding="utf-8")
 
 
 def output(name, *options):
@@ -49,7 +56,12 @@ class Sizes(unittest.TestCase):
             quick, full = text_of(help_text, "--quick"), text_of(help_text, "--full")
             with self.subTest(name):
                 count = rows(name, "--quick")
-                self.assertRegex(quick, rf"^as \./tress run: {count} rows\b")
+                self.assertRegex(quick, r"^as \./tress run: \d+ rows\b")
+                rows_told = int(re.search(r"\d+", quick)[0])
+                if name in OF_PACKS and not has_all_packs():
+                    self.assertIn(count, range(1, rows_told))
+                else:
+                    self.assertEqual(count, rows_told)
                 if rows(name, "--full") == count:
                     self.assertRegex(full, rf"^(the same rows|{count} rows,)")
                 else:
