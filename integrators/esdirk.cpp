@@ -170,6 +170,7 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
   stage_.leave(t, q);
   stage_.places(t, q, v, place_);
   stage_.slides(t, q, v, slides_[0]);
+  power_ = 0;
   impact_ = stage_.stops(t, q, v, gently);
   if (impact_) return damped(t, h, q, v, gently);
   std::ranges::copy(lambda, lambda_.begin());
@@ -203,7 +204,11 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
         i == 1 ? Stage::Matrix::own : Stage::Matrix::shared, effort);
     if (s != Status::ok) return s;
     std::ranges::copy(stage_.v(), v_[i].begin());
-    stage_.slides(t + h * table_.c(i), stage_.q(), stage_.v(), slides_[i]);
+    const double now = t + h * table_.c(i);
+    stage_.slides(now, stage_.q(), stage_.v(), slides_[i]);
+    if (energetics_ != nullptr) {
+      power_ = std::max(power_, energetics_->power(now, stage_.q(), stage_.v()));
+    }
     // A later stage may open the contact again, thrown back by this one's impulse.
     impact_ = stage_.stops(t, q, v, gently) || sticks(i, gently);
     if (impact_) return damped(t, h, q, v, gently);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "contract/forms/energetics.h"
 #include "integrators/control/step_sequence.h"
 #include "integrators/stage/stage.h"
 
@@ -57,6 +58,9 @@ class EsdirkStages {
   EsdirkStages(Dynamics& dynamics, const Options& options, const EsdirkTable& table,
                Stage::Ending ending);
 
+  /// The powers of the stages are measured from now on. `energetics` must outlive this.
+  void measure(Energetics& energetics) { energetics_ = &energetics; }
+
   /// Steps from (q, v) at t, with acceleration a and multipliers lambda, over h. Points
   /// that reach a rigid surface at less than `gently` (m/s) do not cause a backward Euler
   /// step.
@@ -79,6 +83,8 @@ class EsdirkStages {
   /// Returns the multipliers at the end of the last step.
   In lambda() const { return lambda_; }
 
+  /// Largest power (W) in a stage of the last step, where measure() was called.
+  double power() const { return power_; }
   /// Whether the last step was that of an impact.
   bool impact() const { return impact_; }
   /// The method minus its embedded comparison over the last step, of length h.
@@ -100,11 +106,13 @@ class EsdirkStages {
   std::vector<std::vector<double>> slides_;  // of the stages, along bodies
   std::vector<double> place_;                // of the step's start
   StepSequence steps_;
-  std::vector<double> a_before_;  // at its start
-  std::vector<double> a_begun_;   // where steps begin, with forces of contacts
-  bool begun_ = false;            // whether a_begun_ is that of this step
-  bool impact_ = false;           // the last step was that of an impact
-  double stuck_;                  // m/s: slower points stick; 0 without a tolerance
+  std::vector<double> a_before_;      // at its start
+  std::vector<double> a_begun_;       // where steps begin, with forces of contacts
+  bool begun_ = false;                // whether a_begun_ is that of this step
+  bool impact_ = false;               // the last step was that of an impact
+  double stuck_;                      // m/s: slower points stick; 0 without a tolerance
+  Energetics* energetics_ = nullptr;  // null: powers are not measured
+  double power_ = 0;                  // W, the largest in a stage
 };
 
 /// The method with a fixed step, or with Options::tolerance. `table` must outlive it.

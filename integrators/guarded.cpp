@@ -20,16 +20,22 @@ constexpr double rounding = 1e-9;
 /// An L-stable step of order 2 or 4. A backward Euler step replaces it where its
 /// equations have no solution, or where the energy grows by more than the work done:
 ///
-///     E_{n+1} > E_n + h max(0, P_n, P_{n+1}) + 0.02 max(T_n, T_{n+1})
+///     E_{n+1} > E_n + h max(0, P_n, P_i, P_{n+1}) + 0.02 max(T_n, T_{n+1})
 ///
-/// with the energy E, its kinetic part T and the power P of Energetics. The order is that
+/// with the energy E, its kinetic part T and the power P of Energetics. With exact
+/// contact, whose forces are those of a stage, i runs over the stages. The order is that
 /// of the method while no step is replaced.
 class Guarded final : public FixedStep, public Impulsive {
  public:
   Guarded(System& system, const Options& options, const EsdirkTable& table)
       : FixedStep(system, options),
         stages_(dynamics_, options, table, {}),
-        energetics_(system.energetics()) {}
+        energetics_(system.energetics()) {
+    // Contact forces of a stage are known until the next one is solved.
+    if (energetics_ != nullptr && system.contact_form() != nullptr) {
+      stages_.measure(*energetics_);
+    }
+  }
 
   std::vector<InOut> state() override { return {q_, v_, a_}; }
 
@@ -71,7 +77,7 @@ class Guarded final : public FixedStep, public Impulsive {
   bool gains(double t, double h) {
     const Account before = account(t, q_, v_);
     const Account after = account(t + h, stages_.q(), stages_.v());
-    const double work = h * std::max({0.0, before.power, after.power});
+    const double work = h * std::max({0.0, before.power, stages_.power(), after.power});
     const double allowed =
         work + gain_part * std::max(before.energy.kinetic, after.energy.kinetic) +
         rounding * (std::abs(before.energy.potential) + before.energy.kinetic);

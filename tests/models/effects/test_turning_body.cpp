@@ -104,11 +104,7 @@ TEST_P(TurningBody, WhatSticksStaysWhereItIs) {
         farthest = std::max(farthest, norm(load3(&now[i]) - load3(&start[i])));
       }
     }
-    // guarded_esdirk43 replaces two steps here, since the friction of the last stage is
-    // not the mean of the step, and work is measured by it. After a step that ends with
-    // the mean velocity, a point slips by 1e-6 m until it has the body's.
-    const bool slips = GetParam().integrator == "guarded_esdirk43";
-    EXPECT_LT(farthest, slips ? 3e-6 : 1e-6) << step;
+    EXPECT_LT(farthest, 1e-6) << step;
   }
 }
 
