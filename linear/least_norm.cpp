@@ -1,8 +1,9 @@
 #include "linear/least_norm.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 
+#include "linear/dense_algebra.h"
 #include "linear/vector_ops.h"
 
 namespace tress {
@@ -18,10 +19,7 @@ bool LeastNorm::factor(In columns, std::size_t size) {
     scale_[i] = largest > 0 ? 1 / largest : 0;
     row *= scale_[i];
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(dependence);
-  decomposition.compute(a);
-  const Eigen::MatrixXd inverse = decomposition.pseudoInverse();
+  const Eigen::MatrixXd inverse = pseudoinverse(a, dependence);
   inverse_.assign(inverse.data(), inverse.data() + inverse.size());
   return true;
 }

@@ -1,24 +1,12 @@
 #include "experiments/numerics/dense_algebra.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <utility>
-
-#include "linear/dense_lu.h"
 
 namespace tress::experiments {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-MatrixXd solution(const MatrixXd& a, const MatrixXd& b) {
-  DenseLu lu(a.rows());
-  lu.factor(a);
-  MatrixXd x = b;
-  for (Eigen::Index j = 0; j < x.cols(); ++j) lu.solve(x.col(j));
-  return x;
-}
 
 MixedSolution mixed_solution(MatrixXd a, VectorXd b, In typical) {
   VectorXd size(a.cols());
@@ -33,20 +21,6 @@ MixedSolution mixed_solution(MatrixXd a, VectorXd b, In typical) {
     b[i] /= entry;
   }
   return {solution(a, b), std::move(size)};
-}
-
-VectorXd least_squares_solution(const MatrixXd& a, const VectorXd& b) {
-  return a.colPivHouseholderQr().solve(b);
-}
-
-MatrixXd complement(const MatrixXd& columns) {
-  if (columns.cols() == 0) return MatrixXd::Identity(columns.rows(), columns.rows());
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  return MatrixXd(qr.householderQ()).rightCols(columns.rows() - columns.cols());
-}
-
-bool is_definite(const MatrixXd& symmetric) {
-  return Eigen::LLT<MatrixXd>(symmetric).info() == Eigen::Success;
 }
 
 Eigen::VectorXcd eigenvalues(const MatrixXd& matrix) {

@@ -4,13 +4,12 @@
 
 #include "contract/basics.h"
 #include "contract/layers.h"
+#include "linear/dense_algebra.h"
 
-/// Decompositions of dense matrices, O(n^3), instantiated here once: each costs some
-/// seconds of compile time per use.
+/// Eigenvalues of dense matrices, O(n^3), instantiated here once: each decomposition
+/// costs some seconds of compile time per use.
 namespace tress::experiments {
 
-/// Solves a x = b by LU.
-Eigen::MatrixXd solution(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 /// Solution of equations whose unknowns have different units.
 struct MixedSolution {
   Eigen::VectorXd scaled;  // the unknowns over their sizes
@@ -22,13 +21,6 @@ struct MixedSolution {
 /// sizes of the first unknowns. The size of any other unknown is the inverse of the
 /// largest entry of its column.
 MixedSolution mixed_solution(Eigen::MatrixXd a, Eigen::VectorXd b, In typical);
-/// Minimises |a x - b|; the columns of a have full rank.
-Eigen::VectorXd least_squares_solution(const Eigen::MatrixXd& a,
-                                       const Eigen::VectorXd& b);
-/// An orthonormal basis of the orthogonal complement of independent columns.
-Eigen::MatrixXd complement(const Eigen::MatrixXd& columns);
-/// Whether a symmetric matrix is positive definite.
-bool is_definite(const Eigen::MatrixXd& symmetric);
 
 /// Eigenvalues of a general square matrix, unordered.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);

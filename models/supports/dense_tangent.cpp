@@ -15,7 +15,9 @@ Pattern full_pattern(int n) {
 }
 
 DenseTangent::DenseTangent(System& system)
-    : system_(system), full_(full_pattern(system.layout().coordinates)) {
+    : system_(system),
+      full_(full_pattern(system.layout().coordinates)),
+      lu_(system.layout().coordinates) {
   const int n = system.layout().coordinates;
   const auto count = static_cast<std::size_t>(n);
   for (auto* x : {&a_typ_, &zero_, &unit_, &ahead_}) x->assign(count, 0.0);
@@ -27,7 +29,6 @@ DenseTangent::DenseTangent(System& system)
     a_typ_[i] *= rate;
   }
   compliance_.resize(n, n);
-  lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(n);
 }
 
 /// Forces cancel in the difference of two residuals. Accelerations of 1e9 times their
@@ -80,11 +81,11 @@ Status DenseTangent::values(double t, In q, In v, In a, Weights w, Out s) noexce
   }
   // (D^-1 S^-1 D^-1)^-1 = D S D, with D the typical sizes.
   compliance_ = typical_.cwiseInverse().asDiagonal() * compliance_;
-  lu_.compute(compliance_);
-  const double least = lu_.matrixLU().diagonal().cwiseAbs().minCoeff();
+  const double least = lu_.factor(compliance_);
   if (!(least > 0) || !std::isfinite(least)) return Status::retry;
   Eigen::Map<Eigen::MatrixXd> matrix(s.data(), n, n);
-  matrix = lu_.inverse();
+  matrix.setIdentity();
+  for (Eigen::Index k = 0; k < n; ++k) lu_.solve(matrix.col(k));
   matrix = typical_.cwiseInverse().asDiagonal() * matrix *
            typical_.cwiseInverse().asDiagonal();
   return Status::ok;

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <vector>
 
 #include "contract/forms/sparse_form.h"
 #include "contract/system.h"
+#include "linear/dense_lu.h"
 
 namespace tress::models {
 
@@ -34,7 +35,7 @@ class DenseTangent final : public SparseForm {
   std::vector<double> a_typ_, zero_, unit_, ahead_;  // scratch
   std::vector<double> inertia_;                      // scratch of without_mass()
   Eigen::MatrixXd compliance_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  DenseLu lu_;
 };
 
 }  // namespace tress::models

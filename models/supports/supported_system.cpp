@@ -1,12 +1,13 @@
 #include "models/supports/supported_system.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "contract/input_error.h"
+#include "linear/dense_algebra.h"
 #include "linear/vector_ops.h"
 #include "models/supports/kinetic_rate.h"
 
@@ -213,8 +214,7 @@ void SupportedSystem::multipliers(int rows, std::vector<double>& lambda) const {
   const Eigen::MatrixXd scaled =
       unit.asDiagonal() * compliance_.topLeftCorner(rows, rows) * unit.asDiagonal();
   const Eigen::VectorXd found = unit.cwiseProduct(
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(scaled).solve(
-          unit.cwiseProduct(needed_.head(rows)).eval()));
+      least_squares_solution(scaled, unit.cwiseProduct(needed_.head(rows))));
   Eigen::Map<Eigen::VectorXd>(lambda.data(), rows) = found;
 }
 

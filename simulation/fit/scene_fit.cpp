@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_linalg.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "linear/dense_algebra.h"
 #include "simulation/fit/fit_search.h"
 #include "simulation/fit/fit_words.h"
 #include "simulation/fit/profile.h"
@@ -25,6 +27,29 @@ constexpr double least_part = 0.1;  // of a unit vector: a parameter that belong
 constexpr double largest_shift = 0.25;  // half intervals
 constexpr double deviations = 4;        // standard deviations of an autocorrelation
 constexpr double unlikely = 1e-3;       // probability of a larger sum of squares
+
+/// Singular values in descending order and, by columns, the right singular vectors.
+struct SingularValues {
+  VectorXd s;
+  MatrixXd v;
+};
+
+/// By one-sided Jacobi rotations, which find small values to their own relative accuracy
+/// [Demmel, Veselic 1992, SIAM J. Matrix Anal. Appl. 13, 1204].
+SingularValues singular_values(const MatrixXd& j) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto n = static_cast<std::size_t>(j.cols());
+  RowMajor u = RowMajor::Zero(std::max(j.rows(), j.cols()), j.cols()),
+           v(j.cols(), j.cols());
+  u.topRows(j.rows()) = j;
+  VectorXd s(j.cols());
+  gsl_matrix_view of_u =
+      gsl_matrix_view_array(u.data(), static_cast<std::size_t>(u.rows()), n);
+  gsl_matrix_view of_v = gsl_matrix_view_array(v.data(), n, n);
+  gsl_vector_view of_s = gsl_vector_view_array(s.data(), n);
+  gsl_linalg_SV_decomp_jacobi(&of_u.matrix, &of_v.matrix, &of_s.vector);
+  return {std::move(s), v};
+}
 
 /// The statistics of a search at its end.
 class Fit {
@@ -55,7 +80,7 @@ VectorXd Fit::shifts(const LinearizedFit& here, const MatrixXd& determined, Fine
   if (!there) return {};
   const auto step = [&](const LinearizedFit& one) -> VectorXd {
     const MatrixXd j = one.j * determined;
-    return determined * j.colPivHouseholderQr().solve(-one.r);
+    return determined * least_squares_solution(j, -one.r);
   };
   return step(*there) - step(here);
 }
@@ -127,8 +152,7 @@ void Fit::describe(SceneFit& fit) {
 
 void Fit::add_intervals(SceneFit& fit, const LinearizedFit& found) {
   const std::vector<double> u = search_.u();
-  const Eigen::JacobiSVD<MatrixXd> svd(found.j, Eigen::ComputeThinV);
-  const VectorXd& s = svd.singularValues();
+  const auto [s, v] = singular_values(found.j);
   fit.singular.assign(s.begin(), s.end());
   const double upper = (1 + task_.confidence) / 2;
   const double deviation = runs_.sigma_known()
@@ -140,7 +164,6 @@ void Fit::add_intervals(SceneFit& fit, const LinearizedFit& found) {
          deviation / s[determined] < widest) {
     ++determined;
   }
-  const MatrixXd& v = svd.matrixV();
   const VectorXd half = deviation * (v.leftCols(determined) *
                                      s.head(determined).cwiseInverse().asDiagonal())
                                         .rowwise()

@@ -1,8 +1,6 @@
 #include "simulation/rest/dense_statics.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "contract/forms/constraint_form.h"
 #include "contract/forms/sparse_form.h"
+#include "linear/dense_algebra.h"
 #include "linear/sparse_pattern.h"
 
 namespace tress::simulation {
@@ -73,9 +72,8 @@ void DenseStatics::take_constraints() {
   std::vector<double> values(static_cast<std::size_t>(pattern.nonzeros()));
   check(constraints->gradient(0, span(q_), values));
   const MatrixXd gradient = dense(pattern, values);
-  const Eigen::HouseholderQR<MatrixXd> qr(gradient);
-  basis_ = MatrixXd(qr.householderQ()).rightCols(q_.size() - gradient.cols());
-  lambda_ = qr.solve(full_residual());
+  basis_ = complement(gradient);
+  lambda_ = least_squares_solution(gradient, full_residual());
 }
 
 const MatrixXd& DenseStatics::stiffness() {
@@ -99,7 +97,7 @@ const MatrixXd& DenseStatics::stiffness() {
       force[k] = 0;
       compliance.col(k) = way;
     }
-    stiffness_ = compliance.inverse();
+    stiffness_ = solution(compliance, MatrixXd::Identity(q_.size(), q_.size()));
   }
   if (basis_.size() > 0) stiffness_ = basis_.transpose() * stiffness_ * basis_;
   return stiffness_ = (0.5 * (stiffness_ + stiffness_.transpose())).eval();
@@ -130,9 +128,7 @@ MatrixXd DenseStatics::by_natural(NaturalStrains& strains) {
 }
 
 double least_definite(const MatrixXd& a, const MatrixXd& b) {
-  const auto definite = [&](double s) {
-    return Eigen::LLT<MatrixXd>(a + (s - 1) * b).info() == Eigen::Success;
-  };
+  const auto definite = [&](double s) { return is_definite(a + (s - 1) * b); };
   constexpr double least = 1e-4, most = 1e6, close = 1e-7;
   if (definite(least)) return 0;
   double low = least, high = 1;
@@ -154,7 +150,7 @@ MatrixXd least_squares(const MatrixXd& m, const MatrixXd& b, double ridge) {
   with_ridge.bottomRows(m.cols()).diagonal().setConstant(ridge_of(m, ridge));
   MatrixXd right = MatrixXd::Zero(with_ridge.rows(), b.cols());
   right.topRows(b.rows()) = b;
-  return Eigen::HouseholderQR<MatrixXd>(with_ridge).solve(right);
+  return least_squares_solution(with_ridge, right);
 }
 
 VectorXd nonnegative(const MatrixXd& a, const VectorXd& b, double ridge) {
@@ -176,7 +172,7 @@ VectorXd nonnegative(const MatrixXd& a, const VectorXd& b, double ridge) {
                        active[static_cast<std::size_t>(j)]);
       }
     }
-    return VectorXd(Eigen::LLT<MatrixXd>(g).solve(y));
+    return VectorXd(solution(g, y));
   };
   for (Index round = 0; round < 3 * n; ++round) {
     const VectorXd slope = right - gram * x;

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
+#include "linear/dense_algebra.h"
 #include "simulation/rest/body_support.h"
 #include "simulation/rest/dense_statics.h"
 #include "simulation/rest/natural_gain.h"
@@ -57,8 +58,8 @@ double distance(System& system, In from, In to) {
 
 /// The state of balance for these natural strains, one Newton's step from q.
 std::vector<double> balanced(DenseStatics& statics, std::vector<double> q) {
-  const MatrixXd change = statics.displacement(
-      Eigen::PartialPivLU<MatrixXd>(statics.stiffness()).solve(statics.residual()));
+  const MatrixXd change =
+      statics.displacement(solution(statics.stiffness(), statics.residual()));
   for (std::size_t i = 0; i < q.size(); ++i) {
     q[i] -= change(static_cast<Eigen::Index>(i), 0);
   }

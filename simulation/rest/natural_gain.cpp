@@ -1,6 +1,8 @@
 #include "simulation/rest/natural_gain.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
+
+#include "linear/dense_algebra.h"
 
 namespace tress::simulation {
 
@@ -22,10 +24,9 @@ MatrixXd natural_gain(DenseStatics& statics, NaturalStrains& strains) {
   }
   constexpr double ridge = 1e-10;  // for strains that no displacement feels
   const MatrixXd slope = statics.by_natural(strains);
-  const Eigen::PartialPivLU<MatrixXd> lu(statics.stiffness());
   const auto displaced = [&](const MatrixXd& r) {
     return MatrixXd(statics.scale().cwiseInverse().asDiagonal() *
-                    statics.displacement(MatrixXd(lu.solve(r))));
+                    statics.displacement(solution(statics.stiffness(), r)));
   };
   const MatrixXd unit = MatrixXd::Identity(slope.rows(), slope.rows());
   return -least_squares(displaced(slope), displaced(unit), ridge);

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "contract/input_error.h"
 #include "integrators/formulation/dynamics.h"
 #include "integrators/formulation/projection.h"
+#include "linear/dense_algebra.h"
 #include "models/joints/joined_system.h"
 
 namespace tress::simulation {
@@ -44,7 +44,7 @@ Eigen::MatrixXd gradients(models::JoinedSystem& system, In q, In q_typ,
 /// not stretch are so between points as far apart as they are long. A redundant joint
 /// remains redundant where they bend.
 std::optional<std::size_t> taut_joint(models::JoinedSystem& system, In q) {
-  constexpr double singular = 1e-7;  // of the largest singular value
+  constexpr double singular = 1e-7;  // of the largest pivot
   constexpr double bent = 1e-2;      // of the typical sizes
   std::vector<double> q_typ(q.size()), v_typ(q.size()), moved(q.begin(), q.end());
   system.scale(q_typ, v_typ);
@@ -57,18 +57,15 @@ std::optional<std::size_t> taut_joint(models::JoinedSystem& system, In q) {
   }
   if (rows.empty()) return {};
   const auto rank = [&](In at) {
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> made(gradients(system, at, q_typ, rows));
-    made.setThreshold(singular);
-    return made.rank();
+    return numerical_rank(gradients(system, at, q_typ, rows), singular);
   };
   if (rank(q) >= rank(moved)) return {};
   // The multipliers that pull at no coordinate.
-  const Eigen::BDCSVD<Eigen::MatrixXd> here(gradients(system, q, q_typ, rows),
-                                            Eigen::ComputeFullV);
+  const Eigen::MatrixXd here = null_space(gradients(system, q, q_typ, rows), singular);
   std::vector<double> kept(static_cast<std::size_t>(system.rows().rows()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     kept[static_cast<std::size_t>(rows[k])] =
-        here.matrixV()(static_cast<Eigen::Index>(k), std::ssize(rows) - 1);
+        here(static_cast<Eigen::Index>(k), here.cols() - 1);
   }
   std::size_t most = 0;
   double share = -1;
