@@ -12,15 +12,37 @@ PAGE_ALONE = "node experiments/report/dist/report.mjs results --out results/repo
 
 # What a reader has before the first command of a page, as bash.
 BEFORE = {
-    "docs/compare.md": ["mkdir ../other", "cp -r results ../other/"],
+    "docs/cluster.md": [
+        short_scene("full_head", 0.02),
+        "sed -i 's/^count = .*/count = 64/' scenes/full_head.toml",
+    ],
+    # Two commits, a change and two builds.
+    "docs/compare.md": [
+        "mkdir ../other", "cp -r results ../other/", "make_toy build/bench", "make_toy ../other/build/bench",
+        "git init -q", "git add CMakePresets.json README.md", "git commit -q -m one",
+        "echo >>README.md", "git commit -q -a -m two", "echo >>README.md",
+    ],
+    # The groom of the page, of another model and smaller.
+    "docs/extending.md": [
+        "sed -n '/^```toml/,/^```/{//!p;/^```$/q}' docs/extending.md | sed 's/my_rod/mass_spring/; "
+        "s/^count = .*/count = 20/; s/^duration_s = .*/duration_s = 0.02/' > rods.toml",
+    ],
     "docs/grooms.md": [MY_SCENE],
     "docs/how_to_choose.md": [MY_SCENE],
+    "docs/start/fit.md": [
+        "cp experiments/calibrate/data/swinging_curl.toml filmed.toml",
+        "cp experiments/calibrate/data/swinging_curl.csv video.csv",
+    ],
+    "docs/about/packages.md": [
+        short_scene("hair_under_wind", 0.05), "mkdir -p build/packages", "touch build/packages/tress.deb",
+    ],
     "docs/player.md": [
         *(short_scene(name, 0.05) for name in ("crossing_locks", "full_head", "head_shaking", "plectoneme")),
         "sed -i 's/^count = .*/count = 1000/' scenes/full_head.toml",
         "sed -i 's/^frames_per_s = .*/frames_per_s = 300/' scenes/crossing_locks.toml",
         SIMULATE + " scenes/{crossing_locks,full_head,head_shaking,plectoneme}.toml",
     ],
+    "docs/plugins.md": ["mkdir -p build/plugin", "touch build/plugin/libexample.so"],
     # The scene of the page.
     "docs/start/gradients.md": [
         "sed -n '/^```toml/,/^```/{//!p;/^```$/q}' docs/start/gradients.md > curl.toml",
@@ -47,43 +69,56 @@ class Rule:
     """Is for the commands of a page that begin with `command`."""
     page: str
     command: str
+    whole: bool = False  # fits only the command itself
     more: str = ""  # options that make it quick, put at its end
     instead: str = ""  # what replaces `command`
     exits: tuple[int, ...] = ()  # exit codes besides 0 that are an answer too
     why: str = ""  # the reason for `instead` and `exits`
-    left_out: str = ""  # why it is not run here
-    by: str = ""  # the test that runs it, where one does
+    spelling: str = ""  # why the command that is run only checks the spelling of this one
+    long: bool = False  # runs with ./tress test --all only
+    by: str = ""  # the test that runs it instead
+    takes: str = ""  # the words with which that test takes commands from the page
+    pattern: str = ""  # of the commands that it takes
 
     def fits(self, command):
-        return command.page == self.page and command.text.startswith(self.command)
+        fits = command.text == self.command if self.whole else command.text.startswith(self.command)
+        return command.page == self.page and fits
 
 
 def experiment(name):
     return f"build/release/experiments/{name}"
 
 
-def of_cluster(command):
-    return Rule("docs/cluster.md", command, left_out="needs a cluster: ./tress test --cluster",
-                by="tests/cluster/test_slurm.py")
+def of_reproduce(page, command):
+    return Rule(page, command, by="tests/commands/test_reproduce.py", takes=f'page_commands(ROOT, "{page}")')
 
 
+FIRST_ID = f"{experiment('hard_cases')} --quick --dry-run | grep -om 1 'run_id=[0-9a-f]*' | cut -d = -f 2"
+PLUGIN = "^(build/|cmake -S|cmake --build)"
 FILM = "./tress film results/report.html "
 RULES = (
-    Rule("README.md", "./tress", left_out="builds, for which a copy of the sources has no tree",
-         by="tests/commands/test_quick_start.py"),
-    Rule("docs/other_solvers.md", "", left_out="needs R, Octave and PETSc; tests/report/test_other_solvers.py tries the program"),
+    Rule("README.md", "./tress", by="tests/commands/test_quick_start.py", takes='page_commands(ROOT, "README.md")'),
+    of_reproduce("docs/about/citing.md", "./tress rerun"),
+    Rule("docs/about/citing.md", f"{experiment('hard_cases')} --quick --run-id RUN_ID",
+         instead=f"{experiment('hard_cases')} --quick --run-id $({FIRST_ID})", why="the id of a row"),
+    Rule("docs/about/packages.md", "./tress package", more="--help", spelling="builds for half an hour"),
+    Rule("docs/about/packages.md", "sudo apt install", spelling="needs root"),
+    Rule("docs/about/packages.md", "cmake", spelling="builds; tests/install installs the build"),
+    Rule("docs/about/packages.md", "/opt/tress/bin/tress", instead="./tress", why="nothing is installed in /opt",
+         spelling="tests/install runs the installed command"),
+    Rule("docs/other_solvers.md", "sudo apt-get", spelling="needs root"),
+    Rule("docs/other_solvers.md", "python3 experiments/other_solvers/run.py beam", exits=(2,),
+         why="where R is missing", spelling="needs R"),
+    Rule("docs/other_solvers.md", "python3 experiments/other_solvers/run.py", whole=True, more="--help",
+         spelling="needs R, Octave and PETSc, and minutes"),
     Rule("docs/start/own_scene.md", f"{SIMULATE} --print-defaults > my.toml", instead=MY_SCENE, why="a shorter scene"),
     Rule("docs/start/own_scene.md", f"{experiment('cost_of_accuracy')} --advise",
          more="--models super_helix --integrators tr_bdf2"),
     Rule("docs/start/own_scene.md", f"{experiment('hard_cases')} --scene", more="--models super_helix,der --quick"),
-    of_cluster("./tress cluster"),
-    of_cluster("mpirun"),
-    Rule("docs/compare.md", "./tress compare HEAD~1", left_out="builds two commits"),
-    Rule("docs/compare.md", "git commit", left_out="commits the reader's change"),
-    Rule("docs/compare.md", "./tress run", left_out="runs a study for minutes"),
-    Rule("docs/compare.md", "./tress compare build/bench", left_out="needs two builds of the benchmarks"),
-    Rule("docs/reproduce.md", "./tress", left_out="builds, for which a copy of the sources has no tree",
-         by="tests/commands/test_reproduce.py"),
+    Rule("docs/cluster.md", "", long=True),
+    Rule("docs/compare.md", "./tress run", long=True, more="-- --models super_helix --integrators tr_bdf2 --set case=violent_shake"),
+    Rule("docs/compare.md", "./tress compare ../before results", long=True, exits=(3,), why="the new table has fewer rows"),
+    of_reproduce("docs/reproduce.md", "./tress"),
     Rule("docs/extending.md", f"{experiment('constraint_drift')} --integrators",
          more="--models inextensible_chain --quick"),
     Rule("docs/extending.md", f"{experiment('stability_limit')} --elements",
@@ -97,16 +132,20 @@ RULES = (
          "--rate 10 --size 1920,1080", more="--size 160,120"),
     Rule("docs/player.md", FILM + "'scene=full_head&colour=hair' print --size 3840,2160 --scale 2 --from 1 --to 1",
          more="--size 160,120 --from 0 --to 0"),
-    Rule("docs/plugins.md", "", left_out="its own test", by="tests/plugin/test_plugin.sh"),
-    Rule("docs/start/own_force.md", "", left_out="builds", by="tests/commands/test_new.sh"),
-    Rule("docs/python.md", "./tress python", left_out="builds, and runs its own tests"),
-    Rule("docs/python.md", "PYTHONPATH=", left_out="its own test", by="python/tests/test_examples.py"),
-    Rule("docs/python.md", "/usr/bin/python3 -m venv", left_out="for the next line"),
-    Rule("docs/python.md", "my_environment", left_out="compiles for minutes"),
-    Rule("docs/start/fit.md", f"{experiment('calibrate')} --scene experiments/calibrate/data/buckling_0.toml",
-         left_out="takes a minute; test_calibrate_points.cpp fits a part of its record"),
-    Rule("docs/start/statics.md", "./tress statics", instead=f"{experiment('statics')} --scene",
-         why="builds first, for which a copy of the sources has no tree"),
+    *(Rule("docs/plugins.md", command, by="tests/plugin/test_plugin.sh", takes=f"docs/plugins.md '{PLUGIN}'",
+           pattern=PLUGIN) for command in ("build/", "cmake -S", "cmake --build")),
+    Rule("docs/plugins.md", "cmake --install", spelling="tests/install installs the build"),
+    Rule("docs/plugins.md", "./tress check", exits=(2,), why="the library is empty",
+         spelling="tests/plugin/test_plugin.sh runs the contract suites on a library"),
+    Rule("docs/plugins.md", "./tress report", long=True, instead=PAGE_ALONE, why="the figures take seconds"),
+    Rule("docs/start/own_force.md", "build/release/tests/test_effects",
+         spelling="the effect is not compiled; tests/commands/test_new.sh compiles its source"),
+    Rule("docs/python.md", "PYTHONPATH=", by="python/tests/test_examples.py", takes='self.run_example("first_run")',
+         pattern=r"python/examples/first_run\.py$"),
+    Rule("docs/python.md", "/usr/bin/python3 -m venv", long=True),
+    Rule("docs/python.md", "my_environment", long=True, more="--dry-run", spelling="compiles for minutes"),
+    Rule("docs/start/fit.md", f"{experiment('calibrate')} --scene experiments/calibrate/data/buckling_0.toml", long=True),
+    Rule("docs/start/fit.md", f"{experiment('calibrate')} --scene filmed.toml", long=True),
     Rule("experiments/calibrate/data/README.md", f"{experiment('calibrate')} --set data=measured.csv", exits=(3,),
          why="a record of another hair, which it says"),
     Rule("experiments/cost_of_accuracy/README.md", f"{experiment('cost_of_accuracy')} --advise",
@@ -117,6 +156,4 @@ RULES = (
     Rule("experiments/heads/README.md", f"{experiment('heads')} --strands 50000,1000000 --elements 5,20",
          instead=f"{experiment('heads')} --strands 32,64 --elements 5", more="--quick", exits=(3,),
          why="minutes and gigabytes; claims are of more hairs than that"),
-    Rule("experiments/matrices/README.md", "./tress matrices", instead=f"{experiment('matrices')} --scene",
-         why="builds first, for which a copy of the sources has no tree"),
 )

@@ -60,6 +60,8 @@ def commands_of(page, text):
             if not re.match(r"[\w./]", line, re.A):
                 raise BadPage(f"{place}: no command; give the fence a language, as in ```text")
             found.append(Command(page, number, line))
+        elif fence == "text" and BEGINS_COMMAND.match(line):
+            raise BadPage(f"{place}: a command in a fence of text; give the fence no language")
         elif fence is None and line.startswith("    ") and BEGINS_COMMAND.match(line):
             raise BadPage(f"{place}: put the command into a fence, where its test finds it")
     if fence is not None:
@@ -69,6 +71,11 @@ def commands_of(page, text):
 
 def page_commands(root, page):
     return commands_of(page, (root / page).read_text(encoding="utf-8"))
+
+
+def blocks_of(text, language):
+    """Returns the texts in the fences of a language."""
+    return re.findall(rf"(?ms)^```{language}\n(.*?)^```$", text)
 
 
 def main(root, page, pattern=""):

@@ -1,6 +1,7 @@
 """./tress reproduce, on experiments that are stand-ins. Its page is docs/reproduce.md."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -8,6 +9,8 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from page_commands import page_commands  # noqa: E402
+from stand_ins import ROOT  # noqa: E402
 from toy_release import COMMIT, IDS, Reproduce, rows  # noqa: E402
 
 
@@ -61,6 +64,25 @@ class Everything(Reproduce):
         self.assertIn("0.25", (self.results / "damping.csv").read_text())
         self.ends(3, "pages", self.reproduce("damping", "--write"))
         self.assertNotIn("0.25", (self.results / "damping.csv").read_text())
+
+
+class Page(Reproduce):
+    def test_commands_of_the_pages_as_they_stand(self):
+        self.experiments("damping", "scaling", "matrices")
+        self.table("matrices", ["matrices"], rows(ids=["d7ff59fbcddbcdc9", *IDS[1:]]))
+        commands = page_commands(ROOT, "docs/reproduce.md")
+        cited = page_commands(ROOT, "docs/about/citing.md")
+        commands += [command for command in cited if command.text.startswith("./tress")]
+        self.assertEqual(len(commands), 6)
+        for command in commands:
+            # A machine at work would be waited for.
+            wait = " --wait 0s" if command.text.startswith("./tress reproduce") else ""
+            done = subprocess.run(
+                ["bash", "-c", command.text + wait], cwd=self.house, stdin=subprocess.DEVNULL,
+                capture_output=True, text=True, check=False,
+                env=os.environ | {"PATH": f"{self.work}/bin:{os.environ['PATH']}",
+                                  "TRESS_CACHE": f"{self.work}/cache"})
+            self.ends(0, "rows? agrees?|release.tar.gz", done)
 
 
 class Differences(Reproduce):
