@@ -47,7 +47,8 @@ void tell_verdicts(std::string_view experiment, const Verdicts& verdicts) {
          verdict.value, limit ? "; " : "", limit ? verdict.reason : "");
   }
   if (not_judged > 0) {
-    tell("{}: not judged: {} claims of rows that were not run\n", experiment, not_judged);
+    tell("{}: claims of the study not judged, since their rows were not run: {}\n",
+         experiment, not_judged);
   }
 }
 

@@ -28,6 +28,7 @@ std::string_view remedy_of_energy(const Scene& scene) {
 /// Part of the slack of the guard from which on a run prints what it used. A run that
 /// used all of it ended, and said so.
 constexpr double told_excess = 0.1;
+constexpr double rounding = 1e-9;  // of a step that is written as a decimal number
 
 }  // namespace
 
@@ -45,6 +46,13 @@ std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
         "a strand had {:.2g} J more energy than its start and its loads explain, "
         "{:.3g} % of the slack that the guard allows for coarse steps: {}",
         run.excess.gained, 100 * run.excess.share(), remedy_of_energy(scene)));
+  }
+  if (const double frame = 1 / scene.frame_rate;
+      !scene.chooses_steps() && scene.options.step > (1 + rounding) * frame) {
+    all.push_back(fmt::format(
+        "dt_s = {:.9g} s is longer than the {:.9g} s between frames, at which "
+        "steps end: give a shorter dt_s, or fewer frames_per_s",
+        scene.options.step, frame));
   }
   if (!run.not_smooth.empty()) {
     all.push_back(fmt::format(

@@ -76,7 +76,7 @@ FitSearch::FitSearch(const FitTask& task)
   }
   held_.resize(parameters.size());
   refuse_if(rows() <= parameters.size(),
-            fmt::format("{} measured coordinates for {} parameters", runs_.count(),
+            fmt::format("measured coordinates: {} for {} parameters", runs_.count(),
                         parameters.size()),
             task.place, "give more, or fit fewer parameters");
 }

@@ -45,7 +45,7 @@ class Reader {
   void read(PointRecord& record) const {
     for (std::size_t i = 0; i < table_.rows.size(); ++i) add_row(record, i);
     refuse_if(record.observations.size() < fewest,
-              fmt::format("{} measured coordinates", record.observations.size()),
+              fmt::format("measured coordinates: {}", record.observations.size()),
               place(0, 0), fmt::format("give at least {}", fewest));
   }
 

@@ -102,10 +102,15 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
     at_place(places.integrator, [&] { return entry.make(system, options); });
     return;
   }
-  std::string able;
+  const auto joined = [](std::string& list, std::string_view id) {
+    list += (list.empty() ? "" : ", ") + std::string(id);
+  };
+  std::string able, forms;
   for (const IntegratorEntry& other : integrator_catalogue()) {
-    if (!refusal(other, system, options.formulation).empty()) continue;
-    able += (able.empty() ? "" : ", ") + std::string(other.id);
+    if (refusal(other, system, options.formulation).empty()) joined(able, other.id);
+  }
+  for (const auto& [form, order] : entry.formulations) {
+    if (refusal(entry, system, form).empty()) joined(forms, name(form));
   }
   throw InputError(
       fmt::format("{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
@@ -115,8 +120,9 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
                                              : std::string(),
                   name(options.formulation), reason),
       places.integrator,
-      able.empty() ? "give another formulation: ./tress list shows what can drive what"
-                   : "use one of: " + able);
+      !forms.empty()  ? "give [integrator] formulation = one of: " + forms
+      : !able.empty() ? "use one of: " + able
+                      : "take another method: ./tress list shows what can drive what");
 }
 
 /// Whether a strand of the scene can fail alone.

@@ -25,7 +25,8 @@ constexpr double most_factor = 1e3, most_curvature = 1e6;
 constexpr Parameter keys[] = {
     {.name = "radius_along",
      .help = "radius over that of the material: rows of [arc length over the strand's "
-             "length, factor], linear between rows. A taper is [[0, 1], [1, 0.5]]",
+             "length, factor], linear between rows and constant beyond them. A taper is "
+             "[[0, 1], [1, 0.5]]",
      .min = 0,
      .max = most_factor,
      .components = 2,
@@ -52,7 +53,7 @@ constexpr Parameter keys[] = {
     {.name = "darboux_along",
      .help = "shape = \"along\": natural twist and curvatures about e1 and e2, rows of "
              "[arc length over the strand's length, twist, curvature, curvature] (1/m), "
-             "linear between rows",
+             "linear between rows and constant beyond them",
      .min = -most_curvature,
      .max = most_curvature,
      .components = 4,

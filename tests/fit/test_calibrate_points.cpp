@@ -151,7 +151,7 @@ TEST(CalibratePoints, RefusesWhatDoesNotFitTheSceneBeforeAnyRun) {
                         "which lasts 0.5 s (late.csv:3:1): set duration_s = 0.6"));
   calibrate.write("few.csv", "time_s,x_m\n0.1,0\n0.2,0\n0.3,0\n");
   EXPECT_THAT(refused("--set data=few.csv"),
-              HasSubstr("3 measured coordinates for 3 parameters"));
+              HasSubstr("measured coordinates: 3 for 3 parameters"));
   EXPECT_THAT(refused("--set data=" + record + " --set by=linear_dragg.drag_kg_m_s"),
               HasSubstr("(--set by=linear_dragg.drag_kg_m_s)"));
   const auto with = [&](const std::string& setting) {

@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"state\": \"finding\""},
         Promise{"changed", 3, "CHANGED the promise (4); known to fail",
                 "\"state\": \"changed\""},
-        Promise{"not_judged", 0, "not judged: 1 claims", "\"state\": \"not_judged\""},
+        Promise{"not_judged", 0, "rows were not run: 1", "\"state\": \"not_judged\""},
         Promise{"figure", 0, "FIGURE the promise (4)", "\"state\": \"figure\""}),
     [](const auto& tested) { return tested.param.set; });
 
