@@ -117,6 +117,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--print-defaults", a.print_defaults,
                "print a short scene to start from (scenes/README.md: every key)");
   app.add_flag("--print-schema", a.print_schema, "print the page scenes/README.md");
+  app.add_flag("--live", a.live,
+               "step one scene under commands from standard input, one JSON object a "
+               "line, and answer each with a picture (./tress play); writes no files");
   app.add_flag("--check", a.check, "check scenes and outputs; run nothing");
   for (auto& [option, flag] : {std::pair<const char*, bool*>{"--quick", &a.quick},
                                std::pair<const char*, bool*>{"--full", &a.full}}) {

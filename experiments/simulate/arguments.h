@@ -18,7 +18,7 @@ struct Arguments {
   bool resume = false, vtk = false, usd = false, hair = false, print_defaults = false,
        print_schema = false, no_guard = false, verify = false, quick = false,
        full = false, error_bars = false, check = false, gradient = false,
-       frames_given = false;
+       frames_given = false, live = false;
   std::string progress = "auto", as = "auto", frames = "32", device = "cpu";
   int bits = 64, lanes = 0;
 };

@@ -20,6 +20,7 @@
 #include "experiments/simulate/head_room.h"
 #include "experiments/simulate/head_scene_run.h"
 #include "experiments/simulate/held_report.h"
+#include "experiments/simulate/live/live_run.h"
 #include "experiments/simulate/outcome.h"
 #include "experiments/simulate/rank_failures.h"
 #include "experiments/simulate/scene_run.h"
@@ -328,6 +329,11 @@ int run(const Arguments& a, CommandLine line) {
   if (a.print_defaults || a.print_schema) {
     write_all(1, a.print_defaults ? scene_defaults() : scene_schema(), "standard output");
     return done;
+  }
+  if (a.live) {
+    refuse_if(a.scenes.size() != 1, "--live is for one scene", "command line",
+              "name one scene file");
+    return run_live(a.scenes.front(), a.threads, !a.no_guard);
   }
   line.progress = a.progress == "none"   ? ProgressMode::none
                   : a.progress == "json" ? ProgressMode::json
