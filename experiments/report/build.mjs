@@ -1,5 +1,5 @@
 // Writes dist/: report.mjs and film.mjs (commands), render.mjs (SVG in Node), page.html
-// (template), notices. Developers who change the page run `npm ci && npm run build` and commit dist/.
+// (template), live.html (page of ./tress play), notices. Developers who change the page run `npm ci && npm run build` and commit dist/.
 import { build } from 'esbuild';
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -35,6 +35,8 @@ const browser = { ...common, platform: 'browser', target: 'es2022', format: 'iif
 const page = await build({ ...browser, entryPoints: ['src/browser/main.mjs'] });
 const start = await build({ ...browser, entryPoints: ['src/browser/start.mjs'] });
 
+const live = await build({ ...browser, entryPoints: ['src/browser/live/main.mjs'] });
+
 // The package that a file belongs to, undefined for our own.
 const package_of = (path) =>
   [...path.matchAll(/node_modules\/((?:@[^/]+\/)?[^/]+)/g)].at(-1)?.[1];
@@ -66,7 +68,7 @@ function notices(inputs) {
     .join(`\n${'-'.repeat(72)}\n\n`);
 }
 
-const inputs = [report, render, film, page, start].flatMap(({ metafile }) =>
+const inputs = [report, render, film, page, start, live].flatMap(({ metafile }) =>
   Object.keys(metafile.inputs),
 );
 const notice = notices(inputs);
@@ -88,9 +90,22 @@ const html = readFileSync(at('src/browser/page.html'), 'utf8')
     notice.replaceAll('<', '&lt;').replaceAll('--', '- -'),
   );
 
+const live_program = live.outputFiles[0].text.trim();
+const live_html = readFileSync(at('src/browser/live/live.html'), 'utf8')
+  .replace('TRESS_SOURCES_VALUE', () => hash)
+  .replace('/*TRESS_STYLE*/', () => readFileSync(at('src/browser/style.css'), 'utf8'))
+  .replace(
+    'TRESS_POLICY_VALUE',
+    () =>
+      "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; " +
+      `connect-src 'self'; style-src 'unsafe-inline'; script-src ${hash_of(live_program)}`,
+  )
+  .replace('/*TRESS_PROGRAM*/', () => live_program);
+
 mkdirSync(at('dist'), { recursive: true });
 writeFileSync(at('dist/report.mjs'), report.outputFiles[0].text);
 writeFileSync(at('dist/film.mjs'), film.outputFiles[0].text);
 writeFileSync(at('dist/render.mjs'), render.outputFiles[0].text);
 writeFileSync(at('dist/page.html'), html);
+writeFileSync(at('dist/live.html'), live_html);
 writeFileSync(at('dist/NOTICES.txt'), notice);

@@ -4,11 +4,12 @@ from . import (ask, bench, build, check, docs, lint, listing, matrices, new, oth
                package, packages, python_module, rename, report, run, simulate, statics, sweeps,
                testing)
 from .command import command_help, paragraph, usage_of
+from .play.command import COMMAND as PLAY
 from .reproduce.archive import ARCHIVE
 from .reproduce.command import REPRODUCE
 from .reproduce.rerun import RERUN
 
-COMMANDS = (build.COMMAND, simulate.COMMAND, run.COMMAND, ask.COMMAND, check.COMMAND,
+COMMANDS = (build.COMMAND, simulate.COMMAND, PLAY, run.COMMAND, ask.COMMAND, check.COMMAND,
             statics.COMMAND, matrices.COMMAND, testing.COMMAND, sweeps.CLUSTER, bench.COMMAND,
             other_simulators.COMMAND, sweeps.COMPARE, REPRODUCE, RERUN, ARCHIVE,
             python_module.COMMAND, package.COMMAND, report.COMMAND, docs.COMMAND, report.FILM,

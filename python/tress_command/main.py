@@ -17,8 +17,8 @@ from .version import describe
 HELP = ("help", "-h", "--help")
 VERSION = ("version", "--version")
 # Commands of an installed tree. The others build, test or write the sources.
-WITHOUT_SOURCES = ("simulate", "run", "ask", "matrices", "cluster", "compare", "report", "film",
-                   "rename", "list")
+WITHOUT_SOURCES = ("simulate", "play", "run", "ask", "matrices", "cluster", "compare", "report",
+                   "film", "rename", "list")
 
 
 def _help_on(words):

@@ -33,12 +33,11 @@ const body_points = ({ shape, half_axes_m: half, poses }) => {
 };
 
 // The middle of all that is shown, planes apart, the radius (m) of a ball about it that
-// holds it, and its profile.
-export function extent_of(scenes) {
-  const points = scenes.flatMap((scene) => [
-    ...some_points(scene),
-    ...scene.bodies.flatMap(body_points),
-  ]);
+// holds it, and its profile. `more`: further points to hold.
+export function extent_of(scenes, more = []) {
+  const points = scenes
+    .flatMap((scene) => [...some_points(scene), ...scene.bodies.flatMap(body_points)])
+    .concat(more);
   const [least, most] = [Math.min, Math.max].map((of) =>
     [0, 1, 2].map((i) => points.reduce((end, point) => of(end, point[i]), points[0][i])),
   );

@@ -1,7 +1,7 @@
 // Mouse, touch and keyboard of the player.
 
 // Whether an element uses the key itself.
-function is_own_key(element, key) {
+export function is_own_key(element, key) {
   if (element.matches('button:not([role="tab"])')) return key === ' ';
   if (element.matches('input')) return key !== ' ';
   return element.matches('select, [role="tab"], summary, a');
@@ -24,7 +24,8 @@ function keys(player, event) {
   actions[key]();
 }
 
-export function steer(player, canvas) {
+// The camera of `player.picture`; player.changed() is called when it has moved.
+export function steer_camera(player, canvas) {
   const fingers = new Map(); // pointer id -> {x, y}
 
   canvas.addEventListener('pointerdown', (event) => {
@@ -66,7 +67,10 @@ export function steer(player, canvas) {
     },
     { passive: false },
   );
+}
 
+export function steer(player, canvas) {
+  steer_camera(player, canvas);
   document.addEventListener('keydown', (event) => {
     if (player.shown) keys(player, event);
   });

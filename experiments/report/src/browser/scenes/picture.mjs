@@ -21,11 +21,11 @@ const length_text = (metres) => {
 
 export class Picture {
   // `scenes`: one, or two that share the camera, the scale of colours and the time; `by`: as
-  // Pane takes it.
-  constructor(canvas, scenes, by) {
+  // Pane takes it; `extent`: what the picture holds.
+  constructor(canvas, scenes, by, extent = extent_of(scenes)) {
     this.canvas = canvas;
     this.scenes = scenes;
-    this.extent = extent_of(scenes);
+    this.extent = extent;
     const { middle, radius, profile } = this.extent;
     this.camera = new Camera(middle, radius, profile);
     this.panes = scenes.map((scene) => new Pane(scene, this.extent, by));

@@ -1,0 +1,1 @@
+"""./tress play: a live view of a scene in the browser."""
