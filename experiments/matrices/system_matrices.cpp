@@ -11,6 +11,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
+#include "models/turning/turning_system.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
@@ -29,10 +30,12 @@ std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
   refuse_if(simulation::SceneJoints(scene).any(),
             "matrices of joined strands, which are one system", "scene " + scene.name,
             "leave out [joints]");
-  return simulation::SceneSupports(scene).on(
-      scene.model->on_strand(scene.strands[strand], scene.model_options,
-                             simulation::make_effects(scene)),
-      scene.strands[strand], strand);
+  const models::Effects effects = simulation::make_effects(scene);
+  auto alone =
+      scene.model->on_strand(scene.strands[strand], scene.model_options, effects);
+  return models::with_turning_bodies(simulation::SceneSupports(scene).on(
+                                         std::move(alone), scene.strands[strand], strand),
+                                     effects);
 }
 
 Snapshot snapshot_at(const Scene& scene, double time) {

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "math/quaternion.h"
-#include "models/effects/effect.h"
+#include "models/effects/body.h"
 
 namespace tress::simulation {
 namespace {
@@ -72,14 +72,32 @@ nlohmann::ordered_json pose_of(const Outline& body) {
   return {body.x.x, body.x.y, body.x.z, q.w, q.v.x, q.v.y, q.v.z};
 }
 
-/// Bodies of the scene at the times of the frames.
-nlohmann::ordered_json bodies(const Scene& scene, const std::vector<double>& times) {
+/// Place of a body in a frame, which has the angle of one that strands turn.
+Outline outline_in(const Animation& animation, const Frame3d& frame, const Effect& effect,
+                   const std::string& name) {
+  if (const auto* turning = dynamic_cast<const models::TurningBody*>(&effect)) {
+    const auto column = std::ranges::find(
+        animation.series, fmt::format("angle_{}_rad", name), &Reading::name);
+    turning->turn_to(frame.series[std::size_t(column - animation.series.begin())], 0);
+  }
+  return *effect.outline(frame.series[0]);
+}
+
+/// Bodies of the scene in the chosen frames.
+nlohmann::ordered_json bodies(const Animation& animation,
+                              std::span<const std::size_t> chosen) {
   auto all = nlohmann::ordered_json::array();
-  for (const auto& effect : make_effects(scene)) {
+  const std::vector<std::string> names = effect_names(animation.scene);
+  const Effects effects = make_effects(animation.scene);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const auto& effect = effects[i];
     const std::optional<Outline> drawn = effect->outline(0);
     if (!drawn) continue;
     auto poses = nlohmann::ordered_json::array();
-    for (const double t : times) poses.push_back(pose_of(*effect->outline(t)));
+    for (const std::size_t f : chosen) {
+      poses.push_back(
+          pose_of(outline_in(animation, animation.frames[f], *effect, names[i])));
+    }
     all.push_back(
         {{"shape", drawn->shape},
          {"half_axes_m", {drawn->half_axes.x, drawn->half_axes.y, drawn->half_axes.z}},
@@ -207,7 +225,7 @@ std::string page_json(const Animation& animation, std::size_t most_bytes) {
       {"high", {box[0].high, box[1].high, box[2].high}},
       {"positions", base64(places)},
       {"channels", channels},
-      {"bodies", bodies(scene, times)},
+      {"bodies", bodies(animation, chosen)},
       {"series", {{"columns", columns}, {"rows", rows}}}};
   if (auto touching = contacts(animation.frames, chosen); !touching.is_null()) {
     page["contacts"] = std::move(touching);

@@ -11,6 +11,7 @@
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -62,6 +63,10 @@ void check_derivatives(const Scene& scene) {
             "no gradient of strands with [joints]: derivatives of joined strands, which "
             "move as one system, are not available",
             place, "leave out [joints]");
+  refuse_if(has_turning_bodies(scene),
+            "no gradient of a strand that turns a body: derivatives of the body's motion "
+            "are not available",
+            place, "use another motion of [effects.body] than moves = \"turns\"");
   const SceneSupports supports(scene);
   if (supports.drive()) {
     throw InputError(

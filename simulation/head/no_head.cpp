@@ -9,6 +9,7 @@
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene/turning_bodies.h"
 #include "simulation/table/along.h"
 
 namespace tress::simulation {
@@ -269,6 +270,10 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
   if (SceneJoints(scene).any()) {
     return NoHead{"[joints] make one system of several strands",
                   "leave them out, or give --as strands"};
+  }
+  if (has_turning_bodies(scene)) {
+    return NoHead{"[effects.body] moves = \"turns\" makes one system of strand and body",
+                  "use another motion, or give --as strands"};
   }
   if (scene.friction() != nullptr) {
     return NoHead{"[effects.strand_friction] solves the contacts of all strands together",

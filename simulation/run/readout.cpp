@@ -9,6 +9,7 @@
 #include "simulation/run/line_curvature.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -38,7 +39,8 @@ Readout::Readout(const Scene& scene, const World& world)
     supports_.push_back(std::move(joint));
   }
   find_lines(world);
-  const std::vector<std::string> names = effect_names(scene);
+  const std::vector<std::string> names = effect_names(scene),
+                                 turning = turning_body_names(scene);
   const auto add = [this](std::string name, std::string help) {
     series_.push_back({std::move(name), std::move(help)});
   };
@@ -72,6 +74,10 @@ Readout::Readout(const Scene& scene, const World& world)
   }
   if (scene.failed_strands == FailedStrands::stay) {
     add("failed_strands", "strands that have failed and stay where they are");
+  }
+  for (const std::string& name : turning) {
+    add(fmt::format("angle_{}_rad", name), "angle by which the body has turned");
+    add(fmt::format("speed_{}_rad_per_s", name), "angular velocity of the body");
   }
   first_load_ = series_.size();
   for (const NamedSupport& support : supports_) {
@@ -107,6 +113,11 @@ Frame3d Readout::read(World& world) {
   Frame3d frame;
   std::vector<double>& row = frame.series;
   row.assign(1, world.time());
+  const std::vector<TurningBodies::Turn> turns = world.turns();
+  const auto bodies = models::turning_bodies(effects_);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    bodies[k]->turn_to(turns[k].angle, turns[k].speed);
+  }
   read_points(world, frame);
   const Energies energies = world.energies();
   row.push_back(energies.kinetic);
@@ -135,6 +146,7 @@ Frame3d Readout::read(World& world) {
   if (scene_.failed_strands == FailedStrands::stay) {
     row.push_back(static_cast<double>(world.lost().size()));
   }
+  for (const auto& [angle, speed] : turns) row.insert(row.end(), {angle, speed});
   const World::SupportLoads loads = world.support_loads();
   for (std::size_t i = 0; i < 3 * supports_.size(); i += 3) {
     const auto append = [&](bool held, const std::vector<double>& of) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "contract/forms/natural_strains.h"
+#include "models/turning/turning_system.h"
 #include "simulation/scene/joined_start.h"
 
 namespace tress::simulation {
@@ -79,6 +80,7 @@ SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) c
   if (supports_.hold(number)) {
     made.supported = begin_on_supports(*made.system, supports_.place(number));
   }
+  made.system = models::with_turning_bodies(std::move(made.system), effects_);
   add_guard(made, {&strand, 1}, number);
   return made;
 }

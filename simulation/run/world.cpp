@@ -131,6 +131,17 @@ std::vector<ContactForce> World::contact_forces() {
   return all;
 }
 
+std::vector<TurningBodies::Turn> World::turns() const {
+  std::vector<TurningBodies::Turn> all;
+  for (const Body& body : bodies_) {
+    const TurningBodies* const bodies = tress::turning_bodies(*body.system);
+    for (std::size_t k = 0; bodies != nullptr && k < bodies->bodies(); ++k) {
+      all.push_back(bodies->turn(body.seen_q(), body.seen_v(), k));
+    }
+  }
+  return all;
+}
+
 World::SupportLoads World::support_loads() {
   SupportLoads all;
   const auto append = [&all](const Body& body, std::size_t count, const auto& read) {

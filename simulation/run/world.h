@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/turning_bodies.h"
 #include "integrators/control/point_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
@@ -128,6 +129,8 @@ class World {
   };
   /// Returns the loads of all supports and joints.
   SupportLoads support_loads();
+  /// Returns the motions of bodies that strands turn.
+  std::vector<TurningBodies::Turn> turns() const;
   /// Returns the strands that began away from their supports, in words.
   std::vector<std::string> supported_starts() const;
 

@@ -64,7 +64,7 @@ class Reader {
     } else {
       refuse_strand_tables();
     }
-    check(scene_, places_);
+    check(scene_, places_, series_ == nullptr ? 0 : series_->size());
     return std::move(scene_);
   }
 

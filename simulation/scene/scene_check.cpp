@@ -11,6 +11,7 @@
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -190,7 +191,7 @@ NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System
       "dynamic_spline");
 }
 
-void check(const Scene& scene, const ScenePlaces& places) {
+void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
   check_failed_strands(scene, places);
   if (scene.model->on_strand == nullptr && scene.rest == RestStrains::inverse) {
     throw InputError(fmt::format("rest = \"inverse\" for {}, which brings its own shape",
@@ -207,6 +208,7 @@ void check(const Scene& scene, const ScenePlaces& places) {
   const SceneJoints joints(scene);
   supports.check(scene);
   joints.check(scene);
+  check_turning_bodies(scene, places.effects, strands);
   check_friction(scene, places);
   check_mesh(scene, places);
   const Parameters* interaction = scene.interaction();
@@ -234,12 +236,13 @@ void check(const Scene& scene, const ScenePlaces& places) {
     const bool held = supports.change(number);
     // Of the same groom.
     if (before != nullptr && *before == place && !held) continue;
-    Effects effects = effects_of(scene, places);
+    const Effects effects = effects_of(scene, places);
     const auto make = [&] {
-      return scene.model->on_strand(scene.strands[i], scene.model_options,
-                                    std::move(effects));
+      return scene.model->on_strand(scene.strands[i], scene.model_options, effects);
     };
-    const auto system = supports.on(at_place(place, make), scene.strands[i], number);
+    auto alone = supports.on(at_place(place, make), scene.strands[i], number);
+    const auto system = at_place(
+        place, [&] { return models::with_turning_bodies(std::move(alone), effects); });
     if (joints.of(number) == nullptr && (!driven || held)) {
       check_integrator(scene, *system, places);
       driven = true;

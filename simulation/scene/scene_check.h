@@ -24,7 +24,8 @@ NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System
                                 const std::string& where);
 
 /// Constructs once what a run will construct: effects, the model on one strand of each
-/// table, the integrator. Throws InputError with the location of what fails.
-void check(const Scene& scene, const ScenePlaces& places);
+/// table, the integrator. Throws InputError with the location of what fails. `strands`:
+/// number of all strands of the scene.
+void check(const Scene& scene, const ScenePlaces& places, std::size_t strands);
 
 }  // namespace tress::simulation

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+#include "contract/system.h"
+
+namespace tress {
+
+/// Bodies that strands turn about fixed axes, an optional capability of systems.
+class TurningBodies {
+ public:
+  virtual ~TurningBodies() = default;
+  /// Motion of a body.
+  struct Turn {
+    double angle = 0;  // rad
+    double speed = 0;  // rad/s
+  };
+  /// Returns the number of bodies; fixed for life.
+  virtual std::size_t bodies() const = 0;
+  /// Returns the motion of a body at a state.
+  virtual Turn turn(In q, In v, std::size_t body) const = 0;
+};
+
+/// Returns the turning bodies of a system; null if it has none.
+inline const TurningBodies* turning_bodies(const System& system) {
+  return dynamic_cast<const TurningBodies*>(&system);
+}
+
+}  // namespace tress

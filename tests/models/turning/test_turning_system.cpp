@@ -1,0 +1,193 @@
+// Strands that turn bodies: derivatives, energy and angular momentum.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "contract/forms/energetics.h"
+#include "contract/forms/explicit_form.h"
+#include "models/strand/strand_parameters.h"
+#include "models/turning/turning_system.h"
+#include "tests/support/tangent.h"
+
+namespace tress::test_turning_system {
+
+using namespace models;
+using namespace testing_support;
+
+const Bearing bearing{.axis = {0.2, 1, -0.4},
+                      .pivot = {0.01, -0.02, 0.03},
+                      .inertia = 3e-9,
+                      .damping = 2e-8,
+                      .moment = 1e-7,
+                      .speed = 3};
+
+/// A strand inside a plane's body, so deep that all points remain in contact in the
+/// states of these tests. Friction is smooth at the speeds of these tests.
+std::unique_ptr<System> touching(const ModelEntry& model, bool free, int bodies) {
+  Parameters parameters(setup_parameters(model), std::string(model.id));
+  Strand strand = models::strand(parameters);
+  if (free) {
+    FreeRoot& root = strand.free_root.emplace();
+    root.position = strand.root.position;
+    root.frame = strand.root.frame;
+  }
+  const BodyContact law{
+      .stiffness = 1e-4, .damping = 0.05, .friction = 0.3, .slip = 50, .offset = 40e-6};
+  Effects effects;
+  for (int k = 0; k < bodies; ++k) {
+    Bearing own = bearing;
+    own.inertia *= k + 1;
+    const StrandPlace place{{0, 0.1 * k, 1}, rotation({0, 1, 0}, 0.2 * k)};
+    effects.push_back(
+        std::make_shared<models::TurningBody>(Body(Plane{}, place, law), own));
+  }
+  Parameters options(model.parameters, "test");
+  return with_turning_bodies(model.on_strand(strand, options, effects), effects);
+}
+
+std::vector<std::string> models_of_strands() {
+  std::vector<std::string> all;
+  for (const ModelEntry& model : tested_models()) {
+    if (model.on_strand == nullptr) continue;
+    try {
+      if (touching(model, false, 1) == nullptr) continue;
+    } catch (const InputError&) {
+      continue;  // has constraints
+    }
+    all.emplace_back(model.id);
+  }
+  return all;
+}
+
+class TurningSystems : public testing::TestWithParam<std::string> {};
+
+/// Plain models leave out terms by design; others have the derivatives of the contact.
+TEST_P(TurningSystems, TheMatrixIsTheDerivativeOfTheResidual) {
+  for (const bool free : {false, true}) {
+    const ModelEntry& model = find_model(GetParam());
+    if (free && model.roots != Roots::clamped_or_free) continue;
+    const auto system = touching(model, free, 2);
+    if (!system->traits().regular_mass) continue;
+    States s(*system);
+    for (const Weights w :
+         {Weights{1, 1e-3, 1e-6}, Weights{1, 0.1, 0.01}, Weights{1, 0, 0}}) {
+      s.shake(0.02);
+      // The border of reduced models has a difference with a step of 6e-6, whose
+      // truncation is the square of it and whose rounding its inverse times 2e-16.
+      EXPECT_LE(tangent_error(*system, *system, s, w), 5 * tangent_tolerance)
+          << free << " weights " << w.acc << " " << w.vel << " " << w.pos;
+    }
+  }
+}
+
+TEST_P(TurningSystems, ExplicitAccelerationsSolveTheEquations) {
+  const auto system = touching(find_model(GetParam()), false, 2);
+  ExplicitForm* const form = system->explicit_form();
+  if (form == nullptr) GTEST_SKIP() << "no explicit form";
+  States s(*system);
+  s.shake(0.02);
+  ASSERT_EQ(form->acceleration(t0, s.q, s.v, s.a), Status::ok);
+  std::vector<double> at_rest(s.n), zero(s.n);
+  const std::vector<double> r = residual(*system, s.q, s.v, s.a),
+                            force = residual(*system, s.q, s.v, zero);
+  // Sums of the model's forces round by 1e-16 of the largest.
+  EXPECT_LE(largest(r), 1e-9 * largest(force));
+  EXPECT_LE(std::abs(r.back()), 1e-12 * std::abs(force.back()));
+}
+
+/// A slow strand without strain on a fast body: stiff springs hold little energy.
+States slow(System& system) {
+  States s(system);
+  s.v = s.random(s.v_typ);
+  for (double& v : s.v) v *= 1e-3;
+  s.v.back() = 5;
+  return s;
+}
+
+struct Rate {
+  double value, time;  // of the change; s, of the differences
+};
+/// The rate of what is measured, along the motion that follows from the equations.
+template <class Measure>
+Rate rate_of(System& system, const States& s, Measure measure) {
+  EXPECT_EQ(system.linearize(t0, s.q, s.v, s.a, {1, 0, 0}), Status::ok);
+  std::vector<double> zero(s.n), b = residual(system, s.q, s.v, zero), a(s.n);
+  for (double& entry : b) entry = -entry;
+  EXPECT_EQ(system.solve(b, a), Status::ok);
+  double fastest = 0;
+  for (std::size_t i = 0; i < s.n; ++i) {
+    fastest = std::max(
+        {fastest, std::abs(s.v[i]) / s.q_typ[i], std::sqrt(std::abs(a[i]) / s.q_typ[i])});
+  }
+  const double time = difference_step / fastest;
+  const std::vector<double> change = central_difference(time, [&](double step) {
+    const std::vector<double> q = plus(plus(s.q, step, s.v), step * step / 2, a);
+    return std::vector<double>{measure(q, plus(s.v, step, a))};
+  });
+  return {change[0], time};
+}
+
+/// The differences round by 1e-16 of the energy, over their time. Their truncation is
+/// 7.4e-4^4 = 3e-13 of it.
+TEST_P(TurningSystems, EnergyChangesByThePower) {
+  const auto system = touching(find_model(GetParam()), false, 1);
+  Energetics* const energetics = system->energetics();
+  if (energetics == nullptr) GTEST_SKIP() << "no energy";
+  if (!system->traits().regular_mass) GTEST_SKIP() << "no accelerations";
+  const States s = slow(*system);
+  const Rate rate = rate_of(
+      *system, s, [&](In q, In v) { return energetics->energy(t0, q, v).total(); });
+  const double power = energetics->power(t0, s.q, s.v),
+               energy = energetics->energy(t0, s.q, s.v).total();
+  EXPECT_NEAR(rate.value, power, 1e-12 * energy / rate.time);
+  // The bound resolves the power.
+  EXPECT_LT(1e-12 * energy / rate.time, 1e-3 * std::abs(power));
+}
+
+/// The forces on the body are those on the strand: about the axis, a free strand without
+/// weight and its body have a constant angular momentum but for the bearing's moment.
+TEST_P(TurningSystems, TheStrandAndTheBodyExchangeAngularMomentum) {
+  const ModelEntry& model = find_model(GetParam());
+  if (model.roots != Roots::clamped_or_free) GTEST_SKIP() << "no free root";
+  const auto system = touching(model, true, 1);
+  Energetics* const energetics = system->energetics();
+  if (energetics == nullptr || !system->traits().regular_mass) GTEST_SKIP();
+  const States s = slow(*system);
+  if (!energetics->momentum(t0, s.q, s.v)) GTEST_SKIP() << "no momentum";
+  const Vec axis = (1 / norm(bearing.axis)) * bearing.axis;
+  const auto momentum = [&](In q, In v) {
+    const auto m = *energetics->momentum(t0, q, v);
+    const Vec about =
+        load3(m.angular.data()) - cross(bearing.pivot, load3(m.linear.data()));
+    return dot(axis, about) + bearing.inertia * v.back();
+  };
+  const Rate rate = rate_of(*system, s, momentum);
+  const double moment = bearing.moment - bearing.damping * s.v.back();
+  std::vector<double> a(s.n);
+  const double contact = residual(*system, s.q, s.v, a).back() + moment;
+  EXPECT_NEAR(rate.value, moment, 1e-12 * std::abs(momentum(s.q, s.v)) / rate.time);
+  // The bound resolves the moment of the contact.
+  EXPECT_LT(1e-12 * std::abs(momentum(s.q, s.v)) / rate.time, 1e-3 * std::abs(contact));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, TurningSystems, testing::ValuesIn(models_of_strands()),
+                         [](const auto& one) { return one.param; });
+
+TEST(TurningBody, RefusesABearingThatCannotTurn) {
+  const auto make = [](double axis, double inertia, double damping) {
+    Bearing one;
+    one.axis = {0, 0, axis};
+    one.inertia = inertia;
+    one.damping = damping;
+    const BodyContact law{.stiffness = 1, .damping = 0, .friction = 0};
+    return models::TurningBody(Body(Plane{}, {}, law), one);
+  };
+  EXPECT_THROW(make(0, 1, 0), InputError);
+  EXPECT_THROW(make(1, 0, 0), InputError);
+  EXPECT_THROW(make(1, 1, -1), InputError);
+  EXPECT_NO_THROW(make(1, 1, 0));
+}
+
+}  // namespace tress::test_turning_system
