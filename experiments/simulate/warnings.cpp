@@ -28,7 +28,7 @@ std::string_view remedy_of_energy(const Scene& scene) {
 /// Part of the slack of the guard from which on a run prints what it used. A run that
 /// used all of it ended, and said so.
 constexpr double told_excess = 0.1;
-constexpr double rounding = 1e-9;  // of a step that is written as a decimal number
+constexpr double written = 1e-9;  // of a step that is written as a decimal number
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
         run.excess.gained, 100 * run.excess.share(), remedy_of_energy(scene)));
   }
   if (const double frame = 1 / scene.frame_rate;
-      !scene.chooses_steps() && scene.options.step > (1 + rounding) * frame) {
+      !scene.chooses_steps() && scene.options.step > (1 + written) * frame) {
     all.push_back(fmt::format(
         "dt_s = {:.9g} s is longer than the {:.9g} s between frames, at which "
         "steps end: give a shorter dt_s, or fewer frames_per_s",
