@@ -54,8 +54,8 @@ constexpr double most_counted = 1e15;  // whole numbers that a double holds exac
 
 const Field fields[] = {
     {{.name = "formulation",
-      .help = "formulation of the constraints. Models with constraints need another "
-              "than parametric; with [[supports]] the default depends on the method",
+      .help = "formulation of the constraints; a model with constraints needs another "
+              "than parametric",
       .choices = "parametric|acceleration|baumgarte|projection|index2_ggl|index3|rattle|"
                  "correction"},
      choice<&Options::formulation>},
