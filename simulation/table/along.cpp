@@ -53,7 +53,7 @@ constexpr Parameter keys[] = {
     {.name = "darboux_along",
      .help = "shape = \"along\": natural twist and curvatures about e1 and e2, rows of "
              "[arc length over the strand's length, twist, curvature, curvature] (1/m), "
-             "linear between rows and constant beyond them",
+             "interpolated as radius_along",
      .min = -most_curvature,
      .max = most_curvature,
      .components = 4,
