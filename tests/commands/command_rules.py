@@ -132,6 +132,8 @@ RULES = (
          "--rate 10 --size 1920,1080", more="--size 160,120"),
     Rule("docs/player.md", FILM + "'scene=full_head&colour=hair' print --size 3840,2160 --scale 2 --from 1 --to 1",
          more="--size 160,120 --from 0 --to 0"),
+    Rule("docs/player.md", "./tress play", by="tests/commands/test_play.py", takes='page_commands(ROOT, "docs/player.md")',
+         pattern="^./tress play "),
     *(Rule("docs/plugins.md", command, by="tests/plugin/test_plugin.sh", takes=f"docs/plugins.md '{PLUGIN}'",
            pattern=PLUGIN) for command in ("build/", "cmake -S", "cmake --build")),
     Rule("docs/plugins.md", "cmake --install", spelling="tests/install installs the build"),

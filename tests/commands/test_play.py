@@ -5,6 +5,7 @@ import http.client
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -12,6 +13,8 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+
+from page_commands import page_commands
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/release/experiments/simulate"
@@ -43,9 +46,9 @@ root_tangent = [1, 0, 0]
 class Play:
     """The command and a page's requests to it."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, command=(str(ROOT / "tress"), "play")):
         self.process = subprocess.Popen(
-            [str(ROOT / "tress"), "play", str(scene)], stderr=subprocess.PIPE,
+            [*command, str(scene)], stderr=subprocess.PIPE,
             stdin=subprocess.DEVNULL, text=True, cwd=ROOT)
         lines = []
         self.port = self.token = None
@@ -132,6 +135,17 @@ class Played(unittest.TestCase):
                          403)
         self.assertEqual(self.play.ask("nothing")[0], 404)
         self.assertEqual(self.play.state()["steps"], 0)
+
+    def test_the_command_of_the_page_prints_an_address_with_the_view(self):
+        played = [one.text for one in page_commands(ROOT, "docs/player.md")
+                  if one.text.startswith("./tress play ")]
+        self.assertEqual(len(played), 1)
+        *command, scene = shlex.split(played[0])
+        play = Play(scene, command)
+        self.addCleanup(play.end)
+        status, body = play.ask("")
+        self.assertEqual(status, 200)
+        self.assertIn(b"live-run", body)
 
     def test_two_steps_are_those_of_simulate(self):
         scene = ROOT / "scenes/cantilever.toml"
