@@ -37,10 +37,6 @@ MatrixXd pseudoinverse(const MatrixXd& a, double dependence) {
   return decomposed(a, dependence).pseudoInverse();
 }
 
-Eigen::Index numerical_rank(const MatrixXd& a, double dependence) {
-  return decomposed(a, dependence).rank();
-}
-
 MatrixXd null_space(const MatrixXd& a, double dependence) {
   const Decomposition of = decomposed(a, dependence);
   const Eigen::Index count = a.cols() - of.rank();

@@ -15,9 +15,7 @@ Eigen::MatrixXd least_squares_solution(const Eigen::MatrixXd& a,
                                        const Eigen::MatrixXd& b);
 /// The pseudoinverse; pivots below `dependence` times the largest one count as none.
 Eigen::MatrixXd pseudoinverse(const Eigen::MatrixXd& a, double dependence);
-/// Returns the number of columns that are independent by such pivots.
-Eigen::Index numerical_rank(const Eigen::MatrixXd& a, double dependence);
-/// An orthonormal basis, by columns, of the x with a x = 0.
+/// An orthonormal basis, by columns, of the x with a x = 0, by such pivots.
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& a, double dependence);
 /// An orthonormal basis of the orthogonal complement of independent columns.
 Eigen::MatrixXd complement(const Eigen::MatrixXd& columns);

@@ -121,9 +121,10 @@ std::optional<double> TurningBody::penetration(double t, In x) const {
 double TurningBody::surface_speed(double /*t*/, In x, double near) const {
   place_in_frame(x);
   const RigidBody& body = body_.contact_on_points().body;
+  const auto pose = body_.pose(0);
   double fastest = 0;
   for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
-    const Vec at = body_.pose(0).frame.back(load3(&x_[i]) - body_.pose(0).x);
+    const Vec at = pose.frame.back(load3(&x_[i]) - pose.x);
     if (!body.distance(at, body.offset() + near)) continue;
     fastest = std::max(fastest, std::abs(speed_) * norm(lever(load3(&x[i]))));
   }

@@ -56,12 +56,12 @@ std::optional<std::size_t> taut_joint(models::JoinedSystem& system, In q) {
     if (!system.rows().turns(k)) rows.push_back(k);
   }
   if (rows.empty()) return {};
-  const auto rank = [&](In at) {
-    return numerical_rank(gradients(system, at, q_typ, rows), singular);
-  };
-  if (rank(q) >= rank(moved)) return {};
   // The multipliers that pull at no coordinate.
-  const Eigen::MatrixXd here = null_space(gradients(system, q, q_typ, rows), singular);
+  const auto idle = [&](In at) {
+    return null_space(gradients(system, at, q_typ, rows), singular);
+  };
+  const Eigen::MatrixXd here = idle(q);
+  if (here.cols() <= idle(moved).cols()) return {};
   std::vector<double> kept(static_cast<std::size_t>(system.rows().rows()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     kept[static_cast<std::size_t>(rows[k])] =
