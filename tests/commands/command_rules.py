@@ -1,6 +1,8 @@
 """What test_pages.py does with the commands of pages other than running them as they stand."""
 from dataclasses import dataclass
 
+from page_commands import SENTENCES
+
 
 def short_scene(name, seconds):
     return f"sed -i 's/^duration_s = .*/duration_s = {seconds}/' scenes/{name}.toml"
@@ -60,6 +62,7 @@ BEFORE = {
         "scenes/full_head.toml > my_head.toml",
     ],
     "experiments/matrices/README.md": [MY_SCENE],
+    SENTENCES: [MY_SCENE],
     "experiments/report/README.md": [short_scene("cantilever", 0.1), f"{SIMULATE} scenes/cantilever.toml", PAGE_ALONE],
 }
 
@@ -159,4 +162,28 @@ RULES = (
     Rule("experiments/heads/README.md", f"{experiment('heads')} --strands 50000,1000000 --elements 5,20",
          instead=f"{experiment('heads')} --strands 32,64 --elements 5", more="--quick", exits=(3,),
          why="minutes and gigabytes; claims are of more hairs than that"),
+    *(Rule(SENTENCES, f"./tress {command}", more="--help", spelling=why) for command, why in (
+        ("test ", "runs the tests"),
+        ("docs --check", ".ci/run runs it"),
+        ("run --full", "core hours"),
+        ("ask my.toml --plugin", "needs a plug-in; tests/plugin/test_plugin.sh loads one"),
+        ("play my.toml", "tests/commands/test_play.py runs that of docs/player.md"),
+        ("other_simulators ", "needs other simulators"),
+    )),
+    Rule(SENTENCES, "./tress run -- --plugin", instead="./tress run --help #", why="a plug-in of the reader",
+         spelling="minutes; docs/plugins.md has a program that loads one"),
+    Rule(SENTENCES, "node experiments/report/dist/report.mjs results/", more="--no-figures"),
+    Rule(SENTENCES, "./tress reproduce --write", by="tests/commands/test_reproduce.py", takes='"--write"',
+         pattern="--write$"),
+    *(Rule(SENTENCES, f"{language} {script}", instead=f"test -f {script} #", why=why, spelling=why)
+      for language, script, why in (
+        ("python3", "tests/compare/real_builds.py", "measures times for minutes"),
+        ("python3", "tests/contracts/skips.py", "needs the reports of the contract suites"),
+        ("python3", "experiments/report/pictures.py", "runs scenes and a browser for minutes"),
+        ("python3", "tests/commands/question_times.py", "measures times for minutes"),
+        ("node", "tests/report/picture_times.mjs", "measures times for minutes"),
+    )),
+    Rule(SENTENCES, f"{experiment('cost_of_accuracy')} --models my_rod", more="--help",
+         spelling="a model of the reader; references take minutes"),
+    *(Rule(SENTENCES, f"{experiment('family')} --set {key}", more="--dry-run") for key in ("study", "hairs")),
 )

@@ -1,6 +1,9 @@
-"""Commands within the sentences of pages, such as `./tress run --full`: the spelling of each."""
+"""Commands within the sentences of pages, such as `./tress run --full`: the spelling of each, and
+which of them a test runs."""
 import re
 import subprocess
+
+from page_commands import SENTENCES, Command, page_commands
 
 SPAN = re.compile(r"`([^`]+)`")
 TRESS = re.compile(r"\./tress (?:--no-install )?([a-z_]+)(.*)")
@@ -51,6 +54,25 @@ def inline_commands(root, page):
                     yield f"{page}:{number}: {text}", kind, found[1], found[2]
 
 
+# Words that stand for a reader's own: the sentence gives the form of a command.
+FORM = re.compile(r"(?<!\S)(?:[A-Z_]*[A-Z]{2,}\S*|\S*/[A-Z]{2,}\S*|\.\.\.)(?!\S)")
+
+
+def sentence_commands(root, pages):
+    """Returns each command of a sentence once. Forms, names of commands such as `./tress run`, and
+    what begins a command in a fence, which has its own test, are left out."""
+    fenced = [command.text for page in pages for command in page_commands(root, page)]
+    found = {}
+    for page in pages:
+        for place, kind, _, words in () if page == LEFT_OUT else inline_commands(root, page):
+            where, _, text = place.partition(": ")
+            if FORM.search(text) or (kind is TRESS and not words.strip()):
+                continue
+            if not any(line == text or line.startswith(f"{text} ") for line in fenced):
+                found.setdefault(text, Command(SENTENCES, 0, text, where=where))
+    return list(found.values())
+
+
 def misspelt(root, build, pages):
     """Returns complaints about commands, scripts and options that do not exist; prints a count."""
     helps = {(TRESS, name): text for name, text in helps_of_tress(root, build).items()}
@@ -72,5 +94,5 @@ def misspelt(root, build, pages):
             options = re.findall(r"(?<!\S)--[a-z][a-z-]*", words.partition(" -- ")[0])
             complaints += [f"{place}: no option {option}" for option in options
                            if option != "--help" and not re.search(rf"{option}(?![a-z-])", text)]
-    print(f"{count} commands in sentences of verified spelling")
+    print(f"{count} commands in sentences, all of verified spelling")
     return complaints

@@ -17,16 +17,20 @@ class BadPage(Exception):
     """What is wrong, and where."""
 
 
+SENTENCES = "sentences"  # as a page: the commands within the sentences of all pages
+
+
 @dataclass
 class Command:
     page: str
     line: int
     text: str
     output: list[str] = field(default_factory=list)  # lines that the command prints
+    where: str = ""  # page and line of one in a sentence
 
     @property
     def place(self):
-        return f"{self.page}:{self.line}"
+        return self.where or f"{self.page}:{self.line}"
 
 
 def pages(root, folder=""):

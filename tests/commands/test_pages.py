@@ -4,6 +4,7 @@
     test_pages.py ROOT BUILD --long PAGE...  runs all of them
     test_pages.py ROOT BUILD --check PAGE... --long PAGE...  checks the rules of command_rules.py
 
+The page `sentences` has the commands within the sentences of all pages.
 Commands run in a copy of the repository, which they may change; build/release there is BUILD, and
 page_stand_ins.py has the programs that would build, or need root or a cluster.
 Output that a page shows must be printed, apart from its numbers and units of time. --check: each
@@ -21,8 +22,8 @@ from pathlib import Path
 
 import page_stand_ins
 from command_rules import BEFORE, RULES, Rule
-from inline_commands import misspelt
-from page_commands import BadPage, blocks_of, page_commands, pages
+from inline_commands import misspelt, sentence_commands
+from page_commands import SENTENCES, BadPage, blocks_of, page_commands, pages
 
 # Left out of the copy, by path or at any place.
 LEFT_OUT = ("build", ".git", "results/scenes", "results/compare")
@@ -31,6 +32,10 @@ LEFT_OUT_ANYWHERE = "node_modules"
 
 def rules_of(command):
     return [rule for rule in RULES if rule.fits(command)]
+
+
+def commands_of(root, page):
+    return sentence_commands(root, pages(root)) if page == SENTENCES else page_commands(root, page)
 
 
 @dataclass
@@ -123,7 +128,7 @@ def check_python(root, every_page):
 
 def check(root, build, tested):
     every_page = pages(root)
-    commands = [command for page in every_page for command in page_commands(root, page)]
+    commands = [command for page in (*every_page, SENTENCES) for command in commands_of(root, page)]
     complaints = [f"{command.place}: two rules for one command" for command in commands if len(rules_of(command)) > 1]
     for rule in RULES:
         complaints += check_rule(root, rule, commands)
@@ -155,7 +160,7 @@ def copy_of_repository(root, build, copy):
 def run_page(root, build, page, long):
     """Returns the complaints about the commands of a page, long ones or not, none after the first."""
     runs = [Run(command) for command in BEFORE.get(page, [])]
-    runs += [run for run in map(as_run, page_commands(root, page)) if run and run.long <= long]
+    runs += [run for run in map(as_run, commands_of(root, page)) if run and run.long <= long]
     with tempfile.TemporaryDirectory(prefix="tress-pages-", ignore_cleanup_errors=True) as work:
         copy = Path(work) / "tress"
         copy_of_repository(root, build, copy)
