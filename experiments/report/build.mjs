@@ -77,30 +77,36 @@ const [program, starting] = [page, start].map(({ outputFiles }) =>
 );
 const hash_of = (text) =>
   `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
-const policy =
-  "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; " +
-  `style-src 'unsafe-inline'; script-src ${hash_of(starting)} ${hash_of(program)}`;
-const html = readFileSync(at('src/browser/page.html'), 'utf8')
-  .replace('TRESS_SOURCES_VALUE', () => hash)
-  .replace('/*TRESS_STYLE*/', () => readFileSync(at('src/browser/style.css'), 'utf8'))
-  .replace('TRESS_POLICY_VALUE', () => policy)
-  .replace('/*TRESS_PROGRAM*/', () => packed(Buffer.from(program)))
-  .replace('/*TRESS_START*/', () => starting)
-  .replace('TRESS_NOTICES_VALUE', () =>
-    notice.replaceAll('<', '&lt;').replaceAll('--', '- -'),
-  );
 
+// A page from its source: `scripts` may run, `parts` replace their names.
+function page_of(path, scripts, connect, parts) {
+  const policy =
+    "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; " +
+    `${connect}style-src 'unsafe-inline'; script-src ${scripts.map(hash_of).join(' ')}`;
+  const all = {
+    TRESS_SOURCES_VALUE: hash,
+    '/*TRESS_STYLE*/': readFileSync(at('src/browser/style.css'), 'utf8'),
+    TRESS_POLICY_VALUE: policy,
+    ...parts,
+  };
+  return Object.entries(all).reduce(
+    (text, [name, value]) => text.replace(name, () => value),
+    readFileSync(at(path), 'utf8'),
+  );
+}
+
+const html = page_of('src/browser/page.html', [starting, program], '', {
+  '/*TRESS_PROGRAM*/': packed(Buffer.from(program)),
+  '/*TRESS_START*/': starting,
+  TRESS_NOTICES_VALUE: notice.replaceAll('<', '&lt;').replaceAll('--', '- -'),
+});
 const live_program = live.outputFiles[0].text.trim();
-const live_html = readFileSync(at('src/browser/live/live.html'), 'utf8')
-  .replace('TRESS_SOURCES_VALUE', () => hash)
-  .replace('/*TRESS_STYLE*/', () => readFileSync(at('src/browser/style.css'), 'utf8'))
-  .replace(
-    'TRESS_POLICY_VALUE',
-    () =>
-      "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; " +
-      `connect-src 'self'; style-src 'unsafe-inline'; script-src ${hash_of(live_program)}`,
-  )
-  .replace('/*TRESS_PROGRAM*/', () => live_program);
+const live_html = page_of(
+  'src/browser/live/live.html',
+  [live_program],
+  "connect-src 'self'; ",
+  { '/*TRESS_PROGRAM*/': live_program },
+);
 
 mkdirSync(at('dist'), { recursive: true });
 writeFileSync(at('dist/report.mjs'), report.outputFiles[0].text);

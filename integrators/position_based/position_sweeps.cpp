@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "contract/forms/turning_bodies.h"
+
 namespace tress::integrators {
 namespace {
 
@@ -162,6 +164,10 @@ void PositionSweeps::solve(Square& a, Rows& b, std::size_t rows) {
 
 std::string compliances(System& system, Formulation /*formulation*/) {
   if (system.compliance_form() != nullptr) return {};
+  if (turning_bodies(system) != nullptr) {
+    return "takes forces as compliant constraints, which leave out bodies that strands "
+           "turn";
+  }
   return "needs the model's energy as compliant constraints";
 }
 

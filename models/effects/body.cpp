@@ -44,8 +44,10 @@ Frame turned_by(const Vec& turn) {
   return angle > 0 ? rotation((1 / angle) * turn, angle) : Frame{};
 }
 
-/// The prescribed motion of the body; none: it is fixed, or turns.
-std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion& head) {
+}  // namespace
+
+std::optional<RootMotion> body_motion(const Parameters& parameters,
+                                      const RootMotion& head) {
   const std::string_view moves = parameters.word("moves");
   const Vec axis = parameters.vec("axis"), centre = parameters.vec("centre_m");
   if (moves == "keyframes") {
@@ -57,8 +59,6 @@ std::optional<RootMotion> motion(const Parameters& parameters, const RootMotion&
   if (moves == "head") return head;
   return {};
 }
-
-}  // namespace
 
 std::string surface_in_words(const Parameters& parameters) {
   if (parameters.word("shape") != "mesh") return {};
@@ -83,13 +83,13 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                         .offset = parameters.number("strand_radius_m")};
   const StrandPlace place{parameters.vec("centre_m"),
                           turned_by(parameters.vec("rotation_rad"))};
-  std::optional<RootMotion> follows = motion(parameters, head);
+  std::optional<RootMotion> follows = body_motion(parameters, head);
   const bool rigid = parameters.word("normal") == "rigid";
   const bool turns = parameters.word("moves") == "turns";
   if (parameters.word("friction_law") == "exact") {
     refuse_if(turns,
-              "moves = \"turns\" with friction_law = \"exact\", whose contact forces "
-              "leave out the body's motion",
+              "moves = \"turns\" with friction_law = \"exact\", whose solver takes the "
+              "motion of bodies as given",
               "effect body", "use friction_law = \"regularised\"");
     return std::make_unique<ExactBody>(
         make_shape(parameters), place,

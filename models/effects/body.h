@@ -20,6 +20,11 @@ std::span<const EffectUse> body_uses();
 /// mesh, in words; nothing for other shapes. Throws InputError as make_body() does.
 std::string surface_in_words(const Parameters& parameters);
 
+/// Returns the prescribed motion of a body with these parameters; none: it is fixed, or
+/// strands turn it. `head`: of the roots.
+std::optional<RootMotion> body_motion(const Parameters& parameters,
+                                      const RootMotion& head);
+
 /// Result of Effect::rigid_contact(): per length of strand, `law`.
 struct RigidContact {
   RigidBody body;   // shape and motion

@@ -102,6 +102,18 @@ RootPose RootMotion::at(double t) const {
   return pose;
 }
 
+RootMotion carried(RootMotion by, const StrandPlace& place) {
+  const Vec c = by.centre.value_or(by.position);
+  // At t = 0: x = c + moved + turn (x at rest - c).
+  by.centre = by.position = c;
+  by.frame = Frame{};
+  const RootPose begin = by.at(0);
+  by.position = c + begin.frame.back(place.x - begin.x);
+  by.frame = {begin.frame.back(place.frame.e0), begin.frame.back(place.frame.e1),
+              begin.frame.back(place.frame.e2)};
+  return by;
+}
+
 double RootMotion::next_breakpoint(double t) const {
   double next = std::numeric_limits<double>::infinity();
   for (const auto* parts : {&translations, &rotations}) {

@@ -103,6 +103,10 @@ struct RootMotion {
   double next_breakpoint(double t) const;
 };
 
+/// Returns the motion of a place that this motion carries rigidly: it is at `place` at
+/// t = 0.
+RootMotion carried(RootMotion by, const StrandPlace& place);
+
 /// Throws InputError naming `where` unless the frame is a rotation, axes are not 0, every
 /// part has a signal and all numbers are finite.
 void check(const RootMotion& motion, const std::string& where);

@@ -2,40 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contract/input_error.h"
+#include "models/joints/joined_system.h"
 
 namespace tress::models {
-namespace {
-
-InOut column(Eigen::MatrixXd& of, std::size_t k) {
-  return {of.col(static_cast<Eigen::Index>(k)).data(),
-          static_cast<std::size_t>(of.rows())};
-}
-
-/// Step of differences along a motion, over the typical coordinates: the cube root of the
-/// rounding.
-constexpr double motion_step = 6e-6;
-
-}  // namespace
-
 TurningSystem::TurningSystem(std::unique_ptr<System> strand,
                              std::vector<const TurningBody*> bodies)
     : strand_(std::move(strand)),
       bodies_(std::move(bodies)),
       points_(strand_->material_points()),
+      constrained_(bordered_form(*strand_)),
+      supports_(tress::support_forces(*strand_)),
+      joints_(tress::joint_forces(*strand_)),
       strand_size_(static_cast<std::size_t>(strand_->layout().coordinates)),
       all_(strand_size_ + bodies_.size()),
       linear_points_(points_ != nullptr && points_->mean(points_->count() - 1)),
       lu_(std::ssize(bodies_)) {
-  refuse_if(strand_->layout().constraints > 0,
-            "a turning body and a strand with constraints", "effect body",
-            "use a model without constraints, such as super_helix or der, and no rigid "
-            "supports");
   refuse_if(strand_->contact_form() != nullptr,
             "a turning body and exact contact, whose response leaves out the body's "
             "motion",
             "effect body", "use friction_law = \"regularised\" for all bodies");
+  if (strand_->layout().constraints > 0) rows_.emplace(*strand_, all_);
   const auto n = static_cast<Eigen::Index>(strand_size_), m = std::ssize(bodies_);
   for (Eigen::MatrixXd* border : {&column_, &responses_, &row_}) border->setZero(n, m);
   own_.setZero(m);
@@ -73,15 +62,6 @@ void TurningSystem::scale(Out q_typ, Out v_typ) const {
   }
 }
 
-/// Calls act(), a residual of the strand, while the bodies record their loads.
-template <class Act>
-Status TurningSystem::recorded(const Act& act) noexcept {
-  for (const TurningBody* body : bodies_) body->record();
-  const Status s = act();
-  for (const TurningBody* body : bodies_) body->act();
-  return s;
-}
-
 /// The moment on body k, N m: of the recorded loads, the bearing and the prescribed one.
 double TurningSystem::driving_moment(std::size_t k, double speed) const {
   const Bearing& bearing = bodies_[k]->bearing();
@@ -102,77 +82,27 @@ Status TurningSystem::residual(double t, In q, In v, In a, Out r) noexcept {
   return Status::ok;
 }
 
-/// to = J^T loads, which replace those of body k. base_ has the residual without any.
-Status TurningSystem::pull(double t, In q, std::size_t k, In loads, Out to) noexcept {
-  bodies_[k]->replace(loads, 1);
-  const Status s = strand_->residual(t, q, zero_, zero_, to);
-  bodies_[k]->replace({}, 0);
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] = base_[i] - to[i];
-  return s;
+Status TurningSystem::linearize_bordered(double t, In q, In v, In a, In lambda,
+                                         Weights w) noexcept {
+  if (rows_) {
+    last_.t = t;
+    last_.w = w;
+    for (const auto& [to, from] :
+         {std::pair{&last_.q, q}, std::pair{&last_.v, v}, std::pair{&last_.a, a},
+          std::pair{&last_.lambda, lambda}}) {
+      to->assign(from.begin(), from.end());
+    }
+    disturbed_ = false;
+  }
+  return factor(t, q, v, a, lambda, w);
 }
 
-/// Adds (d(J v)/dq)^T h to the row of body k, with h = slopes_.rate. It is the change of
-/// J^T h along the motion, since J is dx/dq.
-Status TurningSystem::add_turning_points(double t, In q, In v, std::size_t k) noexcept {
-  double fastest = 0;
-  for (std::size_t i = 0; i < strand_size_; ++i) {
-    fastest = std::max(fastest, std::abs(v[i]) / q_typ_[i]);
-  }
-  if (fastest == 0) return Status::ok;
-  const double step = motion_step / fastest;
-  const InOut to = column(row_, k);
-  for (const double side : {-1.0, 1.0}) {
-    for (std::size_t i = 0; i < strand_size_; ++i) {
-      shifted_[i] = q[i] + side * step * v[i];
-    }
-    for (const double sign : {-1.0, 1.0}) {
-      bodies_[k]->replace(slopes_.rate, sign);
-      const Status s = strand_->residual(t, shifted_, zero_, zero_, r_);
-      if (s != Status::ok) return s;
-      for (std::size_t i = 0; i < strand_size_; ++i) {
-        to[i] -= side * sign * r_[i] / (4 * step);
-      }
-    }
-  }
-  bodies_[k]->replace({}, 0);
-  return Status::ok;
-}
-
-/// Computes the border at this state.
-Status TurningSystem::border(double t, In q, In v, Weights w) noexcept {
-  const In q_s = of_strand(q), v_s = of_strand(v);
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    const Bearing& bearing = bodies_[k]->bearing();
-    own_[static_cast<Eigen::Index>(k)] =
-        w.acc * bearing.inertia + w.vel * bearing.damping;
-  }
-  bordered_ = false;
-  if (w.vel == 0 && w.pos == 0) return Status::ok;
-  Status s = recorded([&] { return strand_->residual(t, q_s, v_s, zero_, r_); });
-  bordered_ = std::ranges::any_of(bodies_, &TurningBody::touched);
-  if (s != Status::ok || !bordered_) return s;
-  column_.setZero();
-  row_.setZero();
-  for (const TurningBody* body : bodies_) body->replace({}, 0);
-  s = strand_->residual(t, q_s, zero_, zero_, base_);
-  for (std::size_t k = 0; k < bodies_.size() && s == Status::ok; ++k) {
-    if (!bodies_[k]->touched()) continue;
-    bodies_[k]->slopes(t, w, slopes_);
-    own_[static_cast<Eigen::Index>(k)] += slopes_.own;
-    s = pull(t, q_s, k, slopes_.by_turn, column(column_, k));
-    column_.col(static_cast<Eigen::Index>(k)) *= -1;
-    if (s == Status::ok) s = pull(t, q_s, k, slopes_.moment, column(row_, k));
-    if (s == Status::ok && w.pos != 0 && !linear_points_) {
-      s = add_turning_points(t, q_s, v_s, k);
-    }
-  }
-  for (const TurningBody* body : bodies_) body->act();
-  return s;
-}
-
-Status TurningSystem::linearize(double t, In q, In v, In a, Weights w) noexcept {
+Status TurningSystem::factor(double t, In q, In v, In a, In lambda, Weights w) noexcept {
   place(q, v);
-  Status s = strand_->linearize(t, of_strand(q), of_strand(v), of_strand(a), w);
+  Status s = constrained_ == nullptr
+                 ? strand_->linearize(t, of_strand(q), of_strand(v), of_strand(a), w)
+                 : constrained_->linearize_bordered(t, of_strand(q), of_strand(v),
+                                                    of_strand(a), lambda, w);
   if (s == Status::ok) s = border(t, q, v, w);
   inner_ = own_.asDiagonal();
   if (s != Status::ok || !bordered_) return s;
@@ -185,6 +115,11 @@ Status TurningSystem::linearize(double t, In q, In v, In a, Weights w) noexcept 
 }
 
 Status TurningSystem::solve(In b, Out x) noexcept {
+  if (disturbed_) {
+    disturbed_ = false;
+    const Status s = factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w);
+    if (s != Status::ok) return s;
+  }
   for (Eigen::Index k = 0; k < inner_x_.size(); ++k) {
     inner_x_[k] = b[strand_size_ + static_cast<std::size_t>(k)];
   }
@@ -204,6 +139,50 @@ Status TurningSystem::solve(In b, Out x) noexcept {
   return Status::ok;
 }
 
+SparseForm* TurningSystem::sparse_form() {
+  if (!rows_) return nullptr;
+  if (!full_) full_.emplace(*this);
+  return this;
+}
+
+Status TurningSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
+  Linearized before = last_;
+  const Status status = full_->values(t, q, v, a, w, s);
+  last_ = std::move(before);
+  disturbed_ = !last_.q.empty();
+  return status;
+}
+
+Status TurningSystem::support_forces(double t, In q, In v, Out forces, Out moments) {
+  if (supports_ == nullptr) return Status::ok;
+  place(q, v);
+  return supports_->support_forces(t, of_strand(q), of_strand(v), forces, moments);
+}
+
+void TurningSystem::support_motion(double t, Out x, Out u, Out omega) const {
+  if (supports_ != nullptr) supports_->support_motion(t, x, u, omega);
+}
+
+double TurningSystem::moment_power(double t, In q, In v, const Vec& turning) {
+  if (supports_ == nullptr) return 0;
+  return supports_->moment_power(t, of_strand(q), of_strand(v), turning);
+}
+
+double TurningSystem::natural_power(double t, In q) {
+  return supports_ == nullptr ? 0 : supports_->natural_power(t, of_strand(q));
+}
+
+NaturalWork TurningSystem::natural_work(double from, In q_from, double to, In q_to) {
+  if (supports_ == nullptr) return {};
+  return supports_->natural_work(from, of_strand(q_from), to, of_strand(q_to));
+}
+
+Status TurningSystem::joint_forces(double t, In q, In v, Out forces, Out moments) {
+  if (joints_ == nullptr) return Status::ok;
+  place(q, v);
+  return joints_->joint_forces(t, of_strand(q), of_strand(v), forces, moments);
+}
+
 Status TurningSystem::acceleration(double t, In q, In v, Out a) noexcept {
   place(q, v);
   const Status s = recorded([&] {
@@ -217,14 +196,32 @@ Status TurningSystem::acceleration(double t, In q, In v, Out a) noexcept {
   return s;
 }
 
+double TurningSystem::kinetic(In v) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const double speed = v[strand_size_ + k];
+    sum += bodies_[k]->bearing().inertia * speed * speed / 2;
+  }
+  return sum;
+}
+
 Energy TurningSystem::energy(double t, In q, In v) {
   place(q, v);
   Energy sum = strand_->energetics()->energy(t, of_strand(q), of_strand(v));
+  sum.kinetic += kinetic(v);
+  return sum;
+}
+
+TurningBodies::OfBodies TurningSystem::energy_of_bodies(double t, In q, In v) {
+  place(q, v);
+  static_cast<void>(recorded(
+      [&] { return strand_->residual(t, of_strand(q), of_strand(v), zero_, r_); }));
+  OfBodies all{.kinetic = kinetic(v)};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const double speed = v[strand_size_ + k];
-    sum.kinetic += bodies_[k]->bearing().inertia * speed * speed / 2;
+    all.rate += driving_moment(k, speed) * speed;
   }
-  return sum;
+  return all;
 }
 
 double TurningSystem::power(double t, In q, In v) {
@@ -273,7 +270,25 @@ std::unique_ptr<System> with_turning_bodies(std::unique_ptr<System> strand,
                                             const Effects& effects) {
   std::vector<const TurningBody*> bodies = turning_bodies(effects);
   if (bodies.empty()) return strand;
+  if (strand->layout().constraints > 0 && bordered_form(*strand) == nullptr) {
+    // Joined strands have the form; here it is one.
+    std::vector<std::unique_ptr<SupportedSystem>> one;
+    if (dynamic_cast<SupportedSystem*>(strand.get()) != nullptr) {
+      one.emplace_back(static_cast<SupportedSystem*>(strand.release()));
+    } else {
+      one.push_back(
+          std::make_unique<SupportedSystem>(std::move(strand), std::vector<Support>{}));
+    }
+    strand = std::make_unique<JoinedSystem>(std::move(one), std::vector<Joint>{},
+                                            std::vector<std::string>{});
+  }
   return std::make_unique<TurningSystem>(std::move(strand), std::move(bodies));
+}
+
+const StrandBlock* block_of(const System& system) {
+  const auto* turning = dynamic_cast<const TurningSystem*>(&system);
+  return dynamic_cast<const StrandBlock*>(turning == nullptr ? &system
+                                                             : &turning->strand());
 }
 
 }  // namespace tress::models

@@ -41,6 +41,7 @@ Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t fir
       strands_(std::move(strands)),
       first_(first),
       supports_(support_forces(system)),
+      bodies_(turning_bodies(system)),
       natural_moves_(supports_ != nullptr && supports_->natural_moves()) {
   const auto count = points_ == nullptr ? 0 : static_cast<std::size_t>(points_->count());
   for (auto* list : {&x_, &u_, &tangent_, &load_}) list->resize(3 * count);
@@ -56,11 +57,22 @@ void Guard::start(double t, In q, In v) {
   natural_ = {};
   account_.start(t, {}, 0);
   if (energetics_ == nullptr) return;
-  const Energy energy = energetics_->energy(t, q, v);
-  const double power = energetics_->power(t, q, v);
-  meter_.start(energy, sampled(power, t, q));
-  const EnergyMeasure begin = measure(t, q, v, energy, power);
+  const Seen seen = look(t, q, v);
+  meter_.start(seen.energy, sampled(seen.power, t, q));
+  const EnergyMeasure begin = measure(t, q, v, seen);
   account_.start(t, begin, slack(t, q, v, begin));
+}
+
+/// Bodies that strands turn drive them, and have an energy of their own: as much as it
+/// may be, it is no slack of the strands.
+Guard::Seen Guard::look(double t, In q, In v) {
+  Seen seen{energetics_->energy(t, q, v), energetics_->power(t, q, v)};
+  if (bodies_ == nullptr) return seen;
+  const TurningBodies::OfBodies bodies = bodies_->energy_of_bodies(t, q, v);
+  seen.energy.kinetic -= bodies.kinetic;
+  seen.power -= bodies.rate;
+  seen.to_bodies = bodies.rate;
+  return seen;
 }
 
 double Guard::slack(double t, In q, In, const EnergyMeasure& begin) {
@@ -117,24 +129,23 @@ bool Guard::judge(double t, In q, In v) {
   if (stretched(t, q)) return false;
   if (energetics_ == nullptr) return true;
   gather_natural(t, q);
-  const Energy energy = energetics_->energy(t, q, v);
-  const double power = energetics_->power(t, q, v);
-  meter_.gather(t - account_.seen(), energy, sampled(power, t, q), natural_.work,
-                natural_.uncertain);
-  EnergyMeasure now = measure(t, q, v, energy, power);
+  const Seen seen = look(t, q, v);
+  meter_.gather(t - account_.seen(), seen.energy, sampled(seen.power, t, q),
+                natural_.work, natural_.uncertain);
+  EnergyMeasure now = measure(t, q, v, seen);
   now.work = natural_.put_in;
   natural_ = {};
   account_.gather(t, now);
   return !gained(t, now) && !too_fast(t);
 }
 
-EnergyMeasure Guard::measure(double t, In q, In v, const Energy& energy, double power) {
-  EnergyMeasure now{.kinetic = energy.kinetic, .potential = energy.potential};
+EnergyMeasure Guard::measure(double t, In q, In v, const Seen& seen) {
+  EnergyMeasure now{.kinetic = seen.energy.kinetic, .potential = seen.energy.potential};
   if (points_ != nullptr) {
     points_->positions(t, q, x_);
     points_->velocities(t, q, v, u_);
   }
-  if (strands_.empty()) now.power = power;
+  now.power = strands_.empty() ? seen.power : -seen.to_bodies;
   std::size_t first = 0;
   for (const GuardedStrand& strand : strands_) {
     const Points p = points_of(strand, first);

@@ -61,8 +61,8 @@ Readout::Readout(const Scene& scene, const World& world)
   add("stretch_rel", "largest |length/rest - 1| of a segment");
   add("penetration_m",
       "largest depth of a strand in a body since the last frame, at the ends of all "
-      "steps and on paths through a body within a step; strands are straight between "
-      "their points");
+      "steps and on paths through a body within a step, except bodies that strands turn; "
+      "strands are straight between their points");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "mean distance from a strand to the nearest other one");
@@ -76,7 +76,8 @@ Readout::Readout(const Scene& scene, const World& world)
     add("failed_strands", "strands that have failed and stay where they are");
   }
   for (const std::string& name : turning) {
-    add(fmt::format("angle_{}_rad", name), "angle by which the body has turned");
+    add(fmt::format("angle_{}_rad", name),
+        "angle by which strands have turned the body, about its axis");
     add(fmt::format("speed_{}_rad_per_s", name), "angular velocity of the body");
   }
   first_load_ = series_.size();

@@ -107,7 +107,8 @@ SteppedSystem StrandMaker::joined(std::span<const StrandToMake> strands,
   SteppedSystem made(joints_.join(group, std::move(systems), each));
   made.meters = std::move(meters);
   made.supported = supported;
-  begin_on_joints(*made.system, joints_.places(group));
+  if (!group.joints.empty()) begin_on_joints(*made.system, joints_.places(group));
+  made.system = models::with_turning_bodies(std::move(made.system), effects_);
   if (!guard_) return made;
   // Joints between strands do no work only in a common frame.
   std::vector<GuardedStrand> all = guarded(strands);

@@ -7,6 +7,7 @@
 
 #include "contract/input_error.h"
 #include "math/pack.h"
+#include "models/turning/turning_system.h"
 #include "simulation/rest/overlap_at_start.h"
 #include "simulation/run/memory.h"
 #include "simulation/run/world.h"
@@ -84,6 +85,8 @@ void World::add(SteppedSystem made, std::size_t strands, const StrandBlock* bloc
     body.coordinates[k] = static_cast<std::size_t>(strand.layout().coordinates);
     points_.push_back(strand.material_points()->count());
   }
+  // Angles of bodies come last.
+  body.coordinates.back() += n - static_cast<std::size_t>(block->layout().coordinates);
 }
 
 Effects World::effects_between(std::size_t strand) const {
@@ -146,7 +149,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
     if (const SceneJoints::Group* group = maker_.joints().beginning_with(k)) {
       for (std::size_t i = k; i < k + group->count; ++i) some.push_back(to_make(i));
       SteppedSystem made = maker_.joined(some, *group);
-      const auto* block = dynamic_cast<const StrandBlock*>(made.system.get());
+      const StrandBlock* const block = models::block_of(*made.system);
       add(std::move(made), group->count, block);
       k += group->count;
       continue;

@@ -11,6 +11,7 @@
 #include "models/joints/joined_system.h"
 #include "models/strand/geometry.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/turning_bodies.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
@@ -151,7 +152,19 @@ Table read_joint(const toml::table& table, const std::string& file) {
 }
 
 SceneJoints::SceneJoints(const Scene& scene) : tables_(scene.tables) {
-  if (tables_ == nullptr || tables().empty()) return;
+  if (tables_ != nullptr && !tables().empty()) read_ends();
+  std::size_t last = 0;
+  for (const Ends& ends : ends_) last = std::max({last, ends.a, ends.b});
+  if (!has_turning_bodies(scene) || scene.strands.size() < 2) {
+    if (any()) find_groups(last + 1);
+    return;
+  }
+  Group all{.count = std::max(scene.strands.size(), last + 1)};
+  for (std::size_t j = 0; j < ends_.size(); ++j) all.joints.push_back(j);
+  groups_.push_back(std::move(all));
+}
+
+void SceneJoints::read_ends() {
   const auto strands = strands_by_name(*tables_);
   std::string known;
   for (const auto& [name, number] : strands) known += (known.empty() ? "" : ", ") + name;
@@ -170,9 +183,6 @@ SceneJoints::SceneJoints(const Scene& scene) : tables_(scene.tables) {
     refuse_if(a == b && end_of(table, "a").second == end_of(table, "b").second,
               "a joint of a point with itself", table.place("b"), "join two points");
   }
-  std::size_t last = 0;
-  for (const Ends& ends : ends_) last = std::max({last, ends.a, ends.b});
-  find_groups(last + 1);
 }
 
 /// The smallest ranges of strands that contain whole joints.
@@ -227,26 +237,27 @@ std::vector<std::string> SceneJoints::places(const Group& group) const {
   return all;
 }
 
-const std::string& SceneJoints::place() const {
-  return tables()[groups_.front().joints.front()].place();
-}
+const std::string& SceneJoints::place() const { return tables().front().place(); }
 
 std::unique_ptr<System> SceneJoints::join(const Group& group,
                                           std::vector<std::unique_ptr<System>> systems,
                                           std::span<const Strand* const> strands) const {
   std::vector<std::unique_ptr<SupportedSystem>> held;
   std::vector<std::vector<double>> x;
+  const bool joined = !group.joints.empty();
+  const std::string where = joined ? places(group).front() : "effect body";
   for (std::size_t k = 0; k < systems.size(); ++k) {
-    models::check_unbranched(*strands[k], places(group).front());
+    models::check_unbranched(*strands[k], where);
     MaterialPoints* const points = systems[k]->material_points();
     refuse_if(points == nullptr ||
                   points->count() != static_cast<int>(strands[k]->segments.size()) + 1,
-              "joints of a model without points at the ends of its elements",
-              places(group).front(), "use another model");
-    refuse_if(systems[k]->contact_form() != nullptr,
+              fmt::format("{} of a model without points at the ends of its elements",
+                          joined ? "joints" : "several strands"),
+              where, "use another model");
+    refuse_if(joined && systems[k]->contact_form() != nullptr,
               "joints of a strand with exact contact: the response of contacts to their "
               "forces leaves joints out",
-              places(group).front(), "use friction_law = \"regularised\" for bodies");
+              where, "use friction_law = \"regularised\" for bodies");
     const auto n = static_cast<std::size_t>(systems[k]->layout().coordinates);
     std::vector<double> q(n), v(n);
     systems[k]->initial_state(q, v);

@@ -28,19 +28,20 @@ class SceneJoints {
   /// that does not exist, and of strands with equal names.
   explicit SceneJoints(const Scene& scene);
 
-  /// Strands first to first + count - 1, which their joints make one system.
+  /// Strands first to first + count - 1, which their joints make one system. Bodies that
+  /// strands turn make all strands of the scene one system.
   struct Group {
     std::size_t first = 0;              // number of the first strand
     std::size_t count = 1;              // number of strands
     std::vector<std::size_t> joints{};  // numbers of tables
   };
   /// Returns true if the scene has joints.
-  bool any() const { return !groups_.empty(); }
+  bool any() const { return !ends_.empty(); }
   /// Returns all groups, ascending.
   const std::vector<Group>& groups() const { return groups_; }
   /// Returns the group that begins with a strand; null if there is none.
   const Group* beginning_with(std::size_t strand) const;
-  /// Returns the group of a strand; null if no joint holds it.
+  /// Returns the group of a strand; null if it is a system of its own.
   const Group* of(std::size_t strand) const;
   /// Returns the names of all joints, group after group.
   std::vector<NamedSupport> named() const;
@@ -64,6 +65,7 @@ class SceneJoints {
     std::size_t a, b;
   };
   const std::vector<Table>& tables() const;
+  void read_ends();
   void find_groups(std::size_t strands);
 
   std::shared_ptr<const StrandTables> tables_;

@@ -157,6 +157,7 @@ void check_failed_strands(const Scene& scene, const ScenePlaces& places) {
 void check_joints(const Scene& scene, const ScenePlaces& places,
                   const SceneJoints& joints) {
   const SceneSupports supports(scene);
+  const Effects effects = effects_of(scene, places);
   for (const SceneJoints::Group& group : joints.groups()) {
     std::vector<std::unique_ptr<System>> systems;
     std::vector<const Strand*> strands;
@@ -164,12 +165,13 @@ void check_joints(const Scene& scene, const ScenePlaces& places,
       const Strand& strand = scene.strands[k];
       strands.push_back(&strand);
       auto alone = at_place(places.strands[k], [&] {
-        return scene.model->on_strand(strand, scene.model_options,
-                                      effects_of(scene, places));
+        return scene.model->on_strand(strand, scene.model_options, effects);
       });
       systems.push_back(supports.on(std::move(alone), strand, k));
     }
-    check_integrator(scene, *joints.join(group, std::move(systems), strands), places);
+    const auto system = models::with_turning_bodies(
+        joints.join(group, std::move(systems), strands), effects);
+    check_integrator(scene, *system, places);
   }
 }
 

@@ -63,6 +63,13 @@ constexpr Parameter support_parameters[] = {
      .max = farthest_place,
      .components = 2,
      .rows = true},
+    {.name = "on",
+     .help =
+         "carrier that moves the support rigidly: \"head\" (the motion of [root]) or a "
+         "body with prescribed motion, by its name in the columns, such as \"body\" or "
+         "\"body_2\". Empty: space, or keyframes",
+     .text = true,
+     .fallback = ""},
     {.name = "slide",
      .help =
          "direction in which the point slides freely, in the world, of any length; 0, "
@@ -118,6 +125,15 @@ void check_keys(const Table& table) {
     refuse("axis", "which turns about no axis", "leave it out, or give kind = \"hinge\"");
   }
   if (kind != "clamp") refuse("twist_rad", "which holds no twist", leave);
+  for (const char* key : {"keyframes", "directions", "twist_rad"}) {
+    if (table.values().word("on").empty() || !table.given(key)) continue;
+    throw InputError(fmt::format("{} of a support with on = \"{}\", which moves it", key,
+                                 table.values().word("on")),
+                     table.place(key), "leave out one of them");
+  }
+  refuse_if(!table.values().word("on").empty() && norm(table.values().vec("slide")) > 0,
+            "a slide of a support that a body carries", table.place("slide"),
+            "leave it out, or leave out on");
   const auto refuse_number = [&](const char* key, const char* why, const char* remedy) {
     if (table.values().number(key) > 0) refuse(key, why, remedy);
   };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/effects/body.h"
 #include "models/motion/signals.h"
 #include "simulation/table/read_table.h"
 
@@ -100,7 +101,35 @@ void add_twist(const Table& table, RootMotion& path) {
 
 }  // namespace
 
-RootMotion support_path(const Table& table, const models::StrandPlace& start) {
+std::vector<Carrier> carriers(const Scene& scene) {
+  std::vector<Carrier> all;
+  if (!scene.head.fixed()) all.push_back({"head", scene.head});
+  const std::vector<std::string> names = effect_names(scene);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Parameters& values = scene.effects[i].parameters;
+    if (scene.effects[i].entry->id != "body") continue;
+    if (auto motion = models::body_motion(values, scene.head)) {
+      all.push_back({names[i], *std::move(motion)});
+    }
+  }
+  return all;
+}
+
+RootMotion support_path(const Table& table, const models::StrandPlace& start,
+                        const std::vector<Carrier>& carriers) {
+  if (const std::string_view on = table.values().word("on"); !on.empty()) {
+    std::string known;
+    for (const Carrier& carrier : carriers) {
+      if (carrier.name == on) return models::carried(carrier.motion, start);
+      known += (known.empty() ? "use \"" : ", \"") + carrier.name + "\"";
+    }
+    throw InputError(
+        fmt::format("a support on '{}', which is no moving head and no body with a "
+                    "prescribed motion",
+                    on),
+        table.place("on"),
+        known.empty() ? "leave it out: nothing in the scene has such a motion" : known);
+  }
   const auto [t, x, y, z] = columns<4>(table.values().numbers("keyframes"));
   check_ascending(table, "keyframes", t);
   RootMotion path;

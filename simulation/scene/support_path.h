@@ -1,16 +1,30 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "models/supports/support_rows.h"
+#include "simulation/scene/scene.h"
 #include "simulation/table/table.h"
 
 /// Motion of a support over time, from its table.
 namespace tress::simulation {
 
-/// Returns the motion that a [[supports]] table describes: its keyframes, directions and
-/// twist. `start` is the place and the frame of the held point where the strand begins.
-/// They are kept where the table has no rows. Throws InputError with the location of rows
-/// that are not ascending, or of directions that determine no rotation.
-models::RootMotion support_path(const Table& table, const models::StrandPlace& start);
+/// What may carry supports: its name and its motion.
+struct Carrier {
+  std::string name;           // "head", or that of a body
+  models::RootMotion motion;  // prescribed
+};
+/// Returns the moving head and the bodies of a scene that have a prescribed motion.
+std::vector<Carrier> carriers(const Scene& scene);
+
+/// Returns the motion that a [[supports]] table describes: that of its carrier among
+/// these, or its keyframes, directions and twist. `start` is the place and the frame of
+/// the held point where the strand begins. They are kept where the table has no rows.
+/// Throws InputError with the location of rows that are not ascending, or of directions
+/// that determine no rotation, and of an unknown carrier.
+models::RootMotion support_path(const Table& table, const models::StrandPlace& start,
+                                const std::vector<Carrier>& carriers);
 
 /// Leaves out of the held directions of a support the one in which its table lets the
 /// point slide. Throws InputError with its location if that direction is not held.

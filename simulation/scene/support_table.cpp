@@ -109,7 +109,13 @@ SceneSupports::SceneSupports(const Scene& scene)
     : tables_(scene.tables),
       model_(scene.model),
       model_options_(scene.model_options),
-      duration_(scene.duration) {}
+      duration_(scene.duration) {
+  // Motions are read from tables: only for the scenes that need them.
+  const auto on_body = [](const Table& table) {
+    return !table.values().word("on").empty();
+  };
+  if (std::ranges::any_of(tables(), on_body)) carriers_ = carriers(scene);
+}
 
 const std::vector<Table>& SceneSupports::tables() const {
   static const std::vector<Table> none;
@@ -158,7 +164,7 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
                                const StrandPlace& start, int point) const {
   Support support;
   support.point = point;
-  support.path = support_path(table, start);
+  support.path = support_path(table, start, carriers_);
   const Parameters& values = table.values();
   support.compliance = {values.number("stiffness_n_per_m"),
                         values.number("damping_n_s_per_m"),

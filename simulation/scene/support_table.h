@@ -10,6 +10,7 @@
 #include "models/supports/support_rows.h"
 #include "simulation/files/toml_text.h"
 #include "simulation/scene/scene.h"
+#include "simulation/scene/support_path.h"
 #include "simulation/table/table.h"
 
 namespace tress::simulation {
@@ -36,7 +37,7 @@ int point_at(std::string_view at, const Strand& strand, const std::string& name,
 /// Keeps no reference to it.
 class SceneSupports {
  public:
-  /// Reads the scene's tables, model, model options and duration.
+  /// Reads the scene's tables, model, model options, duration and motions.
   explicit SceneSupports(const Scene& scene);
 
   /// Returns true if the scene has supports, moments or natural shapes over time.
@@ -82,6 +83,7 @@ class SceneSupports {
   const ModelEntry* model_;
   Parameters model_options_;
   double duration_;
+  std::vector<Carrier> carriers_;
 };
 
 /// Returns the formulation that suits the scene's method. It is index 3 for a method of

@@ -1,12 +1,8 @@
 #include "simulation/scene/turning_bodies.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "contract/input_error.h"
-#include "simulation/scene/joint_table.h"
-#include "simulation/scene/support_table.h"
 
 namespace tress::simulation {
 
@@ -34,22 +30,18 @@ void check_turning_bodies(const Scene& scene, const std::vector<std::string>& pl
   if (body == scene.effects.end()) return;
   const std::string& place =
       places[static_cast<std::size_t>(body - scene.effects.begin())];
-  refuse_if(
-      strands > 1,
-      fmt::format("moves = \"turns\" with {} strands, which the body would make one "
-                  "system",
-                  strands),
-      place, "use a scene with one strand");
-  const SceneSupports supports(scene);
-  if (supports.any()) {
-    throw InputError(fmt::format("moves = \"turns\" with {}, whose forces leave out the "
-                                 "body's motion",
-                                 supports.table_name()),
-                     place, "leave out " + supports.table_name());
+  for (const EffectChoice& choice : scene.effects) {
+    refuse_if(
+        choice.parameters.knows("friction_law") &&
+            choice.parameters.word("friction_law") == "exact",
+        "moves = \"turns\" next to friction_law = \"exact\", whose solver takes the "
+        "motion of bodies as given",
+        place, "use friction_law = \"regularised\" for all bodies");
   }
-  refuse_if(SceneJoints(scene).any(),
-            "moves = \"turns\" with [joints], whose forces leave out the body's motion",
-            place, "leave out [joints]");
+  refuse_if(
+      strands > 1 && scene.failed_strands == FailedStrands::stay,
+      "failed_strands = \"stay\" for strands that turn a body, which are one system",
+      place, "leave out failed_strands");
   refuse_if(
       scene.strands_touch(),
       "moves = \"turns\" with effects between strands, which act on one strand at a "

@@ -7,6 +7,7 @@ import os
 import re
 import shlex
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -40,6 +41,8 @@ length_m = {LENGTH}
 elements = 20
 root_tangent = [1, 0, 0]
 [effects.linear_drag]
+[effects.gravity]
+gravity_m_s2 = [0, 0, 0]
 """
 
 
@@ -238,11 +241,33 @@ class Played(unittest.TestCase):
             refused = self.play.do(do="set", **command)["refused"]
             self.assertIn(words, refused)
             self.assertNotIn("\n", refused)
+            # Lines of the changed scene are not those of the file.
+            self.assertNotIn(".toml", refused)
+            if words != "number of coordinates":
+                self.assertIn(f"({command['key']})", refused)
         self.play.do(do="restart")
+        self.assertEqual(self.play.do(do="set", key="guard", value=False), {})
         self.assertEqual(self.play.do(do="set", key="strand.elements", value=10), {})
         self.assertEqual(series_of(self.play.state())["t_s"], 0)
         self.assertIn("refused", self.play.do(do="pull", at=2, target=[0, 0, 0], stiffness_n_m=1))
         self.assertIn("refused", self.play.do(do="fly"))
+
+    def test_a_run_that_failed_refuses_to_run(self):
+        self.play.do(do="set", key="integrator.id", value="explicit_euler")
+        self.play.do(do="set", key="integrator.dt_s", value=0.01)
+        self.play.do(do="set", key="effects.gravity.gravity_m_s2", value=[0, 0, -9.81])
+        self.play.do(do="step", steps=100)
+        self.assertTrue(self.play.state()["failed"])
+        self.assertIn("restart", self.play.do(do="run")["refused"])
+        self.play.do(do="restart")
+        self.assertEqual(self.play.state()["failed"], "")
+
+    def test_the_end_of_its_program_is_told(self):
+        program, = subprocess.run(["pgrep", "-P", str(self.play.process.pid)],
+                                  capture_output=True, text=True, check=True).stdout.split()
+        os.kill(int(program), signal.SIGKILL)
+        self.assertIn("has ended", self.play.do(do="step")["refused"])
+        self.assertEqual(self.play.end(), 3)
 
     def test_an_end_leaves_no_process(self):
         children = subprocess.run(["pgrep", "-P", str(self.play.process.pid)],
@@ -266,6 +291,10 @@ class Refused(unittest.TestCase):
         self.refused("no file 'nothing.toml'", "nothing.toml")
         self.refused("--port none is no port", "scenes/cantilever.toml", "--port", "none")
         self.refused("unknown option '--out'", "scenes/cantilever.toml", "--out", "x")
+        with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as used:
+            port = str(used.getsockname()[1])
+            self.refused(f"port {port}: Address already in use; give another --port",
+                         "scenes/cantilever.toml", "--port", port)
         with tempfile.TemporaryDirectory() as folder:
             bad = Path(folder) / "bad.toml"
             bad.write_text(SCENE.replace("length_m", "lenght_m"))

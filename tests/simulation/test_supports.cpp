@@ -9,6 +9,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "models/effects/body.h"
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
 #include "simulation/scene_text/write_scene.h"
@@ -224,6 +225,80 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
   Text rest;
   rest.top = "rest = \"inverse\"\n";
   EXPECT_NE(refused(rest).find("[supports] with rest = \"inverse\""), std::string::npos);
+}
+
+/// A support on a body that moves by keyframes, and one on the head that turns.
+const char* const moving_body =
+    "[effects.body]\nshape = \"sphere\"\nradius_m = 0.05\ncentre_m = [0.4, 0, 0.2]\n"
+    "moves = \"keyframes\"\naxis = [0, 1, 0]\n"
+    "keyframes = [[0, 0, 0, 0, 0.3], [0.1, 0.02, 0, 0.1, 0.8]]\n";
+
+/// The tip keeps its place on the body: constraints hold to 1e-9 of the length.
+TEST(Supports, AreCarriedByBodies) {
+  for (const char* model : {"super_helix", "der"}) {
+    Text text;
+    text.model = std::string("id = \"") + model + "\"";
+    text.root = "";
+    text.strand =
+        "length_m = 1\nelements = 10\nshape = \"helix\"\ncurl_radius_m = "
+        "0.02\ncurl_pitch_m = 0.2";
+    text.supports = "[[supports]]\nat = \"tip\"\nkind = \"clamp\"\non = \"body\"\n";
+    text.rest = moving_body;
+    const Scene scene = scene_of(text);
+    World world(scene);
+    const auto tip = [&] {
+      const std::vector<double> x = world.positions();
+      return load3(&x[x.size() - 3]);
+    };
+    const Vec begin = tip();
+    const auto motion = models::body_motion(scene.effects.back().parameters, scene.head);
+    ASSERT_TRUE(motion);
+    const models::RootMotion path = models::carried(*motion, {begin, {}});
+    EXPECT_LT(norm(path.at(0).x - begin), 1e-15);
+    ASSERT_EQ(world.advance(0.1), Status::ok) << world.failure();
+    EXPECT_GT(norm(path.at(0.1).x - begin), 0.1);
+    EXPECT_LT(norm(tip() - path.at(0.1).x), 1e-9) << model;
+  }
+}
+
+/// Root and tip on one head that moves and turns.
+TEST(Supports, AreCarriedByTheHead) {
+  Text text;
+  text.root =
+      "motion = \"keyframes\"\naxis = [0, 0, 1]\nkeyframes = [[0, 0, 0, 0, 0], [0.1, "
+      "0.3, 0, 0, 1.2]]";
+  text.strand = "length_m = 0.01\nelements = 10";
+  text.supports = "[[supports]]\nat = \"tip\"\nkind = \"clamp\"\non = \"head\"\n";
+  text.model = "id = \"der\"";
+  std::string scene_text = text_of(text);
+  scene_text.replace(scene_text.find("[effects.gravity]\n"), 18, "");
+  const Scene scene = parse_scene(scene_text, "held.toml");
+  World world(scene);
+  ASSERT_EQ(world.advance(0.1), Status::ok) << world.failure();
+  const std::vector<double> x = world.positions();
+  const models::RootPose root = scene.head.at(0.1);
+  const Vec seen = root.frame.back(load3(&x[x.size() - 3]) - root.x);
+  EXPECT_LT(norm(seen - Vec{0.01, 0, 0}), 1e-9 * 0.01);
+}
+
+TEST(Supports, RefuseWhatCannotCarryThem) {
+  const auto refused = [](const std::string& supports, const std::string& rest) {
+    Text text;
+    text.root = "";
+    text.supports = supports;
+    text.rest = rest;
+    return refusal([&] { World(scene_of(text)); });
+  };
+  EXPECT_EQ(refused("[[supports]]\non = \"body\"\n", ""),
+            "a support on 'body', which is no moving head and no body with a prescribed "
+            "motion (held.toml:19:6): leave it out: nothing in the scene has such a "
+            "motion");
+  EXPECT_NE(refused("[[supports]]\non = \"bodi\"\n", moving_body).find("use \"body\""),
+            std::string::npos);
+  EXPECT_NE(
+      refused("[[supports]]\non = \"body\"\nkeyframes = [[0, 0.5, 0, 0]]\n", moving_body)
+          .find("keyframes of a support with on = \"body\", which moves it"),
+      std::string::npos);
 }
 
 }  // namespace tress::test_supports

@@ -178,6 +178,8 @@ def series(tables):
         *_found(tables, "simulation/run/readout.cpp", r"\badd\("),
         ("tip_x_m, tip_y_m, tip_z_m", "tip, mean over the strands"),
         ("<effect>_j", "potential energy of the effect"),
+        ("angle_<body>_rad", "angle by which strands have turned a body, about its axis"),
+        ("speed_<body>_rad_per_s", "angular velocity of a body that strands turn"),
         ("force_<support>_x_n, force_<support>_y_n, force_<support>_z_n", "force of a support on the strand"),
     ]
     there = {column for columns, _ in strands for column in columns.split(", ")}

@@ -1,6 +1,7 @@
 // Commands of a live run on standard input, answers on standard output.
 #include <unistd.h>
 
+#include <cctype>
 #include <iostream>
 #include <string>
 
@@ -20,9 +21,21 @@ void answer(const json& line) {
             "standard output");
 }
 
+/// Replaces places in the file by the key that was set: the run reads the changed scene,
+/// whose lines are others.
+std::string at_key(std::string text, const std::string& file, const std::string& key) {
+  for (std::size_t at = 0; (at = text.find(file + ":", at)) != std::string::npos;) {
+    std::size_t end = at + file.size();
+    while (end < text.size() && (text[end] == ':' || std::isdigit(text[end]) != 0)) ++end;
+    text.replace(at, end - at, key);
+    at += key.size();
+  }
+  return text;
+}
+
 json answer_to(LiveRun& run, const std::string& line) {
+  const json command = json::parse(line, nullptr, false);
   try {
-    const json command = json::parse(line, nullptr, false);
     if (!command.is_object()) {
       throw InputError("the command is no JSON object", "live command",
                        "give {\"do\": \"step\"}");
@@ -36,7 +49,10 @@ json answer_to(LiveRun& run, const std::string& line) {
              "a value of the command has another type (live command): give "
              "numbers as numbers, names as texts"}};
   } catch (const InputError& error) {
-    return {{"refused", error.what()}};
+    const json key = command.is_object() ? command.value("key", json()) : json();
+    return {{"refused", key.is_string()
+                            ? at_key(error.what(), run.file(), key.get<std::string>())
+                            : error.what()}};
   }
 }
 

@@ -169,8 +169,12 @@ void LiveRun::set(const std::string& key, const json& value) {
 
 void LiveRun::pull(const json& command) {
   if (now_.scene->strands.size() != 1) {
-    throw InputError(fmt::format("a pull is for one strand, and the scene has {}",
-                                 now_.scene->strands.size()),
+    const std::size_t count = now_.scene->strands.size();
+    throw InputError(count == 0 ? "a pull is for a strand, and this model has a geometry "
+                                  "of its own"
+                                : fmt::format("a pull is for one strand, and the scene "
+                                              "has {}",
+                                              count),
                      "live run", "take a scene of one [strand] to pull it");
   }
   const auto target = command.find("target");

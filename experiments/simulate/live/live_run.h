@@ -38,6 +38,8 @@ class LiveRun {
   nlohmann::json frame();
   /// Returns the numbers of the scene that `set` may change, by key.
   nlohmann::json keys() const;
+  /// Returns the scene's file, as in messages.
+  const std::string& file() const { return file_; }
   /// Returns the default stiffness of a pull: ten times the larger of the strand's weight
   /// over its length and its bending stiffness 3 EI/L^3, N/m.
   double usual_stiffness() const;

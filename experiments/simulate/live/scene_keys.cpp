@@ -32,23 +32,34 @@ void gather(const toml::node& node, const std::string& path, json& all) {
   }
 }
 
-/// Adds the keys that a table of the scene leaves at their defaults.
-void add_defaults(const toml::table& scene, const TableEntry& entry, json& all) {
-  const toml::table* table = scene.at_path(entry.name).as_table();
-  if (table == nullptr) return;
+/// Adds the keys that a table leaves at their defaults.
+void add_defaults(const toml::table& table, const std::string& path,
+                  const TableEntry& entry, json& all) {
   for (const Parameter& p : entry.parameters) {
     const bool number = p.choices.empty() && !p.text && !p.rows;
-    if (!number || table->contains(p.name)) continue;
+    if (!number || table.contains(p.name)) continue;
     const json value = json::parse("[" + p.default_text() + "]", nullptr, false);
     if (!value.is_array() || value.empty()) continue;
-    all[fmt::format("{}.{}", entry.name, p.name)] =
-        p.components > 1 ? value : value.front();
+    all[fmt::format("{}.{}", path, p.name)] = p.components > 1 ? value : value.front();
+  }
+}
+
+/// Of one table, or of each in a list.
+void add_defaults(const toml::table& scene, const TableEntry& entry, json& all) {
+  const auto at = scene.at_path(entry.name);
+  const std::string name(entry.name);
+  if (const toml::table* table = at.as_table()) add_defaults(*table, name, entry, all);
+  const toml::array* list = at.as_array();
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+    if (const toml::table* table = (*list)[i].as_table()) {
+      add_defaults(*table, fmt::format("{}.{}", name, i), entry, all);
+    }
   }
 }
 
 [[noreturn]] void refuse_value(const std::string& path) {
-  throw InputError("the value is no number, word or list of numbers", path,
-                   "give for example 0.5 or [0, 0, 1]");
+  throw InputError("the value is no number, word, truth value or list of numbers", path,
+                   "give for example 0.5, false or [0, 0, 1]");
 }
 
 }  // namespace
@@ -83,7 +94,9 @@ void set_key(toml::table& scene, const std::string& path, const json& value) {
   toml::table* const table = at->as_table();
   refuse_if(table == nullptr || word.empty(), "this is no key of a scene", path,
             "name a key of a table that the scene has, such as strand.length_m");
-  if (value.is_number_integer()) {
+  if (value.is_boolean()) {
+    table->insert_or_assign(word, value.get<bool>());
+  } else if (value.is_number_integer()) {
     table->insert_or_assign(word, value.get<std::int64_t>());
   } else if (value.is_number()) {
     table->insert_or_assign(word, value.get<double>());

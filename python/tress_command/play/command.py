@@ -5,7 +5,7 @@ import threading
 from pathlib import Path
 
 from ..command import Command
-from ..messages import DONE, refuse, say
+from ..messages import DONE, ROWS_FAILED, refuse, say
 from ..place import shipped
 from ..processes import STOPS
 from ..scene_folder import existing, scene_folder
@@ -39,6 +39,13 @@ def _options(words):
     return port, more
 
 
+def _server(session, page, port):
+    try:
+        return Server(session, page, port)
+    except OSError as error:
+        refuse(f"play: port {port}: {error.strerror}; give another --port, or none for a free one")
+
+
 def _run(words, machine):
     scene_folder("play", words)  # refuses what is no scene file
     scene, (port, more) = existing(words[0]), _options(words[1:])
@@ -51,16 +58,19 @@ def _run(words, machine):
             signal.signal(number, lambda *_: stop.set())
     session = Session(Engine([program, scene, "--live", *more]))
     try:
-        with Server(session, page, port) as server:
+        with _server(session, page, port) as server:
             threading.Thread(target=server.serve_forever, daemon=True).start()
             say(f"open in a browser: {server.address}")
             say("Ctrl-C ends it")
             stop.wait()
+            died = session.engine.process.poll() is not None
             session.end()
             server.shutdown()
     finally:
         session.end()
-    return DONE
+    if died:
+        say("the simulation program had ended before")
+    return ROWS_FAILED if died else DONE
 
 
 COMMAND = Command(

@@ -3,6 +3,7 @@ random token, and requests that name another host are refused (DNS rebinding).""
 
 import hmac
 import json
+import re
 import secrets
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -101,7 +102,7 @@ class _Handler(BaseHTTPRequestHandler):
             return
         length = self.headers.get("Content-Length", "")
         kind = self.headers.get("Content-Type", "").partition(";")[0]
-        if (path != "command" or kind != "application/json" or not length.isdigit()
+        if (path != "command" or kind != "application/json" or not re.fullmatch("[0-9]+", length)
                 or int(length) > MOST_BYTES):
             self.close_connection = True
             self._answer(HTTPStatus.BAD_REQUEST, b"no such command\n", "text/plain")
@@ -111,7 +112,7 @@ class _Handler(BaseHTTPRequestHandler):
             if not isinstance(command, dict):
                 raise ValueError
             answer = self.server.session.do(command)
-        except ValueError:
+        except (ValueError, RecursionError):
             answer = {"refused": "the command is no JSON object"}
         except ConnectionError as error:
             answer = {"refused": str(error)}

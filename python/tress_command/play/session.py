@@ -41,9 +41,11 @@ class Session:
     def do(self, command):
         """Executes a command of a page. Returns {} or {"refused": reason}."""
         what = command.get("do")
+        if what == "run" and self.frame["failed"]:
+            return {"refused": "the run has failed; restart it"}
         if what in ("run", "pause"):
             with self.changed:
-                self.playing = what == "run" and not self.frame["failed"]
+                self.playing = what == "run"
                 self.version += 1
                 self.changed.notify_all()
             return {}

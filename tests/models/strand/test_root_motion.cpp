@@ -192,6 +192,28 @@ TEST(RootMotion, NamesTheTimesBetweenWhichItsSignalsAreSmooth) {
   EXPECT_EQ(motion.next_breakpoint(t), std::numeric_limits<double>::infinity());
 }
 
+/// What a motion carries is at its place at t = 0 and keeps its place in the frame of
+/// another that the motion carries, also where the motion begins elsewhere. Products of
+/// rotations round by some 10 eps, arms are below 1 m.
+TEST(RootMotion, CarriesPlacesRigidly) {
+  RootMotion motion = tumbling();
+  motion.rotations.push_back({{0, 1, 1}, Signal([](double t) {
+                                return SignalValue{0.4 + t, 1, 0};
+                              })});
+  const StrandPlace place{{0.1, 0.2, -0.3}, rotation({0, 0, 1}, 0.7)};
+  const RootMotion of = carried(motion, place);
+  EXPECT_LT(largest(of.at(0).x - place.x), 50 * eps);
+  EXPECT_LT(largest(of.at(0).frame.e1 - place.frame.e1), 50 * eps);
+  const auto seen = [&](double t) {
+    const RootPose by = motion.at(t), one = of.at(t);
+    return std::pair{by.frame.back(one.x - by.x), by.frame.back(one.frame.e1)};
+  };
+  for (const double t : {0.3, 1.7}) {
+    EXPECT_LT(largest(seen(t).first - seen(0).first), 100 * eps);
+    EXPECT_LT(largest(seen(t).second - seen(0).second), 100 * eps);
+  }
+}
+
 TEST(RootMotion, RefusesWhatIsNoMotion) {
   const auto refuses = [](auto spoil) {
     RootMotion motion = tumbling();

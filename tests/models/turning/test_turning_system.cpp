@@ -136,6 +136,7 @@ TEST_P(TurningSystems, EnergyChangesByThePower) {
   Energetics* const energetics = system->energetics();
   if (energetics == nullptr) GTEST_SKIP() << "no energy";
   if (!system->traits().regular_mass) GTEST_SKIP() << "no accelerations";
+  if (system->layout().constraints > 0) GTEST_SKIP() << "moves under its constraints";
   const States s = slow(*system);
   const Rate rate = rate_of(
       *system, s, [&](In q, In v) { return energetics->energy(t0, q, v).total(); });

@@ -113,7 +113,7 @@ class Live {
 
   show_value() {
     const value = this.state?.keys[at('key').value];
-    if (value !== undefined) at('value').value = JSON.stringify(value);
+    at('value').value = value === undefined ? '' : JSON.stringify(value);
   }
 
   show(state) {
@@ -201,13 +201,19 @@ class Live {
     const energies = columns.filter((name) => name.endsWith('_j'));
     const wall = this.state.wall_per_s;
     const readings = [
-      ['Time', `${times_s[0].toFixed(4)} s`],
-      ['Steps', String(this.state.steps)],
-      ['Wall time per simulated second', wall === null ? '-' : `${format_number(wall)} s`],
+      ['time', `${times_s[0].toFixed(4)} s`],
+      ['steps', String(this.state.steps)],
+      ['wall time per simulated second', wall === null ? '-' : `${format_number(wall)} s`],
       ...energies.map((name) => [
         `${name.replace(/_j$/, '').replaceAll('_', ' ')} energy`,
         value(name) === null ? '-' : `${format_number(value(name))} J`,
       ]),
+      ...columns.flatMap((name) => {
+        const [, what, body, unit] = /^(angle|speed)_(body\w*?)_(rad|rad_per_s)$/.exec(name) ?? [];
+        if (what === undefined) return [];
+        const text = `${format_number(value(name))} ${unit.replace('_per_', '/')}`;
+        return [[`${what} of ${body.replaceAll('_', ' ')}`, text]];
+      }),
     ];
     at('readings').replaceChildren(
       ...readings.map(([name, text]) => {
