@@ -45,6 +45,23 @@ double StrandBlock::next_breakpoint(double t) const {
   return next;
 }
 
+double StrandBlock::next_teleport(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& strand : strands_) {
+    if (const Teleports* own = teleports(*strand)) {
+      next = std::min(next, own->next_teleport(t));
+    }
+  }
+  return next;
+}
+
+void StrandBlock::teleport(double t, InOut q, InOut v) {
+  for (std::size_t k = 0; k < strands(); ++k) {
+    Teleports* const own = teleports(*strands_[k]);
+    if (own != nullptr) own->teleport(t, part(q, k), part(v, k));
+  }
+}
+
 std::string StrandBlock::not_finite(double t, In q, In v) {
   for (std::size_t k = 0; k < strands(); ++k) {
     const std::string words = strands_[k]->not_finite(t, part(q, k), part(v, k));

@@ -6,6 +6,7 @@
 
 #include "contract/forms/energetics.h"
 #include "contract/forms/material_points.h"
+#include "contract/forms/teleports.h"
 #include "contract/system.h"
 
 namespace tress::models {
@@ -13,7 +14,10 @@ namespace tress::models {
 /// Strands as one system: coordinates and material points are those of the strands, one
 /// after the other; energy and power are their sums. Derived classes provide the
 /// equations of motion.
-class StrandBlock : public System, protected Energetics, protected MaterialPoints {
+class StrandBlock : public System,
+                    public Teleports,
+                    protected Energetics,
+                    protected MaterialPoints {
  public:
   /// Strands without constraints, at least one.
   explicit StrandBlock(std::vector<std::unique_ptr<System>> strands);
@@ -23,6 +27,9 @@ class StrandBlock : public System, protected Energetics, protected MaterialPoint
   void initial_state(Out q, Out v) const override;
   void scale(Out q_typ, Out v_typ) const override;
   double next_breakpoint(double t) const override;
+  /// Returns the first teleport of any strand.
+  double next_teleport(double t) const override;
+  void teleport(double t, InOut q, InOut v) override;
   std::string not_finite(double t, In q, In v) override;
   /// Null unless all strands have Energetics.
   Energetics* energetics() override;

@@ -445,6 +445,14 @@ void DerElasticity::carry(InOut z, InOut rate, InOut second) const {
   }
 }
 
+void DerElasticity::displace(const Displacement& by, InOut z, InOut rate) {
+  for (std::size_t i = 0; i < edge_data_.size(); ++i) {
+    models::displace(by, load3(&z[3 * i + 3]) - load3(&z[3 * i]), edge_data_[i].reference,
+                     rate[angles_ + i]);
+  }
+  forget();
+}
+
 std::vector<double> DerElasticity::memory() const {
   std::vector<double> all(9 * edge_data_.size());
   for (std::size_t i = 0; i < edge_data_.size(); ++i) {

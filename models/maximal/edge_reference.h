@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "models/maximal/rod_edge.h"
+#include "models/motion/teleport.h"
 
 namespace tress::models {
 
@@ -19,6 +20,16 @@ inline Vec rate_of_c(const EdgeTurn& turn, const Vec& de) {
   const Vec turning = (1 / turn.length) * (de - stretching * turn.t);
   const double rate = stretching * along + turn.length * dot(turn.a, turning);
   return (1 / (turn.length * along)) * (cross(turning, turn.a) - rate * turn.c);
+}
+
+/// Carries the reference of an edge's angle, and the rate of the angle, at a teleport.
+/// `e`: the edge's vector after it.
+inline void displace(const Displacement& by, const Vec& e, Frame& reference,
+                     double& theta_rate) {
+  reference = by.turn * reference;
+  const EdgeTurn turn(reference.e0, e);
+  const Vec spin = by.spin();
+  theta_rate += dot(spin, turn.t) - dot(turn.c, cross(spin, e));
 }
 
 /// Replaces the reference of an edge's angle along a motion. The angle theta and its

@@ -7,6 +7,7 @@
 #include "contract/forms/stress_form.h"
 #include "models/maximal/groups.h"
 #include "models/motion/root_motion.h"
+#include "models/motion/teleport.h"
 
 namespace tress::models {
 
@@ -112,6 +113,9 @@ class Elasticity {
   }
   /// Carries all coordinates, as MovingHistory::carry().
   virtual void carry(InOut /*z*/, InOut /*rate*/, InOut /*second*/) const {}
+  /// Carries the coordinates other than positions, and all that is remembered, at a
+  /// teleport. Positions and their rates have been carried.
+  virtual void displace(const Displacement& /*by*/, InOut /*z*/, InOut /*rate*/) {}
   /// Jumps of forces that rebase() has seen since reset().
   struct Jumps {
     long count = 0;         // number of jumps

@@ -354,6 +354,19 @@ bool MaximalSystem::carry(double t, InOut q, InOut v, InOut a) const {
   return true;
 }
 
+void MaximalSystem::teleport(double t, InOut q, InOut v) {
+  const Displacement by = displacement(strand_.root, t);
+  place(just_before(t), q, v);
+  for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(strand_.nodes); i += 3) {
+    const Vec x = load3(&z_[i]);
+    store3(by.velocity(x, load3(&rate_[i])), &rate_[i]);
+    store3(by.place(x), &z_[i]);
+  }
+  strand_.elasticity->displace(by, z_, rate_);
+  std::ranges::copy(In(z_).subspan(held()), q.begin());
+  std::ranges::copy(In(rate_).subspan(held()), v.begin());
+}
+
 ExplicitForm* MaximalSystem::explicit_form() {
   return regular_mass_ && !strand_.constraints ? this : nullptr;
 }

@@ -17,6 +17,7 @@
 #include "contract/forms/sections.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/forms/stress_form.h"
+#include "contract/forms/teleports.h"
 #include "contract/forms/transposed_form.h"
 #include "contract/jacobian_choice.h"
 #include "contract/pattern.h"
@@ -79,6 +80,7 @@ class MaximalSystem final : public System,
                             public TransposedForm,
                             public PointAccelerations,
                             public Sections,
+                            public Teleports,
                             private SparseForm,
                             private ExplicitForm,
                             private ComplianceForm,
@@ -125,6 +127,9 @@ class MaximalSystem final : public System,
   void place_transposed(double t, In q, In v, In a, In mu) noexcept override;
   void add_by_constants(InOut by) noexcept override;
   double power_of_loads(System& other) noexcept override;
+
+  double next_teleport(double t) const override { return strand_.root.next_teleport(t); }
+  void teleport(double t, InOut q, InOut v) override;
 
   void accelerations(double t, In q, In v, In a, Out x) override;
 

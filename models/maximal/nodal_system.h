@@ -7,6 +7,7 @@
 #include "contract/forms/energetics.h"
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/material_points.h"
+#include "contract/forms/teleports.h"
 #include "contract/jacobian_choice.h"
 #include "contract/pattern.h"
 #include "contract/system.h"
@@ -32,6 +33,7 @@ struct NodalParts {
 
 /// Kirchhoff's equations in curvatures behind the contract of contract/system.h.
 class NodalSystem final : public System,
+                          public Teleports,
                           private ExplicitForm,
                           private Energetics,
                           private MaterialPoints {
@@ -50,6 +52,9 @@ class NodalSystem final : public System,
     return std::min(parts_.root.next_breakpoint(t),
                     models::next_breakpoint(parts_.effects, t));
   }
+  double next_teleport(double t) const override { return parts_.root.next_teleport(t); }
+  /// Curvatures are relative to the root.
+  void teleport(double /*t*/, InOut /*q*/, InOut /*v*/) override {}
   std::string not_finite(double t, In q, In v) override;
 
   ExplicitForm* explicit_form() override { return this; }

@@ -59,6 +59,9 @@ class SpringElasticity final : public Elasticity, private StrainForm {
   /// joint that is bent at rest has no limit where the joint is straight. That of a
   /// dihedral angle has none where the angle is half a turn from rest. Both jump there.
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
+  void displace(const Displacement&, InOut /*z*/, InOut /*rate*/) override {
+    angles_.clear();
+  }
   Jumps jumps() const override { return jumps_; }
   void reset() override {
     angles_.clear();

@@ -6,6 +6,7 @@
 #include "contract/input_error.h"
 #include "models/motion/root_motion.h"
 #include "models/motion/signals.h"
+#include "models/motion/teleport.h"
 
 namespace tress::models {
 namespace {
@@ -13,53 +14,62 @@ namespace {
 /// Times, values and second derivatives at the knots of a cubic spline.
 struct Knots {
   std::vector<double> t, x, bend;
+  bool rests_before = true, rests_behind = true;  // at rest beyond the ends
 };
 
 [[noreturn]] void refuse(const std::string& problem) {
   throw InputError(problem, "signal of a root motion",
-                   "give at least two, finite, each later than the one before");
+                   "give at least two, finite, each later than the one before; two of "
+                   "the same time are a teleport");
 }
 
 void check(const std::vector<double>& times, const std::vector<double>& values,
-           std::size_t least = 2) {
+           std::size_t least = 2, bool jumps = false) {
   if (times.size() < least) refuse("fewer than two keyframes");
+  const auto follows = [&](std::size_t i) {
+    if (times[i] > times[i - 1]) return true;
+    return jumps && times[i] == times[i - 1] && (i == 1 || times[i - 1] > times[i - 2]);
+  };
   bool good = times.size() == values.size();
   for (std::size_t i = 0; good && i < times.size(); ++i) {
-    good = std::isfinite(times[i]) && std::isfinite(values[i]) &&
-           (i == 0 || times[i] > times[i - 1]);
+    good = std::isfinite(times[i]) && std::isfinite(values[i]) && (i == 0 || follows(i));
   }
   if (!good) refuse("keyframes are not in order");
 }
 
-/// The knots including the two additional ones, whose x is unknown and set to 0.
-Knots with_two_more(const std::vector<double>& times, const std::vector<double>& values) {
-  const std::size_t last = times.size() - 1;
-  const double part = last == 1 ? 1.0 / 3 : 0.5;
-  Knots k{times, values, {}};
-  const double first = times[0] + part * (times[1] - times[0]);
-  const double second = times[last] - part * (times[last] - times[last - 1]);
-  k.t.insert(k.t.end() - 1, second);
-  k.x.insert(k.x.end() - 1, 0);
-  k.t.insert(k.t.begin() + 1, first);
-  k.x.insert(k.x.begin() + 1, 0);
-  k.bend.resize(k.t.size());
-  return k;
+/// Adds a knot next to each end that rests, whose x is unknown and set to 0.
+void add_knots(Knots& k) {
+  const std::size_t last = k.t.size() - 1;
+  const double part = last == 1 && k.rests_before && k.rests_behind ? 1.0 / 3 : 0.5;
+  const double first = k.t[0] + part * (k.t[1] - k.t[0]);
+  const double second = k.t[last] - part * (k.t[last] - k.t[last - 1]);
+  if (k.rests_behind) {
+    k.t.insert(k.t.end() - 1, second);
+    k.x.insert(k.x.end() - 1, 0);
+  }
+  if (k.rests_before) {
+    k.t.insert(k.t.begin() + 1, first);
+    k.x.insert(k.x.begin() + 1, 0);
+  }
 }
 
 /// x' is continuous at knot i where
 ///
 ///     a M_{i-1}/6 + (a + b) M_i/3 + b M_{i+1}/6 = (x_{i+1} - x_i)/b - (x_i - x_{i-1})/a
 ///
-/// for second derivatives M and intervals a before and b after it. M = 0 at both ends;
-/// there x' = 0 is x_1 = x_0 + a^2 M_1/6 for the first interval a, the same for the last.
-Knots spline(const std::vector<double>& times, const std::vector<double>& values) {
-  Knots k = with_two_more(times, values);
+/// for second derivatives M and intervals a before and b after it. M = 0 at both ends.
+/// Where an end rests, x' = 0 is x_1 = x_0 + a^2 M_1/6 for the first interval a, the same
+/// for the last.
+void bend(Knots& k) {
+  if (k.t.size() > 1) add_knots(k);
+  k.bend.resize(k.t.size());
+  if (k.t.size() < 3) return;
   const std::size_t unknowns = k.t.size() - 2;
   std::vector<double> diagonal(unknowns), above(unknowns - 1), below(unknowns - 1),
       right(unknowns), bend(unknowns);
   const double start = k.t[1] - k.t[0], end = k.t[unknowns + 1] - k.t[unknowns];
-  k.x[1] = k.x[0];
-  k.x[unknowns] = k.x[unknowns + 1];
+  if (k.rests_before) k.x[1] = k.x[0];
+  if (k.rests_behind) k.x[unknowns] = k.x[unknowns + 1];
   for (std::size_t i = 1; i <= unknowns; ++i) {
     const double a = k.t[i] - k.t[i - 1], b = k.t[i + 1] - k.t[i];
     diagonal[i - 1] = (a + b) / 3;
@@ -74,8 +84,8 @@ Knots spline(const std::vector<double>& times, const std::vector<double>& values
     if (knot > 1) above[knot - 2] -= factor / a;
     if (knot < unknowns) below[knot - 1] -= factor / b;
   };
-  move(1, start * start / 6);
-  move(unknowns, end * end / 6);
+  if (k.rests_before) move(1, start * start / 6);
+  if (k.rests_behind) move(unknowns, end * end / 6);
   for (std::size_t i = 1; i < unknowns; ++i) {  // rows are diagonally dominant
     const double factor = below[i - 1] / diagonal[i - 1];
     diagonal[i] -= factor * above[i - 1];
@@ -87,30 +97,67 @@ Knots spline(const std::vector<double>& times, const std::vector<double>& values
     if (!std::isfinite(bend[i])) refuse("keyframes are too close for their distance");
   }
   std::ranges::copy(bend, k.bend.begin() + 1);
-  k.x[1] += start * start / 6 * bend.front();
-  k.x[unknowns] += end * end / 6 * bend.back();
-  return k;
+  if (k.rests_before) k.x[1] += start * start / 6 * bend.front();
+  if (k.rests_behind) k.x[unknowns] += end * end / 6 * bend.back();
+}
+
+SignalValue value_of(const Knots& k, double t) {
+  const bool before = t <= k.t.front(), behind = t >= k.t.back();
+  if (before && (k.rests_before || k.t.size() == 1)) return {k.x.front(), 0, 0};
+  if (behind && (k.rests_behind || k.t.size() == 1)) return {k.x.back(), 0, 0};
+  t = std::clamp(t, k.t.front(), k.t.back());
+  const auto after = std::ranges::upper_bound(k.t, t);
+  const std::size_t j = std::min(static_cast<std::size_t>(after - k.t.begin()),
+                                 k.t.size() - 1),
+                    i = j - 1;
+  const double h = k.t[j] - k.t[i];
+  const double u = (k.t[j] - t) / h, w = (t - k.t[i]) / h;
+  const double m = k.bend[i], n = k.bend[j];
+  return {
+      u * k.x[i] + w * k.x[j] + h * h / 6 * ((u * u * u - u) * m + (w * w * w - w) * n),
+      (k.x[j] - k.x[i]) / h + h / 6 * ((3 * w * w - 1) * n - (3 * u * u - 1) * m),
+      u * m + w * n};
+}
+
+/// Splines one after the other, and the teleports between them.
+struct Pieces {
+  std::vector<Knots> each;
+  std::vector<double> jumps;
+};
+
+/// Returns the teleports of rows with these times.
+std::vector<double> jumps_of(const std::vector<double>& times) {
+  std::vector<double> jumps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] == times[i - 1]) jumps.push_back(teleport_time(times[i]));
+  }
+  return jumps;
 }
 
 }  // namespace
 
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values) {
-  check(times, values);
-  const auto k = std::make_shared<const Knots>(spline(times, values));
-  const auto value = [k](double t) -> SignalValue {
-    if (t <= k->t.front()) return {k->x.front(), 0, 0};
-    if (t >= k->t.back()) return {k->x.back(), 0, 0};
-    const auto after = std::ranges::upper_bound(k->t, t);
-    const auto j = static_cast<std::size_t>(after - k->t.begin()), i = j - 1;
-    const double h = k->t[j] - k->t[i];
-    const double u = (k->t[j] - t) / h, w = (t - k->t[i]) / h;
-    const double m = k->bend[i], n = k->bend[j];
-    return {u * k->x[i] + w * k->x[j] +
-                h * h / 6 * ((u * u * u - u) * m + (w * w * w - w) * n),
-            (k->x[j] - k->x[i]) / h + h / 6 * ((3 * w * w - 1) * n - (3 * u * u - 1) * m),
-            u * m + w * n};
+  check(times, values, 2, true);
+  const auto pieces = std::make_shared<Pieces>();
+  pieces->jumps = jumps_of(times);
+  std::vector<double> breakpoints;
+  for (std::size_t first = 0, i = 1; i <= times.size(); ++i) {
+    if (i < times.size() && times[i] > times[i - 1]) continue;
+    const auto part = [&](const std::vector<double>& all) {
+      return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
+                         all.begin() + static_cast<std::ptrdiff_t>(i));
+    };
+    Knots& knots = pieces->each.emplace_back(
+        Knots{part(times), part(values), {}, first == 0, i == times.size()});
+    bend(knots);
+    breakpoints.insert(breakpoints.end(), knots.t.begin(), knots.t.end());
+    first = i;
+  }
+  const auto value = [pieces = std::shared_ptr<const Pieces>(pieces)](double t) {
+    const auto piece = std::ranges::upper_bound(pieces->jumps, t) - pieces->jumps.begin();
+    return value_of(pieces->each[static_cast<std::size_t>(piece)], t);
   };
-  return {value, k->t};
+  return {value, breakpoints};
 }
 
 Signal rests(const std::vector<double>& times, const std::vector<double>& values) {
@@ -137,6 +184,7 @@ RootMotion keyframe_motion(std::span<const double> rows, std::span<const Vec> ax
   std::vector<std::vector<double>> all(4 + axes.size());
   for (std::size_t i = 0; i < rows.size(); ++i) all[i % all.size()].push_back(rows[i]);
   RootMotion motion;
+  motion.teleports = jumps_of(all[0]);
   motion.position = centre;
   motion.centre = centre;
   for (std::size_t k = 0; k < std::size(world_axes); ++k) {

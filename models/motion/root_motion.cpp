@@ -126,6 +126,11 @@ double RootMotion::next_breakpoint(double t) const {
   return next;
 }
 
+double RootMotion::next_teleport(double t) const {
+  const auto after = std::ranges::upper_bound(teleports, t);
+  return after == teleports.end() ? std::numeric_limits<double>::infinity() : *after;
+}
+
 void check(const RootMotion& motion, const std::string& where) {
   if (!is_finite(motion.position) || !is_finite(motion.centre.value_or(Vec{}))) {
     throw InputError("position or centre is not finite", where, "give finite numbers");

@@ -94,6 +94,8 @@ struct RootMotion {
   std::optional<Vec> centre;  // all axes pass through it, m; unless given, `position`
   std::vector<Part> translations;  // translations, after the rotations
   std::vector<Part> rotations;     // rotations, the first one first
+  /// Times at which the pose jumps (s, ascending), of teleport_time().
+  std::vector<double> teleports;
 
   /// Returns true if nothing moves.
   bool fixed() const { return translations.empty() && rotations.empty(); }
@@ -101,6 +103,8 @@ struct RootMotion {
   RootPose at(double t) const;
   /// The first of its signals' breakpoints after t, or infinity.
   double next_breakpoint(double t) const;
+  /// Returns the first teleport after t, or infinity.
+  double next_teleport(double t) const;
 };
 
 /// Returns the motion of a place that this motion carries rigidly: it is at `place` at

@@ -31,8 +31,9 @@ Signal driven_oscillator(const Oscillator& body, double t0);
 /// Returns a signal through `values` at `times` (s, ascending, at least two), C^2
 /// everywhere: at rest until the first time and after the last. A cubic spline. Its first
 /// and last interval are halved by an additional knot (a single interval is divided in
-/// three), to satisfy the rest conditions x' = x'' = 0 at either end. Throws InputError
-/// on other times.
+/// three), to satisfy the rest conditions x' = x'' = 0 at either end. Two equal times are
+/// a teleport: the signal jumps from the first value to the second, and the splines
+/// before and after it have x'' = 0 there. Throws InputError on other times.
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
 
 /// Returns a signal that takes `values` at `times` (s, ascending, at least one) and rests
@@ -42,8 +43,8 @@ Signal rests(const std::vector<double>& times, const std::vector<double>& values
 
 /// Returns a rigid motion by rows of t, x, y, z and an angle about each axis (s, m, rad):
 /// each column is a signal of keyframes(). The axes (any length) pass through `centre`,
-/// where the body is at rest; the first one turns it first. Throws InputError on rows out
-/// of order.
+/// where the body is at rest; the first one turns it first. Two rows with the same time are
+/// a teleport. Throws InputError on rows out of order.
 RootMotion keyframe_motion(std::span<const double> rows, std::span<const Vec> axes,
                            const Vec& centre);
 /// Axes of rows of t, x, y, z and the angles about x, y and z.

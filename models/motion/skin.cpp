@@ -59,8 +59,10 @@ const std::vector<TriangleMesh>& checked(const std::vector<TriangleMesh>& frames
             where, "give a time for each mesh, and two meshes or more");
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string of = "mesh " + std::to_string(i) + " of the skin";
-    refuse_if(!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1]),
-              "times that do not ascend", where, "sort the meshes by time");
+    const bool third = i > 1 && times[i] == times[i - 2];
+    refuse_if(!std::isfinite(times[i]) || (i > 0 && times[i] < times[i - 1]) || third,
+              "times that do not ascend", where,
+              "sort the meshes by time; two with the same time are a teleport");
     refuse_if(frames[i].triangle.empty(), of + " has no triangle", where,
               "write it again with its faces");
     refuse_if(frames[i].triangle != frames[0].triangle ||

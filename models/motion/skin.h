@@ -14,7 +14,8 @@ namespace tress::models {
 /// These are the first edge, the normal and their product.
 class Skin {
  public:
-  /// Takes one mesh per time (s, ascending, at least two). Throws InputError naming
+  /// Takes one mesh per time (s, ascending, at least two). Two meshes with the same time
+  /// are a teleport, from the first to the second. Throws InputError naming
   /// `where` unless all meshes have the triangles of the first one, corners are finite
   /// and no triangle is without area.
   Skin(std::vector<TriangleMesh> frames, std::vector<double> times,

@@ -77,6 +77,18 @@ auto QuaternionRod<Edge>::joint(const Placement& p, std::size_t j) const noexcep
 }
 
 template <class Edge>
+void QuaternionRod<Edge>::displace(const Displacement& by, InOut z, InOut rate) {
+  const Quaternion turn = quaternion_of(by.turn);
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const Quaternion q = turn * load_quaternion(&z[at(i)]),
+                     turned = turn * load_quaternion(&rate[at(i)]),
+                     more = rate_of(q, by.spin());
+    store_quaternion(q, &z[at(i)]);
+    store_quaternion({turned.w + more.w, turned.v + more.v}, &rate[at(i)]);
+  }
+}
+
+template <class Edge>
 void QuaternionRod<Edge>::add_force(const Placement& p, InOut f) noexcept {
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const auto now = edge(p, i);

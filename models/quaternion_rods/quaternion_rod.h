@@ -35,6 +35,7 @@ class QuaternionRod final : public Elasticity,
   std::optional<EndTurn> end_turn(bool tip) const override {
     return EndTurn{.quaternion = static_cast<int>(at(tip ? edges_.size() - 1 : 0))};
   }
+  void displace(const Displacement& by, InOut z, InOut rate) override;
   StrandElimination* elimination() override { return walled_ ? this : nullptr; }
   StrainForm* strain_form() override { return this; }
   bool takes_stresses() const override { return true; }

@@ -177,6 +177,26 @@ bool RotationVectors::carry(double /*t*/, InOut q, InOut v, InOut a) const {
   return true;
 }
 
+double RotationVectors::next_teleport(double t) const {
+  return teleports(*rod_)->next_teleport(t);
+}
+
+/// References turn with the rod, so that rotation vectors stay as they are.
+void RotationVectors::teleport(double t, InOut q, InOut v) {
+  place(q, v);
+  const std::vector<double> before = q_;
+  teleports(*rod_)->teleport(t, q_, v_);
+  std::copy_n(q_.begin(), first_, q.begin());
+  std::copy_n(v_.begin(), first_, v.begin());
+  for (std::size_t e = 0; e < edges(); ++e) {
+    const Quaternion turned = load_quaternion(&q_[in_rod(e)]) *
+                              conjugate(load_quaternion(&before[in_rod(e)])) *
+                              reference_[e];
+    reference_[e] = (1 / std::sqrt(dot(turned, turned))) * turned;
+    store3(rotations_[e].rate(relative(v_, e)), &v[at(e)]);
+  }
+}
+
 std::vector<double> RotationVectors::memory() const {
   std::vector<double> all(4 * edges());
   for (std::size_t e = 0; e < edges(); ++e) store_quaternion(reference_[e], &all[4 * e]);

@@ -14,6 +14,7 @@
 #include "contract/forms/sections.h"
 #include "contract/forms/sparse_form.h"
 #include "contract/forms/stress_form.h"
+#include "contract/forms/teleports.h"
 #include "linear/linear_solver.h"
 #include "models/quaternion_rods/conformal_rotation.h"
 
@@ -40,6 +41,7 @@ class RotationVectors final : public System,
                               public NaturalStrains,
                               public PointAccelerations,
                               public Sections,
+                              public Teleports,
                               private SparseForm,
                               private ExplicitForm,
                               private StressForm,
@@ -83,6 +85,9 @@ class RotationVectors final : public System,
   Frame section_frame(double t, In q, int point) override;
   SectionMotion section(double t, In q, In v, In a, int point) override;
   void add_moment(double t, In q, int point, const Vec& moment, InOut b) override;
+
+  double next_teleport(double t) const override;
+  void teleport(double t, InOut q, InOut v) override;
 
   /// Writes the coordinates of the rod, with its quaternions.
   void rod_coordinates(In q, Out of_rod);

@@ -133,6 +133,8 @@ class Kinematics {
 
   /// Returns the first breakpoint of the clamp after t (s), or infinity.
   double next_breakpoint(double t) const { return root_motion_.next_breakpoint(t); }
+  /// Returns the first teleport of the clamp after t, or infinity.
+  double next_teleport(double t) const { return root_motion_.next_teleport(t); }
 
   /// Returns the size of arrays over points, including those that only fill a block.
   std::size_t points() const { return first_point(blocks_.size()); }

@@ -15,6 +15,7 @@
 #include "contract/forms/natural_strains.h"
 #include "contract/forms/point_accelerations.h"
 #include "contract/forms/sections.h"
+#include "contract/forms/teleports.h"
 #include "contract/forms/transposed_form.h"
 #include "linear/vector_ops.h"
 #include "models/held/held_contacts.h"
@@ -43,6 +44,7 @@ class ReducedSystem : public System,
                       public PointAccelerations,
                       public Sections,
                       public LoadedTangent,
+                      public Teleports,
                       protected ExplicitForm,
                       protected Energetics,
                       protected MaterialPoints,
@@ -165,6 +167,9 @@ class ReducedSystem : public System,
     return std::min(kinematics_.next_breakpoint(t),
                     models::next_breakpoint(dynamics_.effects(), t));
   }
+  double next_teleport(double t) const override { return kinematics_.next_teleport(t); }
+  /// Unknowns are relative to the root.
+  void teleport(double /*t*/, InOut /*q*/, InOut /*v*/) override {}
   std::string not_finite(double t, In q, In v) override {
     const auto of_unknowns = [this](In x, const std::string& what) {
       const std::size_t chain = dofs * kinematics_.segments().size();

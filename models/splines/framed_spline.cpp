@@ -270,6 +270,12 @@ void FramedSpline::carry(InOut z, InOut rate, InOut second) const {
   }
 }
 
+void FramedSpline::displace(const Displacement& by, InOut z, InOut rate) {
+  for (std::size_t knot = first_angle(); knot < references_.size(); ++knot) {
+    models::displace(by, direction(z, knot), references_[knot], rate[angle(knot)]);
+  }
+}
+
 std::vector<double> FramedSpline::memory() const {
   std::vector<double> all(9 * (references_.size() - first_angle()));
   double* to = all.data();

@@ -50,6 +50,7 @@ class FramedSpline final : public Elasticity, private NaturalStrains {
   }
   bool rebase(const RootPose& root, InOut z, InOut rate) override;
   void carry(InOut z, InOut rate, InOut second) const override;
+  void displace(const Displacement& by, InOut z, InOut rate) override;
   void reset() override;
   std::vector<double> memory() const override;
   /// Restores what keep() wrote.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "contract/forms/teleports.h"
+#include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "integrators/integrator_options.h"
 #include "python/bindings/owned_system.h"
@@ -79,6 +81,10 @@ class Stepper {
         return !ended;
       });
     };
+    const Teleports* const jumps = teleports(*system_->system);
+    refuse_if(jumps != nullptr && jumps->next_teleport(method_->time()) <= t_end,
+              "a root that teleports, which an integrator alone does not follow",
+              "advance", "use Scene.run, or one row for each time");
     Status status = Status::ok;
     {
       const py::gil_scoped_release release;

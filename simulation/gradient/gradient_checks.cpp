@@ -59,6 +59,10 @@ void check_derivatives(const Scene& scene) {
             "no gradient with rest = \"inverse\", whose natural strains follow from the "
             "parameters",
             place, "leave out rest = \"inverse\"");
+  refuse_if(
+      !scene.strands.front().root.teleports.empty(),
+      "no gradient of a strand whose root teleports: derivatives leave out the jump",
+      place, "give [root] one row for each time");
   refuse_if(SceneJoints(scene).any(),
             "no gradient of strands with [joints]: derivatives of joined strands, which "
             "move as one system, are not available",

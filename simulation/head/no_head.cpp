@@ -193,6 +193,9 @@ std::optional<NoHead> no_strands(const Scene& scene) {
     return NoHead{"roots that move with a skin, each in its own way",
                   "use another [root] motion"};
   }
+  if (!scene.strands.front().root.teleports.empty()) {
+    return NoHead{"roots that teleport", "leave out rows with the same time"};
+  }
   if (scene.strands.front().free_root) {
     return NoHead{"free roots", "use another [root] motion"};
   }
@@ -289,6 +292,12 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
   }
   const Parameters* interaction = scene.interaction();
   if (interaction == nullptr) return {};
+  if (!scene.strands.front().root.teleports.empty()) {
+    return NoHead{
+        "strands that touch exchange their places once a step, and a teleport "
+        "is within a step",
+        "give --as strands, or leave out rows with the same time"};
+  }
   if (interaction->word("coupling") == "monolithic") {
     return NoHead{"strands with monolithic coupling are one system",
                   "give [effects.strand_interaction] coupling = \"lagged\""};

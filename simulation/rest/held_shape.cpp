@@ -31,6 +31,7 @@ RootMotion still(RootMotion motion) {
       };
     }
   }
+  motion.teleports.clear();
   return motion;
 }
 

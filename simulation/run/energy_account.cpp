@@ -54,6 +54,14 @@ void EnergyAccount::gather(double t, const EnergyMeasure& now) {
   excess_ = std::max(excess_, gain(now) - (allowed() - slack_));
 }
 
+void EnergyAccount::shift(double t, const EnergyMeasure& before,
+                          const EnergyMeasure& now) {
+  energy_ += gain(now) - gain(before);
+  lowest_ += now.potential - before.potential;
+  seen_ = t;
+  power_ = now.power;
+}
+
 double EnergyAccount::gain(const EnergyMeasure& now) const {
   return now.kinetic + now.potential - energy_;
 }

@@ -75,6 +75,8 @@ class EnergyAccount {
   void start(double t, const EnergyMeasure& begin, double slack);
   /// Adds the work of the interval since the last measure.
   void gather(double t, const EnergyMeasure& now);
+  /// Goes on at t after a teleport: the change of the energy there is no gain.
+  void shift(double t, const EnergyMeasure& before, const EnergyMeasure& now);
   double seen() const { return seen_; }  // s, when gathered last
   /// Returns the energy above that of the start, J.
   double gain(const EnergyMeasure& now) const;

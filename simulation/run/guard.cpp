@@ -136,7 +136,16 @@ bool Guard::judge(double t, In q, In v) {
   now.work = natural_.put_in;
   natural_ = {};
   account_.gather(t, now);
+  judged_ = now;
   return !gained(t, now) && !too_fast(t);
+}
+
+void Guard::teleported(double t, In q, In v) {
+  remember(t, q);
+  if (energetics_ == nullptr) return;
+  const Seen seen = look(t, q, v);
+  meter_.shift(seen.energy, sampled(seen.power, t, q));
+  account_.shift(t, judged_, measure(t, q, v, seen));
 }
 
 EnergyMeasure Guard::measure(double t, In q, In v, const Seen& seen) {

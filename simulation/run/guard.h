@@ -56,6 +56,9 @@ class Guard {
   bool operator()(double t, In q, In v);
   /// Checks this state unconditionally.
   bool judge(double t, In q, In v);
+  /// Goes on from the state after a teleport; the last one that was judged is the state
+  /// before it.
+  void teleported(double t, In q, In v);
   /// Returns the first violation; none if all states were possible.
   const std::optional<Breach>& breach() const { return breach_; }
   /// Returns the dissipation of the method until the last check. Meaningless where
@@ -117,6 +120,7 @@ class Guard {
   std::vector<double> q_before_;  // places at that time
   int steps_ = 0;                 // since judged
   EnergyAccount account_;
+  EnergyMeasure judged_;  // last
   DissipationMeter meter_;
   std::optional<Breach> breach_;
 };

@@ -44,6 +44,10 @@ class Guards {
   bool judge(double t, In q, In v) {
     return all([&](Part& part) { return part.guard.judge(t, part.of(q), part.of(v)); });
   }
+  /// Tells every guard that its strand was carried at a teleport.
+  void teleported(double t, In q, In v) {
+    for (Part& part : parts_) part.guard.teleported(t, part.of(q), part.of(v));
+  }
   /// The first one, of the first strand.
   const std::optional<Breach>& breach() const {
     const auto broken = std::ranges::find_if(

@@ -68,6 +68,16 @@ class DissipationMeter {
     lowest_ = std::min(lowest_, energy.potential);
     highest_ = std::max(highest_, total_);
   }
+  /// Goes on after a change of the energy that is none of the motion's.
+  void shift(const Energy& energy, double power) {
+    const double change = energy.total() - total_;
+    began_ += change;
+    highest_ += change;
+    lowest_ += energy.potential - (total_ - kinetic_);
+    total_ = energy.total();
+    kinetic_ = energy.kinetic;
+    power_ = power;
+  }
   /// Returns the dissipation since start(). `inertia`: square root of the mass times the
   /// length, kg^0.5 m, by which a way is relative.
   MethodDissipation dissipation(double inertia) const {

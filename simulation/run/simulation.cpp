@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contract/forms/teleports.h"
+#include "contract/input_error.h"
 #include "simulation/run/guard.h"
 #include "simulation/run/remedy.h"
 
@@ -25,6 +27,10 @@ Simulation run_method(Integrator& method, System& system, const State& start,
                       std::span<const double> stops,
                       const std::function<void(const State&)>& at_stop,
                       const Observer& each_step) {
+  const Teleports* const jumps = teleports(system);
+  refuse_if(jumps != nullptr && !stops.empty() && jumps->next_teleport(0) <= stops.back(),
+            "a root that teleports, which this program does not follow", "[root]",
+            "leave out rows with the same time, or use `simulate`");
   State state = start;
   system.reset();
   Status status = method.start(0, start.q, start.v);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "contract/forms/contact_form.h"
 #include "integrators/error_indicator.h"
 #include "simulation/scene/support_table.h"
 
@@ -78,6 +79,43 @@ void SteppedSystem::start(double begin, State state) {
 
 void SteppedSystem::advance(const IntegratorEntry& method, const Options& options,
                             double end, bool last) {
+  Teleports* const all = teleports(*system);
+  bool there = false;
+  while (all != nullptr && status == Status::ok) {
+    const double at = all->next_teleport(integrator->time());
+    if (at > end) break;
+    const double before = models::just_before(at);
+    if (before > integrator->time()) {
+      advance_between_teleports(method, options, before, false);
+    }
+    if (status == Status::ok) teleport(method, options, *all, at, end);
+    there = integrator->time() == end;
+  }
+  if (!there) advance_between_teleports(method, options, end, last);
+}
+
+/// The forces of exact contacts are found again, from none: bodies need not have jumped.
+void SteppedSystem::teleport(const IntegratorEntry& method, const Options& options,
+                             Teleports& all, double at, double end) {
+  keep(integrator->time(), integrator->q(), integrator->v());
+  if (guard && !guard->judge(t, q, v)) {
+    status = Status::fatal;
+    return;
+  }
+  all.teleport(at, q, v);
+  if (ContactForm* const contacts = system->contact_form()) {
+    contacts->set_multipliers(std::vector<double>(contacts->multipliers().size()));
+  }
+  system->accept(at, q, v);
+  if (guard) guard->teleported(at, q, v);
+  status = restart(method, options, after_teleport(at, end));
+  keep(integrator->time(), integrator->q(), integrator->v());
+  begun_ = q;
+}
+
+void SteppedSystem::advance_between_teleports(const IntegratorEntry& method,
+                                              const Options& options, double end,
+                                              bool last) {
   if (status != Status::ok) return;
   const double begin = integrator->time(), span = end - begin,
                count = std::max(1.0, std::ceil(span / options.step - 1e-9));
@@ -138,18 +176,25 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
       continue;
     }
     add_work(steps->stats(), before_);
-    add_work(integrator->stats(), before_);
-    indicator = std::max({indicator, indicator_of(*integrator), indicator_of(*steps)});
-    if (options.max_work > 0) {
-      Options rest = options;
-      rest.max_work = std::max(work_left(options), std::numeric_limits<double>::min());
-      take_method(method.id, rest);
-    }
-    return integrator->start(end, q, v);
+    indicator = std::max(indicator, indicator_of(*steps));
+    return restart(method, options, end);
   }
   used_up_ = work_left(options) <= 0;
   gave_up_ = !used_up_;
   return Status::fatal;
+}
+
+/// Starts the method again from the kept state; its work so far counts.
+Status SteppedSystem::restart(const IntegratorEntry& method, const Options& options,
+                              double at) {
+  add_work(integrator->stats(), before_);
+  indicator = std::max(indicator, indicator_of(*integrator));
+  if (options.max_work > 0) {
+    Options rest = options;
+    rest.max_work = std::max(work_left(options), std::numeric_limits<double>::min());
+    take_method(method.id, rest);
+  }
+  return integrator->start(at, q, v);
 }
 
 void SteppedSystem::stay(In at) {

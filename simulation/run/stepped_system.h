@@ -5,13 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "contract/forms/teleports.h"
 #include "integrators/catalogue.h"
+#include "models/motion/teleport.h"
 #include "simulation/passages/body_depth.h"
 #include "simulation/rest/supported_start.h"
 #include "simulation/run/guards.h"
 #include "simulation/run/metered.h"
 
 namespace tress::simulation {
+
+/// Returns the time from which a run goes on after a teleport on its way to `end`: there,
+/// if only rounding lies between them.
+inline double after_teleport(double teleport, double end) {
+  return models::just_before(models::just_before(end)) <= teleport ? end : teleport;
+}
 
 /// Adds the work of one part of a run to that of the others.
 void add_work(const Stats& from, Stats& to);
@@ -53,7 +61,8 @@ struct SteppedSystem {
   /// Starts from a state; the guard is not started.
   void start(double begin, State state);
   /// Advances to `end`, unless it has failed before. The guard also checks the last state
-  /// if `last`, and where the integrator failed.
+  /// if `last`, and where the integrator failed. At a teleport the method starts again
+  /// from the state that was carried with the root.
   void advance(const IntegratorEntry& method, const Options& options, double end,
                bool last);
   /// Keeps the failed system at this state, at rest: readouts see it from now on.
@@ -81,6 +90,11 @@ struct SteppedSystem {
   bool stays() const { return stays_; }
 
  private:
+  void advance_between_teleports(const IntegratorEntry& method, const Options& options,
+                                 double end, bool last);
+  void teleport(const IntegratorEntry& method, const Options& options,
+                Teleports& teleports, double at, double end);
+  Status restart(const IntegratorEntry& method, const Options& options, double at);
   double work_left(const Options& options) const;
   Status shorter_steps(const IntegratorEntry& method, const Options& options, double end);
   /// Stores every state and passes it to the guard.

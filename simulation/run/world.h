@@ -219,6 +219,8 @@ class World {
   void read_positions(std::size_t k, double t);
   void read_velocities(std::size_t k, double t);
   Status couple(double h);
+  double next_teleport() const;
+  Status advance_between_teleports(double t_end);
   void exchange();
 
   // With a tolerance, by intervals.

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "contract/forms/moving_history.h"
+#include "contract/forms/teleports.h"
 #include "simulation/run/remedy.h"
 #include "simulation/run/world.h"
 
@@ -17,8 +19,34 @@ void add_exchanges(const Exchanges& from, Exchanges& to) {
   if (to.shortest.h == 0 || from.shortest.h < to.shortest.h) to.shortest = from.shortest;
 }
 
+/// Returns the first teleport of any strand after the present time, or infinity.
+double World::next_teleport() const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const Body& body : bodies_) {
+    if (const Teleports* const own = teleports(*body.system)) {
+      next = std::min(next, own->next_teleport(t_));
+    }
+  }
+  return next;
+}
+
 Status World::advance(double t_end) {
   if (control_) return advance_controlled(t_end);
+  // Strands see the others either before a teleport or after it.
+  while (!couplings_.empty()) {
+    const double at = next_teleport();
+    if (at > t_end) break;
+    const double before = models::just_before(at);
+    if (before > t_) {
+      if (const Status s = advance_between_teleports(before); s != Status::ok) return s;
+    }
+    const Status s = advance_between_teleports(after_teleport(at, t_end));
+    if (s != Status::ok) return s;
+  }
+  return t_ == t_end ? Status::ok : advance_between_teleports(t_end);
+}
+
+Status World::advance_between_teleports(double t_end) {
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
   const double count =

@@ -73,7 +73,8 @@ constexpr Parameter parameters[] = {
          "rows of t, x, y, z, angle (s, m, rad) relative to the place at rest, t "
          "ascending. Each column follows a cubic spline through its rows, with "
          "continuous acceleration. The root is at rest before the first row and after "
-         "the last. It does not stop at the rows in between",
+         "the last. It does not stop at the rows in between. Two rows with the same time "
+         "are a teleport: the root jumps and carries the strand with it",
      .min = -largest_number,
      .max = largest_number,
      .components = 5,
@@ -96,7 +97,8 @@ constexpr Parameter parameters[] = {
      .text = true},
     {.name = "skin_times_s",
      .help = "skin: time of each file, ascending (s). Places and angles follow cubic "
-             "splines through them, at rest before the first and after the last",
+             "splines through them, at rest before the first and after the last. Two "
+             "files with the same time are a teleport, as with keyframes",
      .min = -largest_number,
      .max = largest_number,
      .rows = true},

@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <new>
 
+#include "contract/forms/teleports.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
+#include "models/motion/signals.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
@@ -175,6 +179,72 @@ void check_joints(const Scene& scene, const ScenePlaces& places,
   }
 }
 
+/// Teleports of a body with rows of its own.
+std::vector<double> teleports_of(const EffectChoice& choice) {
+  const Parameters& p = choice.parameters;
+  if (!p.knows("moves")) return {};
+  const std::string_view moves = p.word("moves");
+  if (moves == "keyframes") {
+    return models::keyframe_motion(p.numbers("keyframes"), {models::world_axes, 1}, {})
+        .teleports;
+  }
+  if (moves == "poses") {
+    return models::keyframe_motion(p.numbers("poses"), models::world_axes, {}).teleports;
+  }
+  return {};
+}
+
+/// Why an effect cannot be carried; empty: it can.
+std::string not_carried(const Scene& scene, const EffectChoice& choice) {
+  const std::string_view id = choice.entry->id;
+  if (id == "tether" || id == "ring") return "which holds a point at a place of its own";
+  if (id == "control_mesh") return "whose links hold between steps";
+  if (id == "strand_friction") return "whose impulses act between steps";
+  if (turns(choice)) return "whose bearing does not jump";
+  if (id == "strand_interaction" && scene.options.tolerance > 0 &&
+      choice.parameters.word("coupling") != "monolithic") {
+    return "whose intervals a tolerance chooses";
+  }
+  return {};
+}
+
+/// Refuses what cannot be carried with a root that teleports, and a body that teleports
+/// when the root does not.
+void check_teleports(const Scene& scene, const ScenePlaces& places) {
+  const std::vector<double>& all = scene.strands.front().root.teleports;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::vector<double> own =
+        at_place(places.effects[i], [&] { return teleports_of(scene.effects[i]); });
+    std::vector<double> alone;
+    std::ranges::set_difference(own, all, std::back_inserter(alone));
+    refuse_if(!alone.empty(),
+              fmt::format("a body that teleports at t = {:.9g} s, when the roots do not",
+                          alone.empty() ? 0 : alone.front()),
+              places.effects[i], "give [root] two rows of that time, or the body one");
+  }
+  if (all.empty()) return;
+  const std::string leave_out = " or give [root] one row for each time";
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const std::string why = not_carried(scene, scene.effects[i]);
+    refuse_if(
+        !why.empty(),
+        fmt::format("a root that teleports with {}, {}", scene.effects[i].entry->id, why),
+        places.effects[i], "leave out the effect," + leave_out);
+  }
+  const Table& root = scene.tables->root;
+  const std::string place = root.place("motion");
+  const SceneSupports supports(scene);
+  refuse_if(supports.any(),
+            fmt::format("a root that teleports with {}, which act at places or times of "
+                        "their own",
+                        supports.any() ? supports.table_name() : ""),
+            place, "leave them out," + leave_out);
+  refuse_if(SceneJoints(scene).any(),
+            "a root that teleports with [joints], whose ends have constraints of their "
+            "own",
+            place, "leave out [joints]," + leave_out);
+}
+
 }  // namespace
 
 NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System& system,
@@ -211,6 +281,7 @@ void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
   supports.check(scene);
   joints.check(scene);
   check_turning_bodies(scene, places.effects, strands);
+  check_teleports(scene, places);
   check_friction(scene, places);
   check_mesh(scene, places);
   const Parameters* interaction = scene.interaction();
@@ -245,6 +316,10 @@ void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
     auto alone = supports.on(at_place(place, make), scene.strands[i], number);
     const auto system = at_place(
         place, [&] { return models::with_turning_bodies(std::move(alone), effects); });
+    refuse_if(!scene.strands[i].root.teleports.empty() && teleports(*system) == nullptr,
+              fmt::format("a root that teleports with {}, which cannot be carried",
+                          scene.model->id),
+              place, "use another model, or give [root] one row for each time");
     if (joints.of(number) == nullptr && (!driven || held)) {
       check_integrator(scene, *system, places);
       driven = true;

@@ -6,6 +6,7 @@
 
 #include "contract/input_error.h"
 #include "models/motion/signals.h"
+#include "models/motion/teleport.h"
 
 namespace tress::test_signals {
 
@@ -120,8 +121,25 @@ TEST(Keyframes, OfOneIntervalAreSymmetric) {
   expect_derivatives(x, 1.3, 7e-11);
 }
 
+/// Before and after a jump the signal is a spline of its own, which goes on at its speed:
+/// one without bending through two rows.
+TEST(Keyframes, JumpBetweenRowsWithTheSameTime) {
+  const Signal x = keyframes({0, 1, 2, 2, 3, 3, 4}, {0, 1, 3, -1, 1, 5, 5});
+  const double before = std::nextafter(teleport_time(2), 0.0);
+  EXPECT_NEAR(x(before).value, 3, 1e-14);
+  EXPECT_EQ(x(before).acceleration, 0);
+  EXPECT_GT(x(before).rate, 1);
+  EXPECT_NEAR(x(2).value, -1, 1e-14);
+  EXPECT_NEAR(x(2.5).value, 0, 1e-14);
+  EXPECT_NEAR(x(2.5).rate, 2, 1e-14);
+  EXPECT_EQ(x(3).value, 5);
+  EXPECT_EQ(x(5).value, 5);
+  for (const double t : {0.3, 0.7, 1.5, 2.2}) expect_derivatives(x, t, 7e-11);
+}
+
 TEST(Keyframes, MustBeInOrder) {
-  EXPECT_THROW(keyframes({0, 0}, {0, 1}), InputError);
+  EXPECT_THROW(keyframes({0, 0, 0}, {0, 1, 2}), InputError);
+  EXPECT_THROW(keyframes({0, 1, 0.5}, {0, 1, 2}), InputError);
   EXPECT_THROW(keyframes({0}, {0}), InputError);
   EXPECT_THROW(keyframes({0, 1, NAN}, {0, 1, 2}), InputError);
   EXPECT_THROW(keyframes({0, 1e-300}, {0, 1}), InputError);
