@@ -8,18 +8,33 @@
 #include "experiments/validation/plectoneme.h"
 #include "experiments/validation/spring.h"
 #include "experiments/validation/test.h"
+#include "experiments/validation/turned_ends.h"
 
 namespace tress::experiments::validation {
 
 const std::vector<ValidationTest>& validation_tests() {
   static const std::vector<ValidationTest> all = [] {
     std::vector<ValidationTest> tests;
-    for (auto* family :
-         {cantilever_tests, vibration_tests, buckling_tests, localised_buckling_tests,
-          curl_tests, hanging_tests, pendulum_tests, chain_tests, ringing_tests,
-          spring_tests, plane_tests, stick_slip_tests, capstan_tests, ladder_tests,
-          touching_tests, knot_tests, wisp_tests, plectoneme_tests,
-          plectoneme_exact_tests}) {
+    for (auto* family : {cantilever_tests,
+                         vibration_tests,
+                         buckling_tests,
+                         localised_buckling_tests,
+                         curl_tests,
+                         hanging_tests,
+                         pendulum_tests,
+                         chain_tests,
+                         ringing_tests,
+                         spring_tests,
+                         plane_tests,
+                         stick_slip_tests,
+                         capstan_tests,
+                         ladder_tests,
+                         touching_tests,
+                         knot_tests,
+                         wisp_tests,
+                         plectoneme_tests,
+                         plectoneme_exact_tests,
+                         turned_end_tests}) {
       std::ranges::move(family(), std::back_inserter(tests));
     }
     return tests;
