@@ -8,11 +8,11 @@ from pathlib import Path
 from . import sundials
 from .command import Command, read_words
 from .counting import must
-from .messages import say
+from .messages import refuse, say
 from .package import LISTS, build_packages, packages
 from .packages import npm_packages
-from .scripts import (TEST_ADVICE, TEST_CLUSTER, TEST_CORPUS, TEST_LIMITS, TEST_MUTANTS,
-                      TEST_PACKAGES, TEST_READERS)
+from .scripts import (TEST_ADVICE, TEST_CLUSTER, TEST_CORPUS, TEST_IMAGE, TEST_LIMITS, TEST_MUTANTS,
+                      TEST_PACKAGES, TEST_READERS, TEST_WHEEL)
 from .tree import ALL_PACKS, PROGRAMS, RELEASE, SHORT_PACKS, build
 
 PAIRED = ("experiments/simulate", "20")  # strands of a batch
@@ -80,12 +80,38 @@ def _readers(_, __, machine):
     must(*TEST_READERS, f"{PROGRAMS}/simulate")
 
 
-def _packages(_, __, machine):
-    if not _installs(machine, *LISTS):
-        return
+def _debs(machine):
     if not packages():
         build_packages(machine)
-    must(*TEST_PACKAGES, *packages())
+    return packages()
+
+
+def _debian(machine):
+    must(*TEST_PACKAGES, *_debs(machine))
+
+
+def _image(machine):
+    if _installs(machine, "cmake/image_packages.txt"):
+        must(*TEST_IMAGE, *_debs(machine))
+
+
+def _wheel(_):
+    must(*TEST_WHEEL)
+
+
+INSTALLED = {"debian": _debian, "image": _image, "wheel": _wheel}
+
+
+def _check_parts(words):
+    for word in words:
+        if word not in INSTALLED:
+            refuse(f"test: --packages has no part '{word}'; parts are {', '.join(INSTALLED)}")
+
+
+def _packages(_, words, machine):
+    if _installs(machine, *LISTS, "cmake/clean_system_packages.txt"):
+        for word in words or INSTALLED:
+            INSTALLED[word](machine)
 
 
 def _ctest(preset, options, *words):
@@ -118,6 +144,8 @@ TESTS = {"all": _all, "fuzz": _fuzz, "mutants": _mutants, "corpus": _corpus, "ex
 def _run(words, machine):
     flags = ("--sanitize", *(f"--{kind}" for kind in TESTS))
     read = read_words("test", words, flags=flags, hint=" (options of ctest go after --)")
+    if "--packages" in read.options:
+        _check_parts(read.more)
     preset = "debug" if read.options.pop("--sanitize", False) else RELEASE
     machine.ensure()
     kinds = [TESTS[option.removeprefix("--")] for option in read.options]
@@ -155,6 +183,7 @@ COMMAND = Command(
         ("--readers", "exported files: do VTK, TinyUSDZ, three.js and h5py find in them what was "
          "simulated? Installs cmake/readers_packages.txt and two packages of npm, or prints why "
          "it is left out"),
-        ("--packages", "the Debian packages, installed in a new system without the clone: do a "
-         "scene, the module, a consumer and a plug-in run there? Builds them first if there are "
-         "none")))
+        ("--packages [-- PART...]", "new Debian systems without the clone and without a network: do "
+         "a scene, the module, a consumer and a plug-in run from the Debian packages (part debian), "
+         "a scene and the module from the container image (image) and from the wheel (wheel)? "
+         "Builds the packages first if there are none")))

@@ -106,6 +106,8 @@ RULES = (
          instead=f"{experiment('hard_cases')} --quick --run-id $({FIRST_ID})", why="the id of a row"),
     Rule("docs/about/packages.md", "./tress package", more="--help", spelling="builds for half an hour"),
     Rule("docs/about/packages.md", "sudo apt install", spelling="needs root"),
+    Rule("docs/about/packages.md", "buildah", spelling="needs the packages; ./tress test --packages builds the image"),
+    Rule("docs/about/packages.md", "podman", spelling="needs the image; ./tress test --packages runs it"),
     Rule("docs/about/packages.md", "cmake", spelling="builds; tests/install installs the build"),
     Rule("docs/about/packages.md", "/opt/tress/bin/tress", instead="./tress", why="nothing is installed in /opt",
          spelling="tests/install runs the installed command"),

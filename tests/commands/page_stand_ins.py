@@ -52,7 +52,18 @@ parts=$(($(sed -n 's/.*range(1, \([0-9]*\)).*/\1/p' "$2" | head -n 1) - 1))
 for ((i = 1; i <= parts; ++i)); do ./part.sh "$i" || (($? == 3)) || exit 1; done
 ./merge.sh
 """
+# The recipe and the folder of packages must exist.
+BUILDAH = r"""
+[[ $1 == build && $2 == -f && -f $3 && $4 == -t && -n $5 && -d $6 && $# == 6 ]] || { echo "buildah: $*" >&2; exit 1; }
+compgen -G "$6/*.deb" >/dev/null
+"""
+# The words after the name of the image are those of ./tress.
+PODMAN = r"""
+[[ "$1 $2 $3 $4 $5" == "run --rm -v $PWD:/data tress" ]] || { echo "podman: $*" >&2; exit 1; }
+exec ./tress "${@:6}"
+"""
 PROGRAMS = {
+    "buildah": BUILDAH, "podman": PODMAN,
     "cmake": CMAKE, "make_toy": MAKE_TOY, "sudo": SUDO, "sbatch": SBATCH, "snakemake": SNAKEMAKE,
     "dpkg-query": INSTALLED, "id": "echo 0", "apt-get": "exit 1", "squeue": "exit 0",
     "mpirun": '[[ $1 == -n && $2 =~ ^[0-9]+$ ]] || exit 1\nexec "${@:3}"',
