@@ -27,9 +27,9 @@ std::vector<ValidationTest> turned_end_tests();
 /// large: M = 2 sqrt(T). Throws InputError unless T > -39.
 double twist_that_buckles(double tension);
 
-/// Jump into self-contact of a long rod, one end of which has turned against the other,
-/// when the ends approach each other [Coyne 1990; Neukirch, van der Heijden & Thompson
-/// 2002: the infinite rod under rigid loading]. LocalisedHelix has the shapes. With R the
+/// Jump of a long rod into self-contact, when ends that have turned against each other
+/// come closer [Coyne 1990; Neukirch, van der Heijden & Thompson 2002]. The rod is
+/// infinite and its loading rigid. LocalisedHelix has the shapes. With R the
 /// rotation, a the largest tilt from the axis and c = GJ/EI, their shortening is
 ///
 ///     d/L = 4 sin a / (c (R - 2 a)),

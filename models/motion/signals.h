@@ -43,8 +43,8 @@ Signal rests(const std::vector<double>& times, const std::vector<double>& values
 
 /// Returns a rigid motion by rows of t, x, y, z and an angle about each axis (s, m, rad):
 /// each column is a signal of keyframes(). The axes (any length) pass through `centre`,
-/// where the body is at rest; the first one turns it first. Two rows with the same time are
-/// a teleport. Throws InputError on rows out of order.
+/// where the body is at rest; the first one turns it first. Two rows with the same time
+/// are a teleport. Throws InputError on rows out of order.
 RootMotion keyframe_motion(std::span<const double> rows, std::span<const Vec> axes,
                            const Vec& centre);
 /// Axes of rows of t, x, y, z and the angles about x, y and z.

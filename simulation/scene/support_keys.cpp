@@ -64,10 +64,9 @@ constexpr Parameter support_parameters[] = {
      .components = 2,
      .rows = true},
     {.name = "on",
-     .help =
-         "carrier that moves the support rigidly: \"head\" (the motion of [root]) or a "
-         "body with prescribed motion, by its name in the columns, such as \"body\" or "
-         "\"body_2\". Empty: space, or keyframes",
+     .help = "carrier of the support, which moves it rigidly: \"head\" (the motion of "
+             "[root]), or a body with a prescribed motion. A body has its name in the "
+             "columns, such as \"body_2\". Empty: none",
      .text = true,
      .fallback = ""},
     {.name = "slide",

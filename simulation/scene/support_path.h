@@ -10,7 +10,7 @@
 /// Motion of a support over time, from its table.
 namespace tress::simulation {
 
-/// What may carry supports: its name and its motion.
+/// Motion of a head or a body that may carry supports.
 struct Carrier {
   std::string name;           // "head", or that of a body
   models::RootMotion motion;  // prescribed
