@@ -142,7 +142,8 @@ class TurningSystem final : public System,
             static_cast<std::size_t>(of.rows())};
   }
   double driving_moment(std::size_t k, double speed) const;
-  double kinetic(In v) const;  // of the bodies
+  /// Returns the kinetic energy of the bodies, J.
+  double kinetic(In v) const;
   Status border(double t, In q, In v, Weights w) noexcept;
   Status pull(double t, In q, std::size_t k, In loads, Out to) noexcept;
   Status add_turning_points(double t, In q, In v, std::size_t k) noexcept;

@@ -61,8 +61,8 @@ Readout::Readout(const Scene& scene, const World& world)
   add("stretch_rel", "largest |length/rest - 1| of a segment");
   add("penetration_m",
       "largest depth of a strand in a body since the last frame, at the ends of all "
-      "steps and on paths through a body within a step, except bodies that strands turn; "
-      "strands are straight between their points");
+      "steps and on paths through a body within a step. Strands are straight between "
+      "their points. Paths through bodies that strands turn are left out");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "mean distance from a strand to the nearest other one");
