@@ -23,12 +23,14 @@ BodyDepth::BodyDepth(const models::Effects& effects, MaterialPoints& points)
 }
 
 void BodyDepth::look(MaterialPoints& points, double from, In old_q, double t, In q) {
-  if (std::ranges::equal(old_q, q_)) {
+  // Coordinates relative to a root stay as they are where it teleports.
+  if (from == t_ && std::ranges::equal(old_q, q_)) {
     old_x_.swap(x_);
   } else {
     points.positions(from, old_q, old_x_);
   }
   points.positions(t, q, x_);
+  t_ = t;
   q_.assign(q.begin(), q.end());
   const std::vector<double> places = passages_.places().of(x_);
   for (const auto& body : bodies_) {

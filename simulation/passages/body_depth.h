@@ -32,6 +32,7 @@ class BodyDepth {
  private:
   BodyPassages passages_;
   std::vector<std::shared_ptr<const models::Effect>> bodies_;
+  double t_ = 0;                       // s, end of the last step
   std::vector<double> q_, x_, old_x_;  // at the end of the last step; (3 points)
 };
 

@@ -265,6 +265,20 @@ TEST(Teleport, CarriesContactWithABodyOfTheHead) {
   }
 }
 
+/// The sphere lies on the straight way of the strand, which no teleport takes.
+TEST(Teleport, PassesThroughNoBody) {
+  for (const char* model : {"super_helix", "der"}) {
+    const Scene scene = scene_of(
+        model, steps("backward_euler"), to("0.4, 0, 0, 0"),
+        strand + "[effects.body]\nradius_m = 0.05\ncentre_m = [0.25, 0, -0.02]\n");
+    World world(scene);
+    static_cast<void>(world.take_depth());  // from here on the depth is watched
+    ASSERT_EQ(world.advance(0.06), Status::ok) << world.failure();
+    EXPECT_FALSE(world.passed()) << model;
+    EXPECT_EQ(world.take_depth(), 0) << model;
+  }
+}
+
 /// An edge's spin after the jump is the spin before it, turned, plus that of the root.
 TEST(Displacement, CarriesTheSpinOfAnEdge) {
   models::RootMotion root = models::keyframe_motion(
