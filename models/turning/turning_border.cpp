@@ -11,14 +11,28 @@ namespace {
 /// rounding.
 constexpr double motion_step = 6e-6;
 
+double largest_load(In x) {
+  double most = 0;
+  for (const double one : x) most = std::max(most, std::abs(one));
+  return most;
+}
+
 }  // namespace
+
+/// Residuals are affine in the loads. Small loads next to large elastic forces would lose
+/// their digits in a difference: this factor lifts them above all forces.
+double TurningSystem::lift(In loads) const {
+  const double size = largest_load(loads);
+  return size > 0 ? 1e3 * std::max(1.0, largest_load(base_) / size) : 1;
+}
 
 /// to = J^T loads, which replace those of body k. base_ has the residual without any.
 Status TurningSystem::pull(double t, In q, std::size_t k, In loads, Out to) noexcept {
-  bodies_[k]->replace(loads, 1);
+  const double factor = lift(loads);
+  bodies_[k]->replace(loads, factor);
   const Status s = strand_->residual(t, q, zero_, zero_, to);
   bodies_[k]->replace({}, 0);
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] = base_[i] - to[i];
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = (base_[i] - to[i]) / factor;
   return s;
 }
 
@@ -30,18 +44,18 @@ Status TurningSystem::add_turning_points(double t, In q, In v, std::size_t k) no
     fastest = std::max(fastest, std::abs(v[i]) / q_typ_[i]);
   }
   if (fastest == 0) return Status::ok;
-  const double step = motion_step / fastest;
+  const double step = motion_step / fastest, factor = lift(slopes_.rate);
   const InOut to = column(row_, k);
   for (const double side : {-1.0, 1.0}) {
     for (std::size_t i = 0; i < strand_size_; ++i) {
       shifted_[i] = q[i] + side * step * v[i];
     }
     for (const double sign : {-1.0, 1.0}) {
-      bodies_[k]->replace(slopes_.rate, sign);
+      bodies_[k]->replace(slopes_.rate, sign * factor);
       const Status s = strand_->residual(t, shifted_, zero_, zero_, r_);
       if (s != Status::ok) return s;
       for (std::size_t i = 0; i < strand_size_; ++i) {
-        to[i] -= side * sign * r_[i] / (4 * step);
+        to[i] -= side * sign * r_[i] / (4 * step * factor);
       }
     }
   }

@@ -145,6 +145,7 @@ class TurningSystem final : public System,
   /// Returns the kinetic energy of the bodies, J.
   double kinetic(In v) const;
   Status border(double t, In q, In v, Weights w) noexcept;
+  double lift(In loads) const;
   Status pull(double t, In q, std::size_t k, In loads, Out to) noexcept;
   Status add_turning_points(double t, In q, In v, std::size_t k) noexcept;
 
