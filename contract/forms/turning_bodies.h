@@ -17,8 +17,9 @@ class TurningBodies {
   };
   /// Energy of all bodies.
   struct OfBodies {
-    double kinetic = 0;  // J
-    double rate = 0;     // W, what strands, bearings and prescribed moments put in
+    double kinetic = 0;       // J
+    double rate = 0;          // W, what strands, bearings and prescribed moments put in
+    double from_strands = 0;  // W, the strands' part of it
   };
   /// Returns the number of bodies; fixed for life.
   virtual std::size_t bodies() const = 0;

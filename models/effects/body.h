@@ -129,9 +129,8 @@ class TurningBody final : public Effect {
   void add_derivatives(double t, const Points& p, double pos, double vel,
                        InOut blocks) const noexcept override;
   double potential(double t, const Points& p) const noexcept override;
-  /// Returns the power of damping and friction between strand and body, of the bearing
-  /// and of the prescribed moment, W. The work of the surface on the strand is that of
-  /// the strand on the body.
+  /// Returns the power of damping and friction between strand and body, W. The work of
+  /// the surface on the strand is that of the strand on the body.
   double power(double t, const Points& p) const noexcept override;
   std::optional<double> penetration(double t, In x) const override;
   double surface_speed(double t, In x, double near) const override;

@@ -109,8 +109,7 @@ double TurningBody::potential(double t, const Points& p) const noexcept {
 }
 
 double TurningBody::power(double t, const Points& p) const noexcept {
-  const double bearing = bearing_.moment - bearing_.damping * speed_;
-  return body_.power(t, in_frame(p)) + bearing * speed_;
+  return body_.power(t, in_frame(p));
 }
 
 std::optional<double> TurningBody::penetration(double t, In x) const {

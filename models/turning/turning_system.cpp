@@ -8,6 +8,14 @@
 #include "models/joints/joined_system.h"
 
 namespace tress::models {
+namespace {
+
+/// That of the bearing and the prescribed one, N m.
+double moment_of(const Bearing& bearing, double speed) {
+  return bearing.moment - bearing.damping * speed;
+}
+
+}  // namespace
 TurningSystem::TurningSystem(std::unique_ptr<System> strand,
                              std::vector<const TurningBody*> bodies)
     : strand_(std::move(strand)),
@@ -64,8 +72,7 @@ void TurningSystem::scale(Out q_typ, Out v_typ) const {
 
 /// The moment on body k, N m: of the recorded loads, the bearing and the prescribed one.
 double TurningSystem::driving_moment(std::size_t k, double speed) const {
-  const Bearing& bearing = bodies_[k]->bearing();
-  return bodies_[k]->moment() + bearing.moment - bearing.damping * speed;
+  return bodies_[k]->moment() + moment_of(bodies_[k]->bearing(), speed);
 }
 
 Status TurningSystem::residual(double t, In q, In v, In a, Out r) noexcept {
@@ -220,13 +227,19 @@ TurningBodies::OfBodies TurningSystem::energy_of_bodies(double t, In q, In v) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const double speed = v[strand_size_ + k];
     all.rate += driving_moment(k, speed) * speed;
+    all.from_strands += bodies_[k]->moment() * speed;
   }
   return all;
 }
 
 double TurningSystem::power(double t, In q, In v) {
   place(q, v);
-  return strand_->energetics()->power(t, of_strand(q), of_strand(v));
+  double sum = strand_->energetics()->power(t, of_strand(q), of_strand(v));
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const double speed = v[strand_size_ + k];
+    sum += moment_of(bodies_[k]->bearing(), speed) * speed;
+  }
+  return sum;
 }
 
 void TurningSystem::positions(double t, In q, Out x) {

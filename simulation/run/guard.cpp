@@ -71,7 +71,7 @@ Guard::Seen Guard::look(double t, In q, In v) {
   const TurningBodies::OfBodies bodies = bodies_->energy_of_bodies(t, q, v);
   seen.energy.kinetic -= bodies.kinetic;
   seen.power -= bodies.rate;
-  seen.to_bodies = bodies.rate;
+  seen.to_bodies = bodies.from_strands;
   return seen;
 }
 

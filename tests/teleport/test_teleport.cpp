@@ -268,9 +268,10 @@ TEST(Teleport, CarriesContactWithABodyOfTheHead) {
 /// The sphere lies on the straight way of the strand, which no teleport takes.
 TEST(Teleport, PassesThroughNoBody) {
   for (const char* model : {"super_helix", "der"}) {
-    const Scene scene = scene_of(
-        model, steps("backward_euler"), to("0.4, 0, 0, 0"),
-        strand + "[effects.body]\nradius_m = 0.05\ncentre_m = [0.25, 0, -0.02]\n");
+    const Scene scene = scene_of(model, steps("backward_euler"), to("0.4, 0, 0, 0"),
+                                 strand +
+                                     "[effects.body]\nshape = \"sphere\"\nradius_m = "
+                                     "0.05\ncentre_m = [0.25, 0, -0.02]\n");
     World world(scene);
     static_cast<void>(world.take_depth());  // from here on the depth is watched
     ASSERT_EQ(world.advance(0.06), Status::ok) << world.failure();
@@ -313,6 +314,22 @@ TEST(Teleport, RefusesWhatCannotBeCarried) {
   expect(refused(rows + "[1, 0, 0, 0, 0], [0.5, 1, 0, 0, 0]]\n", ""), "not in order");
   expect(refused(rows + "[nan, 0, 0, 0, 0]]\n", ""), "keyframes");
   expect(refused(aside, "[effects.tether]\n"), "tether, which holds a point");
+  // Their stages lie beyond the end of a step, or see it.
+  for (const char* const method :
+       {"id = \"esdirk43\"\ndt_s = 1e-3", "id = \"tr_bdf2\"\nposition_tol_rel = 1e-4",
+        "id = \"rk4\"\ndt_s = 1e-6"}) {
+    expect(refusal([&] { scene_of("der", method, aside, strand); }),
+           "whose stages may see the root beyond its jump");
+  }
+  expect(refusal([&] {
+           scene_of("super_helix", steps("tr_bdf2"), aside,
+                    strand + "[effects.strand_interaction]\n");
+         }),
+         "neighbours that have not jumped");
+  expect(refused("motion = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], [0.05, 0, 0, 0, "
+                 "0], [0.05, 1, 0, 0, 0]]\n",
+                 "root = \"free\"\n"),
+         "a strand with a free root, which stays where it is");
   expect(refused(aside,
                  "[[supports]]\nstrand = 0\nat = \"tip\"\nkind = "
                  "\"ball\"\n"),
