@@ -242,6 +242,7 @@ TEST(Supports, AreCarriedByBodies) {
     text.strand =
         "length_m = 1\nelements = 10\nshape = \"helix\"\ncurl_radius_m = "
         "0.02\ncurl_pitch_m = 0.2";
+    text.integrator = "id = \"backward_euler\"\ndt_s = 5e-3";
     text.supports = "[[supports]]\nat = \"tip\"\nkind = \"clamp\"\non = \"body\"\n";
     text.rest = moving_body;
     const Scene scene = scene_of(text);
@@ -251,7 +252,10 @@ TEST(Supports, AreCarriedByBodies) {
       return load3(&x[x.size() - 3]);
     };
     const Vec begin = tip();
-    const auto motion = models::body_motion(scene.effects.back().parameters, scene.head);
+    const auto body = std::ranges::find_if(scene.effects, [](const EffectChoice& choice) {
+      return choice.entry->id == "body";
+    });
+    const auto motion = models::body_motion(body->parameters, scene.head);
     ASSERT_TRUE(motion);
     const models::RootMotion path = models::carried(*motion, {begin, {}});
     EXPECT_LT(norm(path.at(0).x - begin), 1e-15);
