@@ -32,7 +32,7 @@ class Page(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         scene = Path(folder.name) / "live.toml"
-        scene.write_text(SCENE + "[effects.gravity]\n")
+        scene.write_text(SCENE.replace("gravity_m_s2 = [0, 0, 0]", "gravity_m_s2 = [0, 0, -9.81]"))
         cls.play = Play(scene)
         cls.addClassCleanup(cls.play.end)
         cls.browsers = {}
