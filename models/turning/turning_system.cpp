@@ -16,6 +16,7 @@ double moment_of(const Bearing& bearing, double speed) {
 }
 
 }  // namespace
+
 TurningSystem::TurningSystem(std::unique_ptr<System> strand,
                              std::vector<const TurningBody*> bodies)
     : strand_(std::move(strand)),

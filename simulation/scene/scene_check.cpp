@@ -9,9 +9,9 @@
 #include "contract/forms/teleports.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
+#include "models/effects/body.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
-#include "models/motion/signals.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
@@ -180,18 +180,11 @@ void check_joints(const Scene& scene, const ScenePlaces& places,
 }
 
 /// Teleports of a body with rows of its own.
-std::vector<double> teleports_of(const EffectChoice& choice) {
+std::vector<double> teleports_of(const Scene& scene, const EffectChoice& choice) {
   const Parameters& p = choice.parameters;
-  if (!p.knows("moves")) return {};
-  const std::string_view moves = p.word("moves");
-  if (moves == "keyframes") {
-    return models::keyframe_motion(p.numbers("keyframes"), {models::world_axes, 1}, {})
-        .teleports;
-  }
-  if (moves == "poses") {
-    return models::keyframe_motion(p.numbers("poses"), models::world_axes, {}).teleports;
-  }
-  return {};
+  if (choice.entry->id != "body" || p.word("moves") == "head") return {};
+  const auto motion = models::body_motion(p, scene.head);
+  return motion ? motion->teleports : std::vector<double>();
 }
 
 /// Methods that take forces between strands at the end of a step only.
@@ -251,8 +244,8 @@ void check_teleports(const Scene& scene, const ScenePlaces& places) {
   const std::vector<double>& all =
       (jumps == scene.strands.end() ? scene.strands.front() : *jumps).root.teleports;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::vector<double> own =
-        at_place(places.effects[i], [&] { return teleports_of(scene.effects[i]); });
+    const std::vector<double> own = at_place(
+        places.effects[i], [&] { return teleports_of(scene, scene.effects[i]); });
     std::vector<double> alone;
     std::ranges::set_difference(own, all, std::back_inserter(alone));
     refuse_if(!alone.empty(),
