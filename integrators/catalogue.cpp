@@ -45,6 +45,7 @@
   METHOD(arkode_erk)                 \
   METHOD(arkode_dirk)                \
   METHOD(arkode_ark)                 \
+  METHOD(arkode_mri)                 \
   METHOD(ida)
 
 namespace tress::integrators {

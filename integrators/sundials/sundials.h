@@ -2,6 +2,7 @@
 
 #include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
+#include <arkode/arkode_mristep.h>
 #include <cvode/cvode.h>
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -156,6 +157,19 @@ using IdaMemory = std::unique_ptr<void, FreeSundials<IDAFree>>;
 using ArkstepMemory = std::unique_ptr<void, FreeSundials<ARKStepFree>>;
 /// Memory of ERKStep.
 using ErkstepMemory = std::unique_ptr<void, FreeSundials<ERKStepFree>>;
+/// Memory of MRIStep.
+using MristepMemory = std::unique_ptr<void, FreeSundials<MRIStepFree>>;
+
+/// Deleter for the fast steps inside those of MRIStep.
+struct FreeInnerStepper {
+  /// Frees the stepper, not the memory that it steps with.
+  void operator()(MRIStepInnerStepper stepper) const {
+    MRIStepInnerStepper_Free(&stepper);
+  }
+};
+/// Fast steps of MRIStep.
+using InnerStepper =
+    std::unique_ptr<std::remove_pointer_t<MRIStepInnerStepper>, FreeInnerStepper>;
 
 /// Deleter for SUNDIALS' nonlinear solvers.
 struct FreeNonlinearSolver {
@@ -187,6 +201,10 @@ inline int send_messages(const ArkstepMemory& memory, SundialsMessages& messages
 /// Sends the errors of ERKStep to `messages`.
 inline int send_messages(const ErkstepMemory& memory, SundialsMessages& messages) {
   return ERKStepSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
+}
+/// Sends the errors of MRIStep to `messages`.
+inline int send_messages(const MristepMemory& memory, SundialsMessages& messages) {
+  return MRIStepSetErrHandlerFn(memory.get(), &SundialsMessages::receive, &messages);
 }
 #endif
 

@@ -119,9 +119,9 @@ std::vector<Method> methods(bool adaptive) {
 }
 
 TEST(Strands, OnlyRattlePredictorCorrectorAndMethodsOfCompliancesAreRefused) {
-  // The first two are for constraints; the others, position-based methods and arkode_ark,
-  // drive what is a sum of compliant ones.
-  constexpr std::size_t of_compliances = 6;
+  // The first two are for constraints; the others, position-based methods, arkode_ark and
+  // arkode_mri, drive what is a sum of compliant ones.
+  constexpr std::size_t of_compliances = 7;
   std::size_t expected = 0;
   for (const std::string_view model : tested_models()) {
     const bool compliant = strand(model)->compliance_form() != nullptr;

@@ -86,7 +86,7 @@ export const families = [
   {
     name: 'explicit, fixed step',
     colour: blue,
-    members: ['explicit_euler', 'symplectic_euler', 'velocity_verlet', 'rk4'],
+    members: ['explicit_euler', 'symplectic_euler', 'velocity_verlet', 'rk4', 'arkode_mri'],
   },
   {
     name: 'explicit, adaptive',
