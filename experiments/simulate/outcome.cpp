@@ -261,11 +261,16 @@ std::string shortest_in_words(double h, double at, std::string_view cause) {
   return fmt::format(", the shortest {:.3g} s at {:.3g} s ({})", h, at, cause);
 }
 
-std::string replaced_in_words(const Scene& scene, const Stats& work) {
+/// The counts of a run that was resumed begin there.
+std::string_view since(const SceneRun& run) {
+  return run.resumed ? " since the run was resumed" : "";
+}
+
+std::string replaced_in_words(const Scene& scene, const SceneRun& run) {
   if (!replaces_steps(scene)) return {};
   return fmt::format(
-      "; {} of {} steps replaced by backward Euler (no solution, or energy gained)",
-      work.replaced, work.steps);
+      "; {} of {} steps{} replaced by backward Euler (no solution, or energy gained)",
+      run.work.replaced, run.work.steps, since(run));
 }
 
 std::string contact_in_words(const Stats& work) {
@@ -300,12 +305,11 @@ std::string control_in_words(const Scene& scene, const SceneRun& run) {
         run.rejected == 0
             ? ""
             : fmt::format("; {} steps tried again with shorter ones", run.rejected);
-    return again + replaced_in_words(scene, work) + contact_in_words(work);
+    return again + replaced_in_words(scene, run) + contact_in_words(work);
   }
   std::string words = fmt::format(
       "; {} steps{}, {} rejected by their error and {} by Newton's iteration{}",
-      work.steps, run.resumed ? " since the run was resumed" : "", work.rejected_by_error,
-      work.rejected_by_newton,
+      work.steps, since(run), work.rejected_by_error, work.rejected_by_newton,
       shortest_in_words(work.smallest_step, work.smallest_step_at,
                         work.smallest_step_cause));
   words += contact_in_words(work);
