@@ -232,7 +232,7 @@ Status ArkodeMri::step(double t, double h) {
 IntegratorEntry arkode_mri_entry() {
   return {.id = "arkode_mri",
           .summary = "MRI-GARK-ERK45a: stretch and twist in short steps inside each step",
-          .source = "SUNDIALS ARKODE, Sandu 2019",
+          .source = "Sandu 2019, SUNDIALS ARKODE",
           .formulations = {{Formulation::parametric, 4}},
           .gaps = gaps_of_sweeps(),
           .parameters = own,
