@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view mri_id = "arkode_mri";
 constexpr Parameter own[] = {
     {.name = "fast_steps",
-     .help = "explicit fast steps in a slow step, 0: as many as stability requires",
+     .help = "explicit fast steps in a slow step, 0: the fewest that are stable",
      .number = 0,
      .min = 0,
      .max = 1e6,
