@@ -35,12 +35,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-double parse_number(const Parameter& declared, std::string_view text,
-                    const std::string& where) {
+/// `name`: of the number in messages.
+double parse_number(const Parameter& declared, const std::string& name,
+                    std::string_view text, const std::string& where) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
   const double x = decimal(text).value_or(std::nan(""));
-  const std::string name(declared.name);
   if (!std::isfinite(x)) {
     throw InputError(name + " = '" + std::string(text) + "' is not a finite number",
                      where, "give a number: " + std::string(declared.help));
@@ -79,16 +79,19 @@ std::vector<double> parse_numbers(const Parameter& declared, std::string_view te
   std::vector<double> all;
   if (declared.rows && text.empty()) return all;
   const auto rows = declared.rows ? split(text, ';') : std::vector{text};
+  std::size_t count = 0;
   for (const std::string_view row : rows) {
+    const std::string name =
+        (declared.rows ? "row " + std::to_string(++count) + " of " : "") +
+        std::string(declared.name);
     const auto parts = declared.components > 1 ? split(row, ',') : std::vector{row};
     if (parts.size() != static_cast<std::size_t>(declared.components)) {
-      throw InputError(std::string(declared.name) + " has " +
-                           std::to_string(parts.size()) + " numbers instead of " +
-                           std::to_string(declared.components),
+      throw InputError(name + " has " + std::to_string(parts.size()) +
+                           " numbers instead of " + std::to_string(declared.components),
                        where, "give " + std::string(declared.help));
     }
     for (const std::string_view part : parts) {
-      all.push_back(parse_number(declared, part, where));
+      all.push_back(parse_number(declared, name, part, where));
     }
   }
   return all;

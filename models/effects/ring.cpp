@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "contract/input_error.h"
@@ -47,9 +48,10 @@ RootMotion path_of(In rows) {
   std::vector<double> t, x[3];
   for (std::size_t i = 0; i + 3 < rows.size(); i += 4) {
     t.push_back(rows[i]);
-    refuse_if(t.size() > 1 && !(t.back() > t[t.size() - 2]),
-              "keyframes not ascending in time", "effect ring",
-              "give each a later time than the one before");
+    refuse_if(
+        t.size() > 1 && !(t.back() > t[t.size() - 2]),
+        "keyframe " + std::to_string(t.size()) + " is not later than the one before",
+        "effect ring", "give each a later time than the one before");
     for (std::size_t k = 0; k < 3; ++k) x[k].push_back(rows[i + 1 + k]);
   }
   refuse_if(t.empty(), "a ring without a place", "effect ring",

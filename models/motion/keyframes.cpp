@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "contract/input_error.h"
+#include "contract/parameters.h"
 #include "models/motion/root_motion.h"
 #include "models/motion/signals.h"
 #include "models/motion/teleport.h"
@@ -26,15 +28,21 @@ struct Knots {
 void check(const std::vector<double>& times, const std::vector<double>& values,
            std::size_t least = 2, bool jumps = false) {
   if (times.size() < least) refuse("fewer than two keyframes");
-  const auto follows = [&](std::size_t i) {
-    if (times[i] > times[i - 1]) return true;
-    return jumps && times[i] == times[i - 1] && (i == 1 || times[i - 1] > times[i - 2]);
-  };
-  bool good = times.size() == values.size();
-  for (std::size_t i = 0; good && i < times.size(); ++i) {
-    good = std::isfinite(times[i]) && std::isfinite(values[i]) && (i == 0 || follows(i));
+  if (times.size() != values.size()) refuse("the numbers of times and values differ");
+  const auto row = [&](std::size_t i) { return "keyframe " + std::to_string(i + 1); };
+  const auto at = [&](std::size_t i) { return " at " + number_text(times[i]) + " s"; };
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!std::isfinite(times[i]) || !std::isfinite(values[i])) {
+      refuse(row(i) + " has a number that is not finite");
+    }
+    if (i == 0 || times[i] > times[i - 1]) continue;
+    if (!jumps || times[i] < times[i - 1]) {
+      refuse(row(i) + at(i) + " is not later than " + row(i - 1) + at(i - 1));
+    }
+    if (i > 1 && times[i - 1] == times[i - 2]) {
+      refuse(row(i) + " is the third" + at(i));
+    }
   }
-  if (!good) refuse("keyframes are not in order");
 }
 
 /// Adds a knot next to each end that rests, whose x is unknown and set to 0.

@@ -23,6 +23,7 @@
 #include "simulation/scene/strand_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/table/directions.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
@@ -311,6 +312,7 @@ class Reader {
       const Table read =
           read_table(*one, entry.parameters, fmt::format("[{}]", name), file_);
       refuse_unused(read, entry.uses);
+      if (read.given("axis")) static_cast<void>(direction(read, "axis"));
       scene_.effects.push_back({&entry, read.values()});
       places_.effects.push_back(read.place());
       if (scene_.effects.size() > most_effects) {

@@ -10,6 +10,7 @@
 #include "contract/input_error.h"
 #include "models/effects/body.h"
 #include "models/motion/signals.h"
+#include "simulation/scene/turning_bodies.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
@@ -26,7 +27,8 @@ void check_ascending(const Table& table, const std::string& key,
   for (std::size_t i = 1; i < t.size(); ++i) {
     if (t[i] > t[i - 1]) continue;
     throw InputError(
-        fmt::format("{} not ascending in time: {:g} s after {:g} s", key, t[i], t[i - 1]),
+        fmt::format("{} not ascending in time: row {} at {:g} s after {:g} s", key, i + 1,
+                    t[i], t[i - 1]),
         table.place(key), "give each a later time than the one before");
   }
 }
@@ -50,7 +52,8 @@ std::vector<Vec> unit_directions(const Table& table, const std::vector<double>& 
   std::vector<Vec> all;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec d{x[i], y[i], z[i]};
-    refuse_if(!(norm(d) > 0), "a direction of length 0", table.place("directions"),
+    refuse_if(!(norm(d) > 0), fmt::format("row {} of directions has length 0", i + 1),
+              table.place("directions"),
               "give each direction at least one component that is not 0");
     all.push_back((1 / norm(d)) * d);
     if (i > 0 && dot(all[i], all[i - 1]) < opposite) {
@@ -103,13 +106,16 @@ void add_twist(const Table& table, RootMotion& path) {
 
 std::vector<Carrier> carriers(const Scene& scene) {
   std::vector<Carrier> all;
-  if (!scene.head.fixed()) all.push_back({"head", scene.head});
+  all.push_back(
+      {"head", scene.head, scene.head.fixed() ? Carrier::still : Carrier::moves});
   const std::vector<std::string> names = effect_names(scene);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Parameters& values = scene.effects[i].parameters;
-    if (scene.effects[i].entry->id != "body") continue;
-    if (auto motion = models::body_motion(values, scene.head)) {
+    const EffectChoice& choice = scene.effects[i];
+    if (choice.entry->id != "body") continue;
+    if (auto motion = models::body_motion(choice.parameters, scene.head)) {
       all.push_back({names[i], *std::move(motion)});
+    } else {
+      all.push_back({names[i], {}, turns(choice) ? Carrier::turned : Carrier::still});
     }
   }
   return all;
@@ -120,15 +126,31 @@ RootMotion support_path(const Table& table, const models::StrandPlace& start,
   if (const std::string_view on = table.values().word("on"); !on.empty()) {
     std::string known;
     for (const Carrier& carrier : carriers) {
-      if (carrier.name == on) return models::carried(carrier.motion, start);
-      known += (known.empty() ? "use \"" : ", \"") + carrier.name + "\"";
+      if (carrier.name != on) {
+        if (carrier.is != Carrier::moves) continue;
+        known += (known.empty() ? "use \"" : ", \"") + carrier.name + "\"";
+        continue;
+      }
+      refuse_if(carrier.is == Carrier::still,
+                fmt::format("a support on \"{}\", which does not move", on),
+                table.place("on"),
+                on == "head" ? "leave on out, or give [root] a motion of the head"
+                             : "leave on out, or give the body moves = \"keyframes\" or "
+                               "\"poses\"");
+      refuse_if(carrier.is == Carrier::turned,
+                fmt::format("a support on \"{}\", which strands turn: its motion is not "
+                            "prescribed",
+                            on),
+                table.place("on"),
+                "give the body moves = \"keyframes\" or \"poses\", or leave on out");
+      return models::carried(carrier.motion, start);
     }
-    throw InputError(
-        fmt::format("a support on '{}', which is no moving head and no body with a "
-                    "prescribed motion",
-                    on),
-        table.place("on"),
-        known.empty() ? "leave it out: nothing in the scene has such a motion" : known);
+    throw InputError(fmt::format("a support on '{}', which is no body of the scene", on),
+                     table.place("on"),
+                     known.empty()
+                         ? "leave on out: nothing in the scene has a prescribed "
+                           "motion"
+                         : known);
   }
   const auto [t, x, y, z] = columns<4>(table.values().numbers("keyframes"));
   check_ascending(table, "keyframes", t);

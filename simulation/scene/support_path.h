@@ -10,19 +10,22 @@
 /// Motion of a support over time, from its table.
 namespace tress::simulation {
 
-/// Motion of a head or a body that may carry supports.
+/// A head or a body, on which supports may be.
 struct Carrier {
+  /// Kinds of motion: prescribed, none, or computed.
+  enum Motion { moves, still, turned };
   std::string name;           // "head", or that of a body
-  models::RootMotion motion;  // prescribed
+  models::RootMotion motion;  // if it moves
+  Motion is = moves;          // supports are on those that move
 };
-/// Returns the moving head and the bodies of a scene that have a prescribed motion.
+/// Returns the head and the bodies of a scene.
 std::vector<Carrier> carriers(const Scene& scene);
 
 /// Returns the motion that a [[supports]] table describes: that of its carrier among
 /// these, or its keyframes, directions and twist. `start` is the place and the frame of
 /// the held point where the strand begins. They are kept where the table has no rows.
 /// Throws InputError with the location of rows that are not ascending, or of directions
-/// that determine no rotation, and of an unknown carrier.
+/// that determine no rotation, and of a carrier that is unknown or does not carry.
 models::RootMotion support_path(const Table& table, const models::StrandPlace& start,
                                 const std::vector<Carrier>& carriers);
 

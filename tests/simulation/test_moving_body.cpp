@@ -258,10 +258,10 @@ TEST(MovingBody, RefusesKeyframesThatItDoesNotFollow) {
       {"poses = [[0, 0, 0, 0, 0, 0, 0]]", "poses does nothing with moves = \"fixed\""},
       {"keyframes = [[0, 0, 0, 0, 0]]", "leave it out, or choose moves = keyframes"},
       {"moves = \"keyframes\"\nkeyframes = [[1, 0, 0, 0, 0], [0, 0, 0, 0, 0]]",
-       "not in order"},
+       "keyframe 2 at 0 s is not later than keyframe 1 at 1 s"},
       {"moves = \"keyframes\"\naxis = [0, 0, 0]\nkeyframes = [[0, 0, 0, 0, 0], [1, "
        "0, 0, 0, 0]]",
-       "axis"}};
+       "axis has no direction (body.toml"}};
   for (const auto& [keys, reason] : bad) {
     const std::string said = refusal([&] {
       const Scene scene =

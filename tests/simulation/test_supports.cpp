@@ -162,7 +162,8 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
             "a support of strand 1 (held.toml:19:10): the scene has 1 strand, the first "
             "is 0");
   EXPECT_EQ(refused(with("[[supports]]\nkeyframes = [[0, 0, 0, 0], [0, 1, 0, 0]]\n")),
-            "keyframes not ascending in time: 0 s after 0 s (held.toml:19:13): give each "
+            "keyframes not ascending in time: row 2 at 0 s after 0 s (held.toml:19:13): "
+            "give each "
             "a later time than the one before");
   EXPECT_NE(refused(with("[[supports]]\nkeyframes = [[0, nan, 0, 0]]\n")), "");
   EXPECT_EQ(refused(with("[[supports]]\nkind = \"direction\"\nkeyframes = [[0, 1, 0, "
@@ -174,7 +175,8 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
             "(held.toml:19:14): leave it out, or give kind = \"clamp\"");
   EXPECT_EQ(
       refused(with("[[supports]]\nkind = \"clamp\"\ndirections = [[0, 0, 0, 0]]\n")),
-      "a direction of length 0 (held.toml:20:14): give each direction at least one "
+      "row 1 of directions has length 0 (held.toml:20:14): give each direction at least "
+      "one "
       "component that is not 0");
   EXPECT_EQ(refused(with("[[supports]]\nkind = \"clamp\"\ndirections = [[0, 1, 0, 0], "
                          "[1, -2, 0, 0]]\n")),
@@ -182,7 +184,8 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
             "(held.toml:20:14): add a direction between them");
   EXPECT_EQ(
       refused(with("[[supports]]\nkind = \"clamp\"\ntwist_rad = [[1, 0], [0, 3]]\n")),
-      "twist_rad not ascending in time: 0 s after 1 s (held.toml:20:13): give each "
+      "twist_rad not ascending in time: row 2 at 0 s after 1 s (held.toml:20:13): give "
+      "each "
       "a later time than the one before");
   EXPECT_EQ(
       refused(with("[[supports]]\nkind = \"clamp\"\ntwist_rad = [[0, 6]]\n")),
@@ -294,9 +297,22 @@ TEST(Supports, RefuseWhatCannotCarryThem) {
     return refusal([&] { World(scene_of(text)); });
   };
   EXPECT_EQ(refused("[[supports]]\non = \"body\"\n", ""),
-            "a support on 'body', which is no moving head and no body with a prescribed "
-            "motion (held.toml:19:6): leave it out: nothing in the scene has such a "
-            "motion");
+            "a support on 'body', which is no body of the scene (held.toml:19:6): leave "
+            "on out: nothing in the scene has a prescribed motion");
+  EXPECT_EQ(
+      refused("[[supports]]\non = \"head\"\n", ""),
+      "a support on \"head\", which does not move (held.toml:19:6): leave on out, or "
+      "give [root] a motion of the head");
+  EXPECT_EQ(
+      refused("[[supports]]\non = \"body\"\n", "[[effects.body]]\n"),
+      "a support on \"body\", which does not move (held.toml:19:6): leave on out, or "
+      "give the body moves = \"keyframes\" or \"poses\"");
+  EXPECT_EQ(
+      refused("[[supports]]\non = \"body\"\n",
+              "[[effects.body]]\nmoves = \"turns\"\nshape = \"sphere\"\n"),
+      "a support on \"body\", which strands turn: its motion is not prescribed "
+      "(held.toml:19:6): give the body moves = \"keyframes\" or \"poses\", or leave "
+      "on out");
   EXPECT_NE(refused("[[supports]]\non = \"bodi\"\n", moving_body).find("use \"body\""),
             std::string::npos);
   EXPECT_NE(

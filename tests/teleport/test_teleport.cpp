@@ -310,8 +310,9 @@ TEST(Teleport, RefusesWhatCannotBeCarried) {
   EXPECT_EQ(refused(aside, ""), "");
   const std::string rows = "motion = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], ";
   expect(refused(rows + "[1, 0, 0, 0, 0], [1, 1, 0, 0, 0], [1, 2, 0, 0, 0]]\n", ""),
-         "not in order");
-  expect(refused(rows + "[1, 0, 0, 0, 0], [0.5, 1, 0, 0, 0]]\n", ""), "not in order");
+         "keyframe 4 is the third at 1 s");
+  expect(refused(rows + "[1, 0, 0, 0, 0], [0.5, 1, 0, 0, 0]]\n", ""),
+         "keyframe 3 at 0.5 s is not later than keyframe 2 at 1 s");
   expect(refused(rows + "[nan, 0, 0, 0, 0]]\n", ""), "keyframes");
   expect(refused(aside, "[effects.tether]\n"), "tether, which holds a point");
   // Their stages lie beyond the end of a step, or see it.
