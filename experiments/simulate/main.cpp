@@ -149,13 +149,14 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
       strands > held_at_once.strands ||
       (strands >= many && !no_lanes(job.outline.scene, pack_of(a).number));
   job.head = a.as == "batch" || (a.as == "auto" && faster && !no);
-  if (a.as == "batch" && no) throw InputError(no->reason, file, no->remedy);
+  if (a.as == "batch" && no)
+    throw InputError(no->reason, place_of(*no, file), no->remedy);
   if (a.as == "auto" && no && strands > held_at_once.strands) {
     throw InputError(
         fmt::format("{} strands are too many to run one by one (at most {}), "
                     "and not as a batch: {}",
                     strands, held_at_once.strands, no->reason),
-        file, no->remedy);
+        place_of(*no, file), no->remedy);
   }
   if (!job.head && a.device == "gpu") {
     throw InputError("--device gpu requires --as batch", file,
@@ -164,13 +165,15 @@ Job job_of(const std::string& file, const Arguments& a, const Ranks& ranks) {
   if (!job.head && a.bits != 64) {
     throw InputError("single precision is for batches, and this runs strand by strand" +
                          (no ? ": " + no->reason : std::string()),
-                     file, no ? no->remedy : "give --as batch, or --precision 64");
+                     no ? place_of(*no, file) : file,
+                     no ? no->remedy : "give --as batch, or --precision 64");
   }
   if (!job.head && a.frames_given) {
     throw InputError(
         "--frames is for the .h5 of a batch, and this runs strand by strand" +
             (no ? ": " + no->reason : std::string()),
-        file, no ? no->remedy : "give --as batch, or leave out --frames");
+        no ? place_of(*no, file) : file,
+        no ? no->remedy : "give --as batch, or leave out --frames");
   }
   if (!job.head && ranks.size() > 1) {
     throw InputError("strands that run one by one are not shared by ranks", file,

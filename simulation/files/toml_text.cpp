@@ -141,6 +141,17 @@ std::string place_of(const toml::source_region& source, const std::string& file)
   return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
 }
 
+std::string place_of_key(const toml::table& root, std::string_view key,
+                         const std::string& file) {
+  while (!key.empty()) {
+    const auto found = root.at_path(key);
+    if (found) return place_of(found.node()->source(), file);
+    const std::size_t dot = key.rfind('.');
+    key = key.substr(0, dot == key.npos ? 0 : dot);
+  }
+  return file;
+}
+
 toml::table parse_toml(const std::string& text, const std::string& file) {
   refuse_nul_bytes(text, file);
   refuse_deep(text, file);

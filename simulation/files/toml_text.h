@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <string>
+#include <string_view>
 
 #include "contract/layers.h"
 
@@ -10,6 +11,10 @@ namespace tress::simulation {
 
 /// file:line:column of the start of `source`.
 std::string place_of(const toml::source_region& source, const std::string& file);
+/// file:line:column of the key "table.key" of a file; of its table if it does not give
+/// the key, and the file alone if it gives neither.
+std::string place_of_key(const toml::table& root, std::string_view key,
+                         const std::string& file);
 
 /// Size limit of a TOML file; the rest of a larger one is not read.
 constexpr std::size_t most_toml_bytes = 4 << 20;

@@ -54,7 +54,8 @@ std::optional<NoHead> no_classes(const SceneOutline& outline) {
   if (outline.scene.interaction() == nullptr) return {};
   return NoHead{"strands of several numbers of elements that touch each other",
                 "give all equally many elements, or leave out "
-                "[effects.strand_interaction]"};
+                "[effects.strand_interaction]",
+                "effects.strand_interaction"};
 }
 
 }  // namespace tress::simulation

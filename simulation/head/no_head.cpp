@@ -6,23 +6,17 @@
 
 #include "models/head/head.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
-#include "simulation/scene/turning_bodies.h"
 #include "simulation/table/along.h"
 
 namespace tress::simulation {
 namespace {
 
-std::span<const StrandSource> sources_of(const Scene& scene) {
-  if (scene.tables == nullptr) return {};
-  return scene.tables->sources;
-}
-
 /// An option of the model that lanes do not have.
 NoHead no_option(const Parameters& p, const char* key, std::string remedy) {
-  return {fmt::format("{} = \"{}\"", key, p.word(key)), std::move(remedy)};
+  return {fmt::format("{} = \"{}\"", key, p.word(key)), std::move(remedy),
+          std::string("model.") + key};
 }
 
 /// Whether steps are solved with all derivatives of the residual.
@@ -51,7 +45,8 @@ std::optional<NoHead> no_jacobian(const Scene& scene, const char* of_one) {
                 fmt::format("give [model] jacobian = \"{}\"{}", needed,
                             exact   ? " to " + scene.integrator
                             : other ? ""
-                                    : ", or [integrator] id = \"backward_euler\"")};
+                                    : ", or [integrator] id = \"backward_euler\""),
+                "model.jacobian"};
 }
 
 std::optional<NoHead> no_integrator(const Scene& scene) {
@@ -59,7 +54,8 @@ std::optional<NoHead> no_integrator(const Scene& scene) {
   return NoHead{scene.integrator,
                 "use [integrator] id = \"linearly_implicit_euler\", "
                 "\"linearly_implicit_midpoint\", \"backward_euler\" or "
-                "\"tr_bdf2\""};
+                "\"tr_bdf2\"",
+                "integrator.id"};
 }
 
 /// An option of the model that lanes have with this word only.
@@ -97,7 +93,8 @@ std::optional<NoHead> no_rods(const Scene& scene) {
         "der by linearly_implicit_midpoint, whose single correction needs "
         "all derivatives of the internal friction",
         "use [integrator] id = \"linearly_implicit_euler\" or "
-        "\"backward_euler\""};
+        "\"backward_euler\"",
+        "integrator.id"};
   }
   return no_jacobian(scene, "elastic");
 }
@@ -112,16 +109,17 @@ std::optional<NoHead> no_quaternions(const Scene& scene) {
     return NoHead{fmt::format("{} with a tolerance, in whose long steps lanes find no "
                               "solution",
                               scene.model->id),
-                  "give [integrator] dt_s instead of position_tol_rel"};
+                  "give [integrator] dt_s instead of position_tol_rel",
+                  "integrator.position_tol_rel"};
   }
   if (scene.integrator == "tr_bdf2" && scene.model->id == "xpbd_cosserat") {
     return NoHead{
         "tr_bdf2 on xpbd_cosserat, in whose long steps lanes leave the solution",
-        "use [integrator] id = \"backward_euler\""};
+        "use [integrator] id = \"backward_euler\"", "integrator.id"};
   }
   if (has_exact_tangent(scene)) return {};
   return NoHead{fmt::format("{} with an exact Jacobian", scene.integrator),
-                "use [integrator] id = \"backward_euler\""};
+                "use [integrator] id = \"backward_euler\"", "integrator.id"};
 }
 
 std::optional<NoHead> no_model(const Scene& scene) {
@@ -134,7 +132,8 @@ std::optional<NoHead> no_model(const Scene& scene) {
     return NoHead{std::string(scene.model->id),
                   "use [model] id = \"super_helix\", \"super_clothoid\", "
                   "\"articulated_chain\", \"mass_spring\", \"der\", \"corde\" or "
-                  "\"xpbd_cosserat\""};
+                  "\"xpbd_cosserat\"",
+                  "model.id"};
   }
   if (auto no = no_integrator(scene)) return no;
   if (p.word("modes") == "bend_planar") {
@@ -145,59 +144,68 @@ std::optional<NoHead> no_model(const Scene& scene) {
       p.word("rotary_inertia") == "off") {
     return NoHead{
         "tr_bdf2 and twist without inertia, whose acceleration at the start is unknown",
-        "give [model] rotary_inertia = \"on\" or modes = \"bend\""};
+        "give [model] rotary_inertia = \"on\" or modes = \"bend\"",
+        "model.rotary_inertia"};
   }
   if (p.word("solver") != "recursive") {
     return no_option(p, "solver", "leave out [model] solver");
   }
   if (p.whole("quadrature") == 1 || p.whole("quadrature") > 16) {
     return NoHead{fmt::format("{} points of an element", p.whole("quadrature")),
-                  "give [model] quadrature = 0, or 2 to 16"};
+                  "give [model] quadrature = 0, or 2 to 16", "model.quadrature"};
   }
   return {};
 }
 
 std::optional<NoHead> no_method(const Scene& scene) {
   if (has_exact_tangent(scene) && scene.options.refresh != Refresh::every_iteration) {
-    return NoHead{"kept matrices", "leave out [integrator] refresh"};
+    return NoHead{"kept matrices", "leave out [integrator] refresh",
+                  "integrator.refresh"};
   }
   if (scene.rest == RestStrains::inverse) {
-    return NoHead{"rest = \"inverse\"", "leave out rest"};
+    return NoHead{"rest = \"inverse\"", "leave out rest", "rest"};
   }
   const Options& options = scene.options;
   if (options.max_work > 0) {
-    return NoHead{"max_work", "leave out [integrator] max_work"};
+    return NoHead{"max_work", "leave out [integrator] max_work", "integrator.max_work"};
   }
   if (options.tolerance > 0 && options.max_steps != Options{}.max_steps) {
     return NoHead{"max_steps with a tolerance",
-                  "give [integrator] min_step_s instead of max_steps"};
+                  "give [integrator] min_step_s instead of max_steps",
+                  "integrator.max_steps"};
   }
   return {};
 }
 
 std::optional<NoHead> no_strands(const Scene& scene) {
-  for (const StrandSource& source : sources_of(scene)) {
+  const std::span<const StrandSource> sources =
+      scene.tables == nullptr ? std::span<const StrandSource>() : scene.tables->sources;
+  for (const StrandSource& source : sources) {
     const Parameters& p = source.table.values();
     if (source.file && p.word("mesh") != "equal") {
-      return NoHead{"elements of different lengths", "give [groom] mesh = \"equal\""};
+      return NoHead{"elements of different lengths", "give [groom] mesh = \"equal\"", "",
+                    source.table.place("mesh")};
     }
     if (p.number("grading") != 1) {
-      return NoHead{"elements of different lengths", "leave out grading"};
+      return NoHead{"elements of different lengths", "leave out grading", "",
+                    source.table.place("grading")};
     }
-    if (!varied_key(source.table).empty()) {
+    if (const std::string_view key = varied_key(source.table); !key.empty()) {
       return NoHead{"a section or material that varies along the strand",
-                    "leave out widths, and the keys that end with _along"};
+                    "leave out widths, and the keys that end with _along", "",
+                    source.table.place(key)};
     }
   }
   if (scene.tables != nullptr && scene.tables->skin != nullptr) {
     return NoHead{"roots that move with a skin, each in its own way",
-                  "use another [root] motion"};
+                  "use another [root] motion", "root.motion"};
   }
   if (!scene.strands.front().root.teleports.empty()) {
-    return NoHead{"roots that teleport", "leave out rows with the same time"};
+    return NoHead{"roots that teleport", "leave out rows with the same time",
+                  "root.motion"};
   }
   if (scene.strands.front().free_root) {
-    return NoHead{"free roots", "use another [root] motion"};
+    return NoHead{"free roots", "use another [root] motion", "root.motion"};
   }
   return {};
 }
@@ -218,10 +226,11 @@ std::optional<NoHead> no_effects(const Scene& scene) {
   const std::string bodies = only_with_bodies(scene);
   for (const EffectChoice& choice : scene.effects) {
     const auto effect = make_effect(scene, choice);
+    const std::string key = fmt::format("effects.{}", choice.entry->id);
     if (effect != nullptr) {
       if (auto no = models::refused_by_heads(*effect)) {
         return NoHead{fmt::format("[effects.{}], as {}", choice.entry->id, no->reason),
-                      "leave it out"};
+                      "leave it out", key};
       }
       if (steps_rods(scene) && !has_exact_tangent(scene) &&
           effect->rigid_contact() != nullptr &&
@@ -229,14 +238,16 @@ std::optional<NoHead> no_effects(const Scene& scene) {
         return NoHead{fmt::format("[effects.{}] with friction on der by {}, whose single "
                                   "correction needs all derivatives of the friction",
                                   choice.entry->id, scene.integrator),
-                      "give friction = 0, or use [integrator] id = \"backward_euler\""};
+                      "give friction = 0, or use [integrator] id = \"backward_euler\"",
+                      key};
       }
       if (!bodies.empty() && needs_one_correction(scene, choice)) {
         return NoHead{fmt::format("[effects.{}] with {}", choice.entry->id, bodies),
-                      with_others(scene)};
+                      with_others(scene), key};
       }
     } else if (!bodies.empty()) {
-      return NoHead{"[effects.strand_interaction] with " + bodies, with_others(scene)};
+      return NoHead{"[effects.strand_interaction] with " + bodies, with_others(scene),
+                    key};
     }
   }
   return {};
@@ -260,53 +271,8 @@ std::optional<NoHead> no_number(const Scene& scene, models::HeadNumber number) {
   return NoHead{
       fmt::format("position_tol_rel = {:g} in {} bits, which do not resolve it",
                   tolerance, narrow ? 32 : 64),
-      narrow ? "give --precision 64, or a larger tolerance" : "give a larger tolerance"};
-}
-
-/// Strands that are no systems of their own, or that are not all simulated.
-std::optional<NoHead> no_strand_alone(const Scene& scene) {
-  for (const StrandSource& source : sources_of(scene)) {
-    if (source.groom && source.table.values().whole("guides") > 0) {
-      return NoHead{"all strands of a batch are simulated", "leave out guides"};
-    }
-  }
-  if (SceneJoints(scene).any()) {
-    return NoHead{"[joints] make one system of several strands",
-                  "leave them out, or give --as strands"};
-  }
-  if (has_turning_bodies(scene)) {
-    return NoHead{"[effects.body] moves = \"turns\" makes one system of strand and body",
-                  "use another motion, or give --as strands"};
-  }
-  if (scene.friction() != nullptr) {
-    return NoHead{"[effects.strand_friction] solves the contacts of all strands together",
-                  "leave it out, or give --as strands"};
-  }
-  if (scene.mesh() != nullptr) {
-    return NoHead{"[effects.control_mesh] ties all strands into one mesh",
-                  "leave it out, or give --as strands"};
-  }
-  if (scene.rest == RestStrains::inverse && scene.unstable == Unstable::drop) {
-    return NoHead{"unstable = \"drop\" leaves strands out before the run",
-                  "use unstable = \"stiffen\" or \"keep\", or give --as strands"};
-  }
-  const Parameters* interaction = scene.interaction();
-  if (interaction == nullptr) return {};
-  if (!scene.strands.front().root.teleports.empty()) {
-    return NoHead{
-        "strands that touch exchange their places once a step, and a teleport "
-        "is within a step",
-        "give --as strands, or leave out rows with the same time"};
-  }
-  if (interaction->word("coupling") == "monolithic") {
-    return NoHead{"strands with monolithic coupling are one system",
-                  "give [effects.strand_interaction] coupling = \"lagged\""};
-  }
-  if (scene.options.tolerance > 0) {
-    return NoHead{"strands that touch and choose their steps share their intervals",
-                  "give dt_s instead of position_tol_rel, or --as strands"};
-  }
-  return {};
+      narrow ? "give --precision 64, or a larger tolerance" : "give a larger tolerance",
+      "integrator.position_tol_rel"};
 }
 
 }  // namespace
@@ -331,37 +297,14 @@ std::optional<HeadMethod> head_method(const Scene& scene) {
 
 std::optional<NoHead> no_lanes(const Scene& scene, models::HeadNumber number) {
   if (const SceneSupports supports(scene); supports.any()) {
-    return NoHead{supports.table_name(), "leave out " + supports.table_name()};
+    return NoHead{supports.table_name(), "leave out " + supports.table_name(),
+                  "supports"};
   }
   if (auto no = no_model(scene)) return no;
   if (auto no = no_method(scene)) return no;
   if (auto no = no_number(scene, number)) return no;
   if (auto no = no_strands(scene)) return no;
   return no_effects(scene);
-}
-
-std::optional<NoHead> no_head(const SceneOutline& outline, models::HeadNumber number) {
-  const Scene& scene = outline.scene;
-  if (scene.strands.empty()) {
-    return NoHead{fmt::format("{} brings its own geometry and is one system: there are "
-                              "no strands to batch",
-                              scene.model->id),
-                  "give --as strands"};
-  }
-  if (auto no = no_strand_alone(scene)) return no;
-  const auto without = no_lanes(scene, number);
-  if (without && number != models::HeadNumber::float64) {
-    const bool named = without->remedy.find("--precision 64") != std::string::npos;
-    return NoHead{"no SIMD lanes for " + without->reason,
-                  without->remedy + (named ? "" : ", or --precision 64")};
-  }
-  const Options& options = scene.options;
-  if (!scene.chooses_steps() &&
-      1 / scene.frame_rate / options.step > static_cast<double>(options.max_steps)) {
-    return NoHead{"more than max_steps steps of dt_s from frame to frame",
-                  "give a longer dt_s, or more frames_per_s"};
-  }
-  return {};
 }
 
 }  // namespace tress::simulation

@@ -14,7 +14,13 @@ namespace tress::simulation {
 /// Why a scene does not run as asked for, and what would make it so.
 struct NoHead {
   std::string reason, remedy;  // cause and remedy for messages
+  std::string key = {};        // of the scene that is the cause: "table.key"
+  std::string place = {};      // file:line:column of the cause, where it is known
 };
+
+/// Returns the location of the cause in a scene's file; the file alone if it is not
+/// there.
+std::string place_of(const NoHead& no, const std::string& file);
 
 /// Why the strands of a scene do not run in SIMD lanes with such numbers: the part of the
 /// scene that has none. They are then systems of their own (ReplicatedHead).

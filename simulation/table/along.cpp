@@ -20,9 +20,9 @@ using models::Segment;
 using models::Shape;
 using models::Strand;
 
-constexpr double most_factor = 1e3, most_curvature = 1e6;
+constexpr double most_factor = 1e3, largest_curvature = 1e6;
 
-constexpr Parameter keys[] = {
+constexpr Parameter keys_along[] = {
     {.name = "radius_along",
      .help = "radius over that of the material: rows of [arc length over the strand's "
              "length, factor], linear between rows and constant beyond them. A taper is "
@@ -54,8 +54,8 @@ constexpr Parameter keys[] = {
      .help = "shape = \"along\": natural twist and curvatures about e1 and e2, rows of "
              "[arc length over the strand's length, twist, curvature, curvature] (1/m), "
              "interpolated as radius_along",
-     .min = -most_curvature,
-     .max = most_curvature,
+     .min = -largest_curvature,
+     .max = largest_curvature,
      .components = 4,
      .rows = true,
      .fallback = "0,0,0,0"},
@@ -121,7 +121,7 @@ void change(const Strand& strand, Segment& segment, Change apply) {
 
 }  // namespace
 
-std::span<const Parameter> along_parameters() { return keys; }
+std::span<const Parameter> along_parameters() { return keys_along; }
 
 std::string_view varied_key(const Table& table) {
   if (takes_widths(table)) return "widths";

@@ -226,6 +226,7 @@ TEST(Along, RunsAsABatchWithoutLanes) {
       no_lanes(scene_of(text_of("super_helix", 4, varied)), models::HeadNumber::float64);
   ASSERT_TRUE(no);
   EXPECT_NE(no->reason.find("varies along the strand"), std::string::npos);
+  EXPECT_EQ(place_of(*no, "along.toml"), "along.toml:15:16");
 }
 
 /// A file of this ending and content, and the scene of its strands.
