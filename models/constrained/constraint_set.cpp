@@ -149,7 +149,7 @@ void ConstraintSet::bind(const Pattern& s) {
 void ConstraintSet::move_anchors(double t) noexcept {
   for (std::size_t k = 0; k < anchors_.size(); ++k) {
     if (!anchors_[k].motion) continue;
-    const CurvePoint p = anchors_[k].motion->at(t);
+    const CurvePoint p = anchors_[k].motion->at(t, since_);
     store3(p.c, &place_[3 * k]);
     store3(p.d1, &velocity_[3 * k]);
     store3(p.d2, &acceleration_[3 * k]);

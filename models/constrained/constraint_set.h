@@ -7,6 +7,7 @@
 #include "contract/pattern.h"
 #include "models/constrained/constraint.h"
 #include "models/constrained/curve.h"
+#include "models/motion/by_time.h"
 
 namespace tress::models {
 
@@ -35,6 +36,8 @@ class ConstraintSet final : public ConstraintForm {
   void couple(std::vector<std::vector<int>>& columns) const;
   /// Looks up the positions of curvature entries in S; call once, before add_curvature.
   void bind(const Pattern& s);
+  /// Moves anchors from now on as after the teleport at t (Teleports::follow).
+  void follow(double t) { since_ = t; }
 
   const Pattern& pattern() const override { return gradient_; }
   void scale(Out g_typ) const override;
@@ -72,7 +75,8 @@ class ConstraintSet final : public ConstraintForm {
   int parameters_;
   int coordinates_;
   double extent_;
-  Pattern gradient_;  // pattern of G^T
+  double since_ = by_time;  // last teleport, s
+  Pattern gradient_;        // pattern of G^T
   std::vector<Item> items_;
   std::vector<int>
       input_;  // per local input: coordinate, or coordinates + 3 anchor + axis

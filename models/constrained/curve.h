@@ -21,6 +21,8 @@ class Curve {
   virtual ~Curve() = default;
   /// Evaluates the curve at s.
   virtual CurvePoint at(double s) const noexcept = 0;
+  /// Evaluates at s, as after the teleport at `since` (by_time.h).
+  virtual CurvePoint at(double s, double /*since*/) const noexcept { return at(s); }
 };
 
 /// c(s) = origin + drift w + sum_{k=1} cosine_k cos(k w) + sine_k sin(k w),  w = rate s +

@@ -128,7 +128,7 @@ std::shared_ptr<const Body> Body::with_offsets(std::vector<double> more) const {
 }
 
 void Body::add_load(double t, const Points& p, InOut f) const noexcept {
-  const BodyPose now = contact_.body.pose(t);
+  const BodyPose now = contact_.body.pose(t, p.since);
   contact_.body.for_near<RigidBody::With::velocity>(
       now, p, [&](std::size_t point) { return law(point).offset; },
       [&](const RigidBody::Near& at) {
@@ -141,7 +141,7 @@ void Body::add_load(double t, const Points& p, InOut f) const noexcept {
 
 void Body::add_derivatives(double t, const Points& p, double pos, double vel,
                            InOut blocks) const noexcept {
-  const BodyPose now = contact_.body.pose(t);
+  const BodyPose now = contact_.body.pose(t, p.since);
   const Mat3 spin = cross_matrix(now.frame.back(now.omega));
   contact_.body.for_near<RigidBody::With::curvature>(
       now, p, [&](std::size_t point) { return law(point).offset; },
@@ -156,7 +156,8 @@ void Body::add_derivatives(double t, const Points& p, double pos, double vel,
 double Body::potential(double t, const Points& p) const noexcept {
   double sum = 0;
   contact_.body.for_near<RigidBody::With::position>(
-      contact_.body.pose(t), p, [&](std::size_t point) { return law(point).offset; },
+      contact_.body.pose(t, p.since), p,
+      [&](std::size_t point) { return law(point).offset; },
       [&](const RigidBody::Near& at) {
         sum += p.length[at.point] * law(at.point).normal().energy(at.to);
       });
@@ -164,7 +165,7 @@ double Body::potential(double t, const Points& p) const noexcept {
 }
 
 double Body::power(double t, const Points& p) const noexcept {
-  const BodyPose now = contact_.body.pose(t);
+  const BodyPose now = contact_.body.pose(t, p.since);
   double sum = 0;
   contact_.body.for_near<RigidBody::With::velocity>(
       now, p, [&](std::size_t point) { return law(point).offset; },

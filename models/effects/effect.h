@@ -11,6 +11,7 @@
 #include "math/frame.h"
 #include "math/vec3.h"
 #include "models/coupling/coupling.h"
+#include "models/motion/by_time.h"
 
 namespace tress::models {
 
@@ -25,6 +26,8 @@ struct Points {
   int held = 0;   // the first so many move as the root prescribes, whatever their load
   In arc{};       // (count) arc length from the root at rest, m
   double longest = 0;  // arc length of the farthest tip, m
+  /// Last teleport that was carried out (s), or by_time.
+  double since = by_time;
 };
 
 /// Quantities that a model must compute before it calls add_load, add_derivatives or
@@ -91,8 +94,8 @@ class Multipliers {
   /// Appends those of the points that are taken.
   virtual void touches(double t, const Points& p,
                        std::vector<RigidTouch>& to) const noexcept = 0;
-  /// Sets the force on a point that is taken, N.
-  virtual void set_force(double t, std::size_t point, double normal,
+  /// Sets the force on a point that is taken, N; `since` as in Points.
+  virtual void set_force(double t, double since, std::size_t point, double normal,
                          const Vec& tangential) noexcept = 0;
   /// Ends take(): the effect holds the forces again.
   virtual void give_back(const Points& p) noexcept = 0;

@@ -130,14 +130,14 @@ Vec ExactBody::place(const BodyPose& now, const Points& p, std::size_t point) {
 }
 
 void ExactBody::places(double t, const Points& p, Out x) const noexcept {
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   for (std::size_t i = 0; i < penalties_.size(); ++i) {
     store3(place(now, p, i), &x[3 * i]);
   }
 }
 
 void ExactBody::slides(double t, const Points& p, Out u) const noexcept {
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   for (std::size_t i = 0; i < penalties_.size(); ++i) {
     const Vec surface = now.surface_velocity(load3(&p.x[3 * i]));
     const Vec along = now.frame.back(load3(&p.v[3 * i]) - surface);
@@ -177,7 +177,7 @@ void ExactBody::begin(double t, double tau, const Points& p, In x0) noexcept {
     hold(i, contact);
   }
   body_->for_near<RigidBody::With::velocity>(
-      body_->pose(t - tau), p,
+      body_->pose(t - tau, p.since), p,
       [&](std::size_t) {
         return law_.restitution > 0 ? everywhere : law_.compliance.offset;
       },
@@ -207,7 +207,7 @@ double ExactBody::improve(double t, const Points& p) noexcept {
     change_[point] = {found.normal - was.normal, found.tangential - was.tangential};
     hold(point, found);
   };
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   const auto slide = [&](std::size_t point) {
     const ExactContact::Penalty& from = penalties_[point];
     return (1 / from.tau) * (place(now, p, point) - from.from);
@@ -277,7 +277,7 @@ double ExactBody::approach(double t, const Points& p) noexcept {
   if (!law_.rigid) return 0;
   double fastest = 0;
   body_->for_near<RigidBody::With::velocity>(
-      body_->pose(t), p,
+      body_->pose(t, p.since), p,
       [&](std::size_t point) { return held(point).normal > 0 ? everywhere : nowhere; },
       [&](const RigidBody::Near& at) {
         fastest = std::max(fastest, -dot(at.to.gradient, at.u));
@@ -299,7 +299,7 @@ void ExactBody::release() noexcept {
 void ExactBody::take(double t, const Points& p) noexcept {
   for (ExactContact::Penalty& penalty : penalties_) penalty.rho = 0;
   body_->for_near<RigidBody::With::position>(
-      body_->pose(t), p,
+      body_->pose(t, p.since), p,
       [&](std::size_t point) {
         if (taken_[point] || !touchable(p, point)) return nowhere;
         const HeldContact contact = held(point);
@@ -311,7 +311,7 @@ void ExactBody::take(double t, const Points& p) noexcept {
 
 void ExactBody::touches(double t, const Points& p,
                         std::vector<RigidTouch>& to) const noexcept {
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   body_->for_near<RigidBody::With::velocity>(
       now, p, [&](std::size_t point) { return taken_[point] ? everywhere : nowhere; },
       [&](const RigidBody::Near& at) {
@@ -323,11 +323,11 @@ void ExactBody::touches(double t, const Points& p,
       });
 }
 
-void ExactBody::set_force(double t, std::size_t point, double normal,
+void ExactBody::set_force(double t, double since, std::size_t point, double normal,
                           const Vec& tangential) noexcept {
   HeldContact contact = held(point);
   contact.normal = normal;
-  contact.tangential = body_->pose(t).frame.back(tangential);
+  contact.tangential = body_->pose(t, since).frame.back(tangential);
   hold(point, contact);
 }
 
@@ -348,7 +348,7 @@ void ExactBody::for_touching(const BodyPose& now, const Points& p, See see) cons
 }
 
 void ExactBody::add_load(double t, const Points& p, InOut f) const noexcept {
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   for_touching<RigidBody::With::velocity>(
       now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
         double* load = &f[3 * at.point];
@@ -358,7 +358,7 @@ void ExactBody::add_load(double t, const Points& p, InOut f) const noexcept {
 
 void ExactBody::add_derivatives(double t, const Points& p, double pos, double vel,
                                 InOut blocks) const noexcept {
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   const Mat3 spin = cross_matrix(now.frame.back(now.omega));
   for_touching<RigidBody::With::curvature>(
       now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {
@@ -372,7 +372,7 @@ double ExactBody::potential(double t, const Points& p) const noexcept {
   if (law_.rigid) return 0;
   double sum = 0;
   body_->for_near<RigidBody::With::position>(
-      body_->pose(t), p, [&](std::size_t) { return law_.compliance.offset; },
+      body_->pose(t, p.since), p, [&](std::size_t) { return law_.compliance.offset; },
       [&](const RigidBody::Near& at) {
         sum += p.length[at.point] * law_.compliance.energy(at.to);
       });
@@ -380,7 +380,7 @@ double ExactBody::potential(double t, const Points& p) const noexcept {
 }
 
 double ExactBody::power(double t, const Points& p) const noexcept {
-  const BodyPose now = body_->pose(t);
+  const BodyPose now = body_->pose(t, p.since);
   double sum = 0;
   for_touching<RigidBody::With::velocity>(
       now, p, [&](const RigidBody::Near& at, const ExactContact::State& state) {

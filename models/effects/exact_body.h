@@ -51,7 +51,7 @@ class ExactBody final : public Effect, private Multipliers {
   void take(double t, const Points& p) noexcept override;
   void touches(double t, const Points& p,
                std::vector<RigidTouch>& to) const noexcept override;
-  void set_force(double t, std::size_t point, double normal,
+  void set_force(double t, double since, std::size_t point, double normal,
                  const Vec& tangential) noexcept override;
   void give_back(const Points& p) noexcept override;
   std::size_t tracked() const noexcept override { return 3 * penalties_.size(); }

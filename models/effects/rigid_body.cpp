@@ -249,9 +249,9 @@ RigidBody::RigidBody(BodyShape shape, const StrandPlace& place, double offset,
   }
 }
 
-BodyPose RigidBody::pose(double t) const {
+BodyPose RigidBody::pose(double t, double since) const {
   if (!motion_) return {place_.x, place_.frame, {}, {}};
-  const RootPose now = motion_->at(t);
+  const RootPose now = motion_->at(t, since);
   const auto carry = [&](const Vec& a) { return now.frame * motion_->frame.back(a); };
   const Vec arm = carry(place_.x - motion_->position);
   const Frame& f = place_.frame;

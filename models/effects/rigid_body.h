@@ -37,8 +37,8 @@ class RigidBody {
   RigidBody(BodyShape shape, const StrandPlace& place, double offset,
             std::optional<RootMotion> motion);
 
-  /// Returns position and motion at t (s).
-  BodyPose pose(double t) const;
+  /// Returns position and motion at t (s), as after the teleport at `since`.
+  BodyPose pose(double t, double since = by_time) const;
   /// Returns the first breakpoint of the motion after t (s), or infinity.
   double next_breakpoint(double t) const {
     return motion_ ? motion_->next_breakpoint(t)

@@ -62,6 +62,12 @@ void StrandBlock::teleport(double t, InOut q, InOut v) {
   }
 }
 
+void StrandBlock::follow(double t) {
+  for (const auto& strand : strands_) {
+    if (Teleports* const own = teleports(*strand)) own->follow(t);
+  }
+}
+
 std::string StrandBlock::not_finite(double t, In q, In v) {
   for (std::size_t k = 0; k < strands(); ++k) {
     const std::string words = strands_[k]->not_finite(t, part(q, k), part(v, k));

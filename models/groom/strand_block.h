@@ -30,6 +30,7 @@ class StrandBlock : public System,
   /// Returns the first teleport of any strand.
   double next_teleport(double t) const override;
   void teleport(double t, InOut q, InOut v) override;
+  void follow(double t) override;
   std::string not_finite(double t, In q, In v) override;
   /// Null unless all strands have Energetics.
   Energetics* energetics() override;

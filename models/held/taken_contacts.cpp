@@ -24,6 +24,7 @@ std::size_t TakenContacts::take(double t, In q, In v, In q_next, In v_next) noex
   for (const auto& effect : held_) effect->multipliers()->take(t, p);
   p = points_at_(t, q, v);
   t_ = t;
+  since_ = p.since;
   q_.assign(q.begin(), q.end());
   v_.assign(v.begin(), v.end());
   taken_.clear();
@@ -49,7 +50,7 @@ void TakenContacts::set_forces(In f) noexcept {
   for (std::size_t i = 0; i < taken_.size(); ++i) {
     const Taken& contact = taken_[i];
     const Vec force = load3(&f[3 * i]);
-    contact.of->set_force(t_, contact.point, force.x,
+    contact.of->set_force(t_, since_, contact.point, force.x,
                           force.y * contact.axes.r1 + force.z * contact.axes.r2);
   }
 }

@@ -46,6 +46,7 @@ class TakenContacts final : public Complementarity {
   PointsAt points_at_;
   std::vector<double> before_;  // multipliers before the first take(), empty: let go
   double t_ = 0;                // the state that the laws are linear about
+  double since_ = by_time;      // last teleport before it
   std::vector<double> q_, v_;
   std::vector<Taken> taken_;
   std::vector<RigidTouch> touches_;  // scratch, as are those below

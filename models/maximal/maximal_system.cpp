@@ -158,6 +158,7 @@ Points MaximalSystem::points(Needs wanted) noexcept {
   Points p{static_cast<int>(mass_.size()), {}, {}, {}, mass_, length_};
   p.arc = arc_;
   p.longest = strand_.length;
+  p.since = strand_.root.since;
   p.held = strand_.clamped && strand_.mass.front().at.nodes == 1 ? 1 : 0;
   const auto fill = [&](In of_nodes, std::vector<double>& to) {
     for (std::size_t i = 0; i < strand_.mass.size(); ++i) {
@@ -365,6 +366,13 @@ void MaximalSystem::teleport(double t, InOut q, InOut v) {
   strand_.elasticity->displace(by, z_, rate_);
   std::ranges::copy(In(z_).subspan(held()), q.begin());
   std::ranges::copy(In(rate_).subspan(held()), v.begin());
+  follow(t);
+}
+
+void MaximalSystem::follow(double t) {
+  strand_.root.since = t;
+  pose_time_ = std::numeric_limits<double>::quiet_NaN();
+  if (strand_.constraints) strand_.constraints->follow(t);
 }
 
 ExplicitForm* MaximalSystem::explicit_form() {

@@ -130,6 +130,7 @@ class MaximalSystem final : public System,
 
   double next_teleport(double t) const override { return strand_.root.next_teleport(t); }
   void teleport(double t, InOut q, InOut v) override;
+  void follow(double t) override;
 
   void accelerations(double t, In q, In v, In a, Out x) override;
 

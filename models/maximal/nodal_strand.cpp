@@ -15,8 +15,9 @@ class RootPath final : public Curve {
  public:
   RootPath(RootMotion motion, const Vec& offset)
       : motion_(std::move(motion)), offset_(offset) {}
-  CurvePoint at(double t) const noexcept override {
-    const RootPose pose = motion_.at(t);
+  CurvePoint at(double t) const noexcept override { return RootPath::at(t, by_time); }
+  CurvePoint at(double t, double since) const noexcept override {
+    const RootPose pose = motion_.at(t, since);
     const Vec d = pose.frame * offset_, turned = cross(pose.omega, d);
     return {pose.x + d,
             pose.v + turned,

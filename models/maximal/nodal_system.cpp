@@ -95,6 +95,7 @@ Points NodalSystem::points(Needs wanted) noexcept {
   p.held = 2;  // the first edge is clamped
   p.arc = parts_.node_arc;
   p.longest = parts_.node_arc.back();
+  p.since = parts_.root.since;
   const std::size_t nodes = motion_.x.size();
   const auto fill = [nodes](std::vector<double>& to, auto&& of_node) {
     for (std::size_t i = 0; i < nodes; ++i) store3(of_node(i), &to[3 * i]);

@@ -54,7 +54,8 @@ class NodalSystem final : public System,
   }
   double next_teleport(double t) const override { return parts_.root.next_teleport(t); }
   /// Curvatures are relative to the root.
-  void teleport(double /*t*/, InOut /*q*/, InOut /*v*/) override {}
+  void teleport(double t, InOut /*q*/, InOut /*v*/) override { follow(t); }
+  void follow(double t) override { parts_.root.since = t; }
   std::string not_finite(double t, In q, In v) override;
 
   ExplicitForm* explicit_form() override { return this; }

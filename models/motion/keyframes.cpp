@@ -113,7 +113,9 @@ SignalValue value_of(const Knots& k, double t) {
   const bool before = t <= k.t.front(), behind = t >= k.t.back();
   if (before && (k.rests_before || k.t.size() == 1)) return {k.x.front(), 0, 0};
   if (behind && (k.rests_behind || k.t.size() == 1)) return {k.x.back(), 0, 0};
-  t = std::clamp(t, k.t.front(), k.t.back());
+  // An end at a teleport has no curvature, so that a straight line continues it.
+  const double beyond = t - std::clamp(t, k.t.front(), k.t.back());
+  t -= beyond;
   const auto after = std::ranges::upper_bound(k.t, t);
   const std::size_t j = std::min(static_cast<std::size_t>(after - k.t.begin()),
                                  k.t.size() - 1),
@@ -121,10 +123,11 @@ SignalValue value_of(const Knots& k, double t) {
   const double h = k.t[j] - k.t[i];
   const double u = (k.t[j] - t) / h, w = (t - k.t[i]) / h;
   const double m = k.bend[i], n = k.bend[j];
-  return {
-      u * k.x[i] + w * k.x[j] + h * h / 6 * ((u * u * u - u) * m + (w * w * w - w) * n),
-      (k.x[j] - k.x[i]) / h + h / 6 * ((3 * w * w - 1) * n - (3 * u * u - 1) * m),
-      u * m + w * n};
+  const double rate =
+      (k.x[j] - k.x[i]) / h + h / 6 * ((3 * w * w - 1) * n - (3 * u * u - 1) * m);
+  return {u * k.x[i] + w * k.x[j] +
+              h * h / 6 * ((u * u * u - u) * m + (w * w * w - w) * n) + beyond * rate,
+          rate, u * m + w * n};
 }
 
 /// Splines one after the other, and the teleports between them.
@@ -161,8 +164,10 @@ Signal keyframes(const std::vector<double>& times, const std::vector<double>& va
     breakpoints.insert(breakpoints.end(), knots.t.begin(), knots.t.end());
     first = i;
   }
-  const auto value = [pieces = std::shared_ptr<const Pieces>(pieces)](double t) {
-    const auto piece = std::ranges::upper_bound(pieces->jumps, t) - pieces->jumps.begin();
+  const auto value = [pieces = std::shared_ptr<const Pieces>(pieces)](double t,
+                                                                      double since) {
+    const auto piece =
+        std::ranges::upper_bound(pieces->jumps, since) - pieces->jumps.begin();
     return value_of(pieces->each[static_cast<std::size_t>(piece)], t);
   };
   return {value, breakpoints};

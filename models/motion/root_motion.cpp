@@ -62,8 +62,9 @@ Signal stop(double speed, double t0, double duration) {
 Signal sum(Signal a, Signal b) {
   std::vector<double> breakpoints = a.breakpoints();
   breakpoints.insert(breakpoints.end(), b.breakpoints().begin(), b.breakpoints().end());
-  const auto value = [a = std::move(a), b = std::move(b)](double t) -> SignalValue {
-    const SignalValue x = a(t), y = b(t);
+  const auto value = [a = std::move(a), b = std::move(b)](double t,
+                                                          double since) -> SignalValue {
+    const SignalValue x = a(t, since), y = b(t, since);
     return {x.value + y.value, x.rate + y.rate, x.acceleration + y.acceleration};
   };
   return {value, std::move(breakpoints)};
@@ -73,13 +74,14 @@ Signal there_and_back(double height, double duration) {
   return sum(smooth_step(height, 0, duration), smooth_step(-height, duration, duration));
 }
 
-RootPose RootMotion::at(double t) const {
+RootPose RootMotion::at(double t, double last) const {
+  const double piece = std::isnan(last) ? t : last;
   RootPose pose;
   pose.frame = frame;
   const Vec c = centre.value_or(position);
   Vec arm = position - c;
   for (const Part& part : rotations) {
-    const SignalValue angle = part.signal(t);
+    const SignalValue angle = part.signal(t, piece);
     const Vec axis =
         (1 / std::sqrt(dot(part.direction, part.direction))) * part.direction;
     const Frame turn = rotation(axis, angle.value);
@@ -94,7 +96,7 @@ RootPose RootMotion::at(double t) const {
   pose.v = cross(pose.omega, arm);
   pose.a = cross(pose.alpha, arm) + cross(pose.omega, pose.v);
   for (const Part& part : translations) {
-    const SignalValue along = part.signal(t);
+    const SignalValue along = part.signal(t, piece);
     pose.x = pose.x + along.value * part.direction;
     pose.v = pose.v + along.rate * part.direction;
     pose.a = pose.a + along.acceleration * part.direction;

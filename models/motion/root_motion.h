@@ -11,6 +11,7 @@
 
 #include "contract/layers.h"
 #include "math/frame.h"
+#include "models/motion/by_time.h"
 
 namespace tress::models {
 
@@ -19,15 +20,22 @@ struct SignalValue {
   /// The function and its derivatives by time.
   double value = 0, rate = 0, acceleration = 0;
 };
-/// The times at which it is only C^2, a third derivative jumps, are its breakpoints.
+/// The times at which it is only C^2, a third derivative jumps, are its breakpoints. It
+/// may jump at teleports, which divide it into pieces.
 class Signal {
  public:
   Signal() = default;
-  /// Takes the function; `breakpoints` in s.
+  /// Takes a function without jumps; `breakpoints` in s.
   template <class F>
   requires std::convertible_to<F, std::function<SignalValue(double)>> &&
       (!std::same_as<std::remove_cvref_t<F>, Signal>)
           Signal(F value, std::vector<double> breakpoints = {})
+      : Signal([value = std::move(value)](double t, double) { return value(t); },
+               std::move(breakpoints)) {}
+  /// Takes a function of t and of a time in the piece to be evaluated.
+  template <class F>
+  requires std::convertible_to<F, std::function<SignalValue(double, double)>> Signal(
+      F value, std::vector<double> breakpoints)
       : value_(std::move(value)), breakpoints_(std::move(breakpoints)) {
     std::ranges::sort(breakpoints_);
   }
@@ -35,11 +43,13 @@ class Signal {
   /// Returns false for the constant 0.
   explicit operator bool() const { return static_cast<bool>(value_); }
   /// Evaluates the function at t (s).
-  SignalValue operator()(double t) const { return value_(t); }
+  SignalValue operator()(double t) const { return value_(t, t); }
+  /// Evaluates at t the piece that contains `since` (s), whose ends continue straight.
+  SignalValue operator()(double t, double since) const { return value_(t, since); }
   const std::vector<double>& breakpoints() const { return breakpoints_; }  // ascending
 
  private:
-  std::function<SignalValue(double)> value_;
+  std::function<SignalValue(double, double)> value_;
   std::vector<double> breakpoints_;
 };
 
@@ -96,11 +106,16 @@ struct RootMotion {
   std::vector<Part> rotations;     // rotations, the first one first
   /// Times at which the pose jumps (s, ascending), of teleport_time().
   std::vector<double> teleports;
+  /// Last teleport that was carried out (s), or by_time.
+  double since = by_time;
 
   /// Returns true if nothing moves.
   bool fixed() const { return translations.empty() && rotations.empty(); }
-  /// Returns the pose at time t (s); never allocates.
-  RootPose at(double t) const;
+  /// Returns the pose at time t (s); never allocates. Beyond teleports that were not
+  /// carried out the motion goes on straight.
+  RootPose at(double t) const { return at(t, since); }
+  /// Returns the pose at time t (s) as after the teleport at `last`.
+  RootPose at(double t, double last) const;
   /// The first of its signals' breakpoints after t, or infinity.
   double next_breakpoint(double t) const;
   /// Returns the first teleport after t, or infinity.

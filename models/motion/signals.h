@@ -32,8 +32,9 @@ Signal driven_oscillator(const Oscillator& body, double t0);
 /// everywhere: at rest until the first time and after the last. A cubic spline. Its first
 /// and last interval are halved by an additional knot (a single interval is divided in
 /// three), to satisfy the rest conditions x' = x'' = 0 at either end. Two equal times are
-/// a teleport: the signal jumps from the first value to the second, and the splines
-/// before and after it have x'' = 0 there. Throws InputError on other times.
+/// a teleport: the signal jumps from the first value to the second. The splines before
+/// and after it have x'' = 0 there and continue straight. Throws InputError on other
+/// times.
 Signal keyframes(const std::vector<double>& times, const std::vector<double>& values);
 
 /// Returns a signal that takes `values` at `times` (s, ascending, at least one) and rests

@@ -42,11 +42,15 @@ struct Displacement {
   }
 };
 
-/// Returns the displacement by a motion at one of its teleports.
-inline Displacement displacement(const RootMotion& motion, double teleport) {
-  const RootPose before = motion.at(just_before(teleport)), after = motion.at(teleport);
+/// Returns the displacement from one pose of a root to another.
+inline Displacement displacement(const RootPose& before, const RootPose& after) {
   const auto turned = [&](const Vec& e) { return after.frame * before.frame.back(e); };
   return {before, after, {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}};
+}
+/// Returns the displacement by a motion at one of its teleports.
+inline Displacement displacement(const RootMotion& motion, double teleport) {
+  const double end = just_before(teleport);
+  return displacement(motion.at(end, end), motion.at(teleport, teleport));
 }
 
 }  // namespace tress::models

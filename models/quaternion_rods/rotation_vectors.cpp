@@ -181,6 +181,8 @@ double RotationVectors::next_teleport(double t) const {
   return teleports(*rod_)->next_teleport(t);
 }
 
+void RotationVectors::follow(double t) { teleports(*rod_)->follow(t); }
+
 /// References turn with the rod, so that rotation vectors stay as they are.
 void RotationVectors::teleport(double t, InOut q, InOut v) {
   place(q, v);

@@ -88,6 +88,7 @@ class RotationVectors final : public System,
 
   double next_teleport(double t) const override;
   void teleport(double t, InOut q, InOut v) override;
+  void follow(double t) override;
 
   /// Writes the coordinates of the rod, with its quaternions.
   void rod_coordinates(In q, Out of_rod);

@@ -116,7 +116,8 @@ class InverseDynamics {
             .mass = mass_,
             .length = length_,
             .arc = arc_,
-            .longest = longest_};
+            .longest = longest_,
+            .since = kinematics_.since()};
   }
 
   /// Writes blocks (9 per point) = pos df/dx + vel df/dv at the points as placed.

@@ -135,6 +135,13 @@ class Kinematics {
   double next_breakpoint(double t) const { return root_motion_.next_breakpoint(t); }
   /// Returns the first teleport of the clamp after t, or infinity.
   double next_teleport(double t) const { return root_motion_.next_teleport(t); }
+  /// Moves the clamp as after the teleport at t (Teleports::follow).
+  void follow(double t) {
+    root_motion_.since = t;
+    posed_at_ = std::numeric_limits<double>::quiet_NaN();
+  }
+  /// Returns the last teleport of the clamp that was carried out, or by_time.
+  double since() const { return root_motion_.since; }
 
   /// Returns the size of arrays over points, including those that only fill a block.
   std::size_t points() const { return first_point(blocks_.size()); }

@@ -169,7 +169,8 @@ class ReducedSystem : public System,
   }
   double next_teleport(double t) const override { return kinematics_.next_teleport(t); }
   /// Unknowns are relative to the root.
-  void teleport(double /*t*/, InOut /*q*/, InOut /*v*/) override {}
+  void teleport(double t, InOut /*q*/, InOut /*v*/) override { follow(t); }
+  void follow(double t) override { kinematics_.follow(t); }
   std::string not_finite(double t, In q, In v) override {
     const auto of_unknowns = [this](In x, const std::string& what) {
       const std::size_t chain = dofs * kinematics_.segments().size();

@@ -65,6 +65,7 @@ void SteppedSystem::take_method(std::string_view method, const Options& options)
 
 void SteppedSystem::start(double begin, State state) {
   system->recall(state.memory);
+  if (Teleports* const all = teleports(*system)) all->follow(begin);
   // Contact sets follow the state; if it was accepted before, nothing changes.
   system->accept(begin, state.q, state.v);
   status = integrator->start(begin, state.q, state.v);
@@ -108,7 +109,7 @@ void SteppedSystem::teleport(const IntegratorEntry& method, const Options& optio
   }
   system->accept(at, q, v);
   if (guard) guard->teleported(at, q, v);
-  status = restart(method, options, after_teleport(at, end));
+  restart(method, options, after_teleport(at, end));
   keep(integrator->time(), integrator->q(), integrator->v());
   begun_ = q;
 }
@@ -177,16 +178,16 @@ Status SteppedSystem::shorter_steps(const IntegratorEntry& method, const Options
     }
     add_work(steps->stats(), before_);
     indicator = std::max(indicator, indicator_of(*steps));
-    return restart(method, options, end);
+    restart(method, options, end);
+    return status;
   }
   used_up_ = work_left(options) <= 0;
   gave_up_ = !used_up_;
   return Status::fatal;
 }
 
-/// Starts the method again from the kept state; its work so far counts.
-Status SteppedSystem::restart(const IntegratorEntry& method, const Options& options,
-                              double at) {
+void SteppedSystem::restart(const IntegratorEntry& method, const Options& options,
+                            double at) {
   add_work(integrator->stats(), before_);
   indicator = std::max(indicator, indicator_of(*integrator));
   if (options.max_work > 0) {
@@ -194,7 +195,7 @@ Status SteppedSystem::restart(const IntegratorEntry& method, const Options& opti
     rest.max_work = std::max(work_left(options), std::numeric_limits<double>::min());
     take_method(method.id, rest);
   }
-  return integrator->start(at, q, v);
+  status = integrator->start(at, q, v);
 }
 
 void SteppedSystem::stay(In at) {

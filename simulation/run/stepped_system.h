@@ -65,6 +65,8 @@ struct SteppedSystem {
   /// from the state that was carried with the root.
   void advance(const IntegratorEntry& method, const Options& options, double end,
                bool last);
+  /// Starts the method again from the kept state; its work so far counts.
+  void restart(const IntegratorEntry& method, const Options& options, double at);
   /// Keeps the failed system at this state, at rest: readouts see it from now on.
   void stay(In at);
   /// q at the start of the last advance().
@@ -94,7 +96,6 @@ struct SteppedSystem {
                                  double end, bool last);
   void teleport(const IntegratorEntry& method, const Options& options,
                 Teleports& teleports, double at, double end);
-  Status restart(const IntegratorEntry& method, const Options& options, double at);
   double work_left(const Options& options) const;
   Status shorter_steps(const IntegratorEntry& method, const Options& options, double end);
   /// Stores every state and passes it to the guard.

@@ -220,7 +220,9 @@ class World {
   void read_velocities(std::size_t k, double t);
   Status couple(double h);
   double next_teleport() const;
+  Status teleport(double t);
   Status advance_between_teleports(double t_end);
+  Status failed();
   void exchange();
 
   // With a tolerance, by intervals.

@@ -31,22 +31,36 @@ double World::next_teleport() const {
 }
 
 Status World::advance(double t_end) {
-  if (control_) return advance_controlled(t_end);
   // Strands see the others either before a teleport or after it.
   while (!couplings_.empty()) {
     const double at = next_teleport();
     if (at > t_end) break;
     const double before = models::just_before(at);
-    if (before > t_) {
-      if (const Status s = advance_between_teleports(before); s != Status::ok) return s;
-    }
-    const Status s = advance_between_teleports(after_teleport(at, t_end));
+    Status s = before > t_ ? advance_between_teleports(before) : Status::ok;
+    if (s == Status::ok) s = teleport(after_teleport(at, t_end));
     if (s != Status::ok) return s;
   }
   return t_ == t_end ? Status::ok : advance_between_teleports(t_end);
 }
 
+/// Methods that begin with the forces of the state start again once these are between
+/// strands that have jumped.
+Status World::teleport(double t) {
+  crew_.run(bodies_.size(), [&](std::size_t k) { advance(bodies_[k], t, false); });
+  t_ = t;
+  x_.forget();
+  u_.forget();
+  if (const Status s = failed(); s != Status::ok) return s;
+  exchange();
+  crew_.run(bodies_.size(), [&](std::size_t k) {
+    if (bodies_[k].status != Status::ok) return;
+    bodies_[k].restart(maker_.method(), maker_.options(), t);
+  });
+  return failed();
+}
+
 Status World::advance_between_teleports(double t_end) {
+  if (control_) return advance_controlled(t_end);
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
   const double count =
@@ -71,19 +85,25 @@ Status World::advance_between_teleports(double t_end) {
       for (const auto& coupling : couplings_) coupling->prepare(k, h);
     });
     t_ = t;
-    for (Body& body : bodies_) {
-      if (body.status == Status::ok || body.stays()) continue;
-      if (stay_) {
-        lost_.push_back({body.first, body.t, body.failure()});
-        body.stay(body.begun());
-        x_.done[body.first] = u_.done[body.first] = 0;
-        continue;
-      }
-      failure_ = failure_of(body);
-      return body.status;
-    }
+    if (const Status s = failed(); s != Status::ok) return s;
     if (const Status s = couple(h); s != Status::ok) return s;
     exchange();
+  }
+  return Status::ok;
+}
+
+/// Ends the run if a strand has failed, unless failed strands stay.
+Status World::failed() {
+  for (Body& body : bodies_) {
+    if (body.status == Status::ok || body.stays()) continue;
+    if (stay_) {
+      lost_.push_back({body.first, body.t, body.failure()});
+      body.stay(body.begun());
+      x_.done[body.first] = u_.done[body.first] = 0;
+      continue;
+    }
+    failure_ = failure_of(body);
+    return body.status;
   }
   return Status::ok;
 }

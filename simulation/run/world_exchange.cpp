@@ -158,6 +158,7 @@ void World::Body::mark() {
   if (guard) marked_guard = guard->memory();
   if (depth) marked_depth = depth->seen;
   marked_t = integrator->time();
+  rewindable = dynamic_cast<Rewindable*>(integrator.get());
   rewindable->mark();
 }
 

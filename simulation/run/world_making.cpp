@@ -190,7 +190,6 @@ void World::ready(const Scene& scene) {
   Snapshot begin;
   for (Body& body : bodies_) {
     body.take_method(scene.integrator, scene.options);
-    body.rewindable = dynamic_cast<Rewindable*>(body.integrator.get());
     for (const auto& coupling : couplings_) {
       coupling->add(*body.system, *body.integrator, scene.options);
     }

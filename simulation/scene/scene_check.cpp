@@ -187,52 +187,22 @@ std::vector<double> teleports_of(const Scene& scene, const EffectChoice& choice)
   return motion ? motion->teleports : std::vector<double>();
 }
 
-/// Methods that take forces between strands at the end of a step only.
-constexpr std::string_view one_stage[] = {"linearly_implicit_euler", "backward_euler",
-                                          "bdf2", "implicit_midpoint"};
-/// Methods of fixed step that carry nodes at places in space: none of their stages lies
-/// beyond the end of a step, where the root has jumped. Tests compare them with a root
-/// that stays.
-constexpr std::string_view carry_nodes[] = {
-    "linearly_implicit_euler", "backward_euler", "bdf2",   "tr_bdf2",
-    "implicit_midpoint",       "newmark",        "radau5", "generalized_alpha",
-    "symplectic_euler",        "velocity_verlet"};
-
-bool listed(std::string_view method, std::span<const std::string_view> among) {
-  return std::ranges::find(among, method) != among.end();
-}
-
 /// Why a strand is not carried with a root that teleports; empty: it is.
 std::string not_carried(const Scene& scene, const Strand& strand, System& system) {
   if (strand.free_root) return "a strand with a free root, which stays where it is";
   if (teleports(system) == nullptr) {
     return fmt::format("{}, which cannot be carried", scene.model->id);
   }
-  MaterialPoints* const points = system.material_points();
-  // Unknowns relative to the root need no displacement.
-  if (points == nullptr || !points->mean(0)) return {};
-  if (scene.options.tolerance == 0 && listed(scene.integrator, carry_nodes)) return {};
-  return fmt::format("{} by {}{}, whose stages may see the root beyond its jump",
-                     scene.model->id, scene.integrator,
-                     scene.options.tolerance > 0 ? " with a tolerance" : "");
+  return {};
 }
 
 /// Why an effect cannot be carried; empty: it can.
-std::string not_carried(const Scene& scene, const EffectChoice& choice) {
+std::string not_carried(const EffectChoice& choice) {
   const std::string_view id = choice.entry->id;
   if (id == "tether" || id == "ring") return "which holds a point at a place of its own";
   if (id == "control_mesh") return "whose links hold between steps";
   if (id == "strand_friction") return "whose impulses act between steps";
   if (turns(choice)) return "whose bearing does not jump";
-  if (id == "strand_interaction" && choice.parameters.word("coupling") != "monolithic") {
-    if (scene.options.tolerance > 0) return "whose intervals a tolerance chooses";
-    if (!listed(scene.integrator, one_stage)) {
-      return fmt::format(
-          "between whose strands only {} are exact: a step's start has the forces of "
-          "neighbours that have not jumped",
-          fmt::join(one_stage, ", "));
-    }
-  }
   return {};
 }
 
@@ -256,7 +226,7 @@ void check_teleports(const Scene& scene, const ScenePlaces& places) {
   if (all.empty()) return;
   const std::string leave_out = " or give [root] one row for each time";
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const std::string why = not_carried(scene, scene.effects[i]);
+    const std::string why = not_carried(scene.effects[i]);
     refuse_if(
         !why.empty(),
         fmt::format("a root that teleports with {}, {}", scene.effects[i].entry->id, why),
@@ -350,10 +320,7 @@ void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
     if (!scene.head.teleports.empty() || !scene.strands[i].root.teleports.empty()) {
       const std::string why = not_carried(scene, scene.strands[i], *system);
       refuse_if(!why.empty(), "a root that teleports with " + why, place,
-                fmt::format("use super_helix, super_clothoid or articulated_chain with a "
-                            "clamped root; fixed steps of {}; or [root] with one row for "
-                            "each time",
-                            fmt::join(carry_nodes, ", ")));
+                "give the strand a clamped root, or [root] one row for each time");
     }
     if (joints.of(number) == nullptr && (!driven || held)) {
       check_integrator(scene, *system, places);

@@ -1,91 +1,26 @@
 // Roots that jump and carry their strands: nothing changes in the frame of the root.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
+#include <utility>
 
 #include "models/maximal/edge_reference.h"
 #include "models/motion/signals.h"
-#include "models/motion/teleport.h"
 #include "simulation/head/head_run.h"
 #include "simulation/head/scene_head.h"
-#include "simulation/run/world.h"
 #include "tests/support/refusal.h"
+#include "tests/teleport/teleport_scenes.h"
 
 namespace tress::test_teleport {
 
-using namespace simulation;
-using models::Displacement;
 using testing_support::refusal;
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double jump_at = 0.05, length = 0.1;  // s, m
-
-/// `root`: keys of [root]; `rest`: further tables.
-Scene scene_of(const std::string& model, const std::string& integrator,
-               const std::string& root, const std::string& rest = "") {
-  const bool constrained = model == "inextensible_strand" || model == "dynamic_spline";
-  return parse_scene("title = \"teleport\"\nduration_s = 0.1\n[model]\nid = \"" + model +
-                         "\"\n[integrator]\n" + integrator +
-                         (constrained ? "\nformulation = \"projection\"" : "") +
-                         "\n[material]\nname = \"hair.asian\"\n[root]\n" + root +
-                         "[effects.gravity]\n[effects.linear_drag]\n" + rest,
-                     "teleport.toml");
-}
-const std::string strand =
-    "[strand]\nlength_m = 0.1\nelements = 6\nposition_m = [0.02, 0.01, 0]\n"
-    "shape = \"helix\"\n";
-std::string steps(const std::string& id) { return "id = \"" + id + "\"\ndt_s = 1e-3"; }
 
 /// A root that moves, and jumps while it moves.
 const std::string moving =
     "motion = \"poses\"\nposes = [[0, 0, 0, 0, 0, 0, 0], [0.02, 0.01, 0, 0, 0.1, 0, "
     "0.2], [0.05, 0.02, 0.01, 0, 0.2, 0.1, 0.3], [0.05, 0.5, -0.2, 0.3, 1.2, -0.7, 2], "
     "[0.08, 0.5, -0.1, 0.3, 1.1, -0.4, 2.1]]\n";
-/// Rows of a root that is at rest until it jumps to this row, and then stays there.
-std::string to(const std::string& row) {
-  return "motion = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], [0.05, 0, 0, 0, 0], "
-         "[0.05, " +
-         row + "]]\n";
-}
-/// A displacement that gravity does not see: a translation and a turn about its axis.
-const std::string aside = to("0.3, -0.2, 0.1, 0.7"), nowhere = to("0, 0, 0, 0");
-
-Displacement jump_of(const Scene& scene) {
-  return models::displacement(scene.strands.front().root, models::teleport_time(jump_at));
-}
-
-struct Points {
-  std::vector<double> x, u;
-};
-Points points_of(World& world) { return {world.positions(), world.velocities()}; }
-
-Points carried(const Displacement& by, Points points) {
-  for (std::size_t i = 0; i < points.x.size(); i += 3) {
-    const Vec x = load3(&points.x[i]);
-    store3(by.velocity(x, load3(&points.u[i])), &points.u[i]);
-    store3(by.place(x), &points.x[i]);
-  }
-  return points;
-}
-
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = a.size() == b.size() ? 0 : 1e300;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    most = std::max(most, std::abs(a[i] - b[i]));
-  }
-  return most;
-}
-
-std::vector<std::string> strand_models() {
-  std::vector<std::string> all;
-  for (const ModelEntry& model : model_catalogue()) {
-    if (model.on_strand != nullptr) all.emplace_back(model.id);
-  }
-  return all;
-}
 
 class Teleport : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Models, Teleport, testing::ValuesIn(strand_models()),
@@ -222,44 +157,61 @@ TEST(Teleport, CarriesABatchAsSingleStrands) {
   }
 }
 
-/// Strands that touch see each other either before the jump or after it.
+/// Strands that touch see each other either before the jump or after it. With a tolerance
+/// of 1e-3 of the length both runs are that near to the solution, in steps that rounding
+/// may change.
 TEST(Teleport, CarriesStrandsThatTouch) {
-  const auto scene = [&](const std::string& coupling, const std::string& root) {
-    return scene_of("der", steps("backward_euler"), root,
+  const auto scene = [&](const std::string& method, const std::string& coupling,
+                         const std::string& root) {
+    return scene_of("der", method, root,
                     "[[strand]]\nlength_m = 0.1\nelements = 6\n[[strand]]\n"
                     "length_m = 0.1\nelements = 6\nposition_m = [0, 0.002, -0.0005]\n"
                     "root_tangent = [1, 0, 0.02]\n"
                     "[effects.strand_interaction]\ncoupling = \"" +
                         coupling + "\"\n");
   };
+  const struct {
+    std::string method;
+    double within;  // of the length
+  } ways[] = {{steps("backward_euler"), 1e-7},
+              {steps("tr_bdf2"), 1e-7},
+              {steps("esdirk43"), 1e-7},
+              {"id = \"tr_bdf2\"\nposition_tol_rel = 1e-3", 2e-3}};
   for (const char* const coupling : {"lagged", "monolithic"}) {
-    SCOPED_TRACE(coupling);
-    const auto end = [&](const std::string& root) {
-      World world(scene(coupling, root));
-      EXPECT_EQ(world.advance(0.1), Status::ok) << world.failure();
-      return points_of(world);
-    };
-    const Points expected = carried(jump_of(scene(coupling, aside)), end(nowhere));
-    EXPECT_LE(apart(end(aside).x, expected.x), 1e-7 * length);
+    for (const auto& [method, within] : ways) {
+      SCOPED_TRACE(coupling + (", " + method));
+      const auto end = [&](const std::string& root) {
+        World world(scene(method, coupling, root));
+        EXPECT_EQ(world.advance(0.1), Status::ok) << world.failure();
+        return points_of(world);
+      };
+      const Points expected =
+          carried(jump_of(scene(method, coupling, aside)), end(nowhere));
+      EXPECT_LE(apart(end(aside).x, expected.x), within * length);
+    }
   }
 }
 
-/// A body of the head that the strand rests on jumps with it. Forces of exact contact are
-/// found again, to its tolerance of 1e-8 m/s over 100 steps of 1 ms.
+/// A body of the head that the strand rests on jumps with it, for stages of esdirk43
+/// beyond the end of a step, too. Forces of exact contact are found again, to its
+/// tolerance of 1e-8 m/s over 100 steps of 1 ms.
 TEST(Teleport, CarriesContactWithABodyOfTheHead) {
-  for (const char* const law : {"", "friction_law = \"exact\"\n"}) {
-    SCOPED_TRACE(law);
+  for (const auto& [law, method] :
+       {std::pair<std::string, std::string>{"", "backward_euler"},
+        {"friction_law = \"exact\"\n", "backward_euler"},
+        {"", "esdirk43"}}) {
+    SCOPED_TRACE(law + method);
     const std::string body =
         strand +
         "[[effects.body]]\nshape = \"plane\"\ncentre_m = [0, 0, -0.002]\nmoves = "
         "\"head\"\nfriction = 0.3\n" +
         law;
     const auto end = [&](const std::string& root) {
-      World world(scene_of("super_helix", steps("backward_euler"), root, body));
+      World world(scene_of("super_helix", steps(method), root, body));
       EXPECT_EQ(world.advance(0.1), Status::ok) << world.failure();
       return points_of(world);
     };
-    const Scene scene = scene_of("super_helix", steps("backward_euler"), aside, body);
+    const Scene scene = scene_of("super_helix", steps(method), aside, body);
     const Points stayed = end(nowhere);
     EXPECT_LE(apart(end(aside).x, carried(jump_of(scene), stayed).x), 1e-6 * length);
   }
@@ -315,18 +267,6 @@ TEST(Teleport, RefusesWhatCannotBeCarried) {
          "keyframe 3 at 0.5 s is not later than keyframe 2 at 1 s");
   expect(refused(rows + "[nan, 0, 0, 0, 0]]\n", ""), "keyframes");
   expect(refused(aside, "[effects.tether]\n"), "tether, which holds a point");
-  // Their stages lie beyond the end of a step, or see it.
-  for (const char* const method :
-       {"id = \"esdirk43\"\ndt_s = 1e-3", "id = \"tr_bdf2\"\nposition_tol_rel = 1e-4",
-        "id = \"rk4\"\ndt_s = 1e-6"}) {
-    expect(refusal([&] { scene_of("der", method, aside, strand); }),
-           "whose stages may see the root beyond its jump");
-  }
-  expect(refusal([&] {
-           scene_of("super_helix", steps("tr_bdf2"), aside,
-                    strand + "[effects.strand_interaction]\n");
-         }),
-         "neighbours that have not jumped");
   expect(refused("motion = \"keyframes\"\nkeyframes = [[0, 0, 0, 0, 0], [0.05, 0, 0, 0, "
                  "0], [0.05, 1, 0, 0, 0]]\n",
                  "root = \"free\"\n"),
