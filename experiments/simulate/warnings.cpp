@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
 #include "integrators/catalogue.h"
 #include "simulation/run/dissipation_warning.h"
 #include "simulation/run/remedy.h"
+#include "simulation/scene/joint_table.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::experiments::scene_runs {
 
@@ -25,6 +28,31 @@ std::string_view remedy_of_energy(const Scene& scene) {
              : "take a shorter dt_s, or a method of order 2, such as tr_bdf2";
 }
 
+/// Returns the strands with a free root that begin at rest, and that nothing but gravity
+/// and air acts on.
+std::vector<std::size_t> falling(const Scene& scene) {
+  constexpr std::string_view everywhere[] = {"gravity", "linear_drag", "quadratic_drag",
+                                             "wind"};
+  const auto acts = [&](std::string_view id) {
+    return std::ranges::any_of(scene.effects, [id](const EffectChoice& choice) {
+      return choice.entry->id == id;
+    });
+  };
+  const bool alone = std::ranges::all_of(scene.effects, [&](const EffectChoice& choice) {
+    return std::ranges::count(everywhere, choice.entry->id) > 0;
+  });
+  if (!alone || !acts("gravity")) return {};
+  const simulation::SceneSupports supports(scene);
+  const simulation::SceneJoints joints(scene);
+  std::vector<std::size_t> all;
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    const auto& root = scene.strands[k].free_root;
+    if (!root || norm(root->velocity) > 0 || norm(root->spin) > 0) continue;
+    if (!supports.change(k) && joints.of(k) == nullptr) all.push_back(k);
+  }
+  return all;
+}
+
 /// Part of the slack of the guard from which on a run prints what it used. A run that
 /// used all of it ended, and said so.
 constexpr double told_excess = 0.1;
@@ -34,6 +62,13 @@ constexpr double written = 1e-9;  // of a step that is written as a decimal numb
 
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run) {
   std::vector<std::string> all;
+  if (const auto fall = falling(scene); !fall.empty()) {
+    all.push_back(fmt::format(
+        "strand {}{} has a free root, begins at rest and falls, since nothing holds it: "
+        "give it [[supports]], [[joints]] or a body, or a clamped root",
+        fall.front(),
+        fall.size() > 1 ? fmt::format(" (the first of {})", fall.size()) : ""));
+  }
   if (run.dissipation && simulation::warns(*run.dissipation)) {
     const MethodDissipation& of = *run.dissipation;
     all.push_back(fmt::format(

@@ -7,9 +7,9 @@
 
 namespace tress::experiments::scene_runs {
 
-/// Returns the warnings of a run, one sentence each. They concern a method that changed
-/// the energy by a large part, a model without a smooth motion, and a strand that passed
-/// through a body within a step.
+/// Returns the warnings of a run, one sentence each. They concern strands that nothing
+/// holds, a method that changed the energy by a large part, and a model without a smooth
+/// motion. Others concern strands that passed through a body within a step.
 std::vector<std::string> warnings(const Scene& scene, const SceneRun& run);
 
 }  // namespace tress::experiments::scene_runs

@@ -53,6 +53,26 @@ TEST(MethodDissipation, ShowsWhatAMethodDissipates) {
   EXPECT_NE(said[0].find("backward_euler dissipated"), std::string::npos) << said[0];
 }
 
+/// A free strand at rest that nothing holds falls, as one body: that is no motion of
+/// hair.
+TEST(FreeStrands, AreNamedIfNothingHoldsThem) {
+  const std::string euler = "id = \"bdf2\"\ndt_s = 0.005", free = "root = \"free\"\n";
+  const auto said = [&](const std::string& strand, const std::string& rest) {
+    const auto all = warnings(hair("der", euler, strand, rest),
+                              SceneRun{SceneRun::End::complete, {}, 0, 0, 0, 0});
+    return all.empty() ? "" : all.front();
+  };
+  EXPECT_NE(said(free, gravity).find("strand 0 has a free root"), std::string::npos);
+  EXPECT_NE(said("", "[root]\nmotion = \"free\"\n" + gravity).find("falls"),
+            std::string::npos);
+  EXPECT_EQ(said("", gravity), "");
+  EXPECT_EQ(said(free, ""), "");
+  EXPECT_EQ(said("", "[root]\nmotion = \"free\"\nspin_rad_s = [0, 1, 0]\n" + gravity),
+            "");
+  EXPECT_EQ(said(free, gravity + "[effects.body]\n"), "");
+  EXPECT_EQ(said(free, gravity + "[[supports]]\nstrand = 0\nat = \"tip\"\n"), "");
+}
+
 /// With friction, drag and a shaken root, which all are accounted for. The energy of an
 /// accurate run changes by what these do; the trapezoidal rule errs by (4 h w)^2/12 of
 /// their work for powers of the rate w, here below 1e-2 for the slow motion that has the
