@@ -106,7 +106,8 @@ nlohmann::ordered_json bodies(const Animation& animation,
   return all;
 }
 
-/// Contact forces of the frames, of each the largest ones: a picture of more is none.
+/// Forces of contacts and supports in the frames, of each the largest ones: a picture of
+/// more is none.
 nlohmann::ordered_json contacts(std::span<const Frame3d> frames,
                                 std::span<const std::size_t> chosen) {
   constexpr std::size_t most = 300;
@@ -114,7 +115,8 @@ nlohmann::ordered_json contacts(std::span<const Frame3d> frames,
   auto all = nlohmann::ordered_json::array();
   bool any = false;
   for (const std::size_t f : chosen) {
-    const std::vector<float>& x = frames[f].contacts;
+    std::vector<float> x = frames[f].contacts;
+    x.insert(x.end(), frames[f].reactions.begin(), frames[f].reactions.end());
     const auto size = [&](std::size_t i) {
       return std::hypot(x[numbers * i + 3], x[numbers * i + 4], x[numbers * i + 5]);
     };

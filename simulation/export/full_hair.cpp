@@ -110,7 +110,7 @@ std::vector<Frame3d> FullHair::frames(std::span<const Frame3d> guides) const {
 Frame3d FullHair::grown(const Frame3d& guides) const {
   const std::size_t simulated = guides.positions.size() / 3, drawn = hairs() * points_;
   std::vector<Vec> of_guides(simulated), places(drawn);
-  Frame3d full{guides.series, guides.positions, {}, guides.contacts};
+  Frame3d full{guides.series, guides.positions, {}, guides.contacts, guides.reactions};
   for (std::size_t i = 0; i < simulated; ++i) {
     of_guides[i] = load3(&guides.positions[3 * i]);
   }

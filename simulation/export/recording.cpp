@@ -190,7 +190,7 @@ void Recording::resume(const RunKey& key) {
     if (!bytes.take(frame.series, columns_.size()) ||
         !bytes.take(frame.positions, 3 * points_) ||
         !bytes.take(frame.channels, channels_ * points_) ||
-        !bytes.take_sized(frame.contacts)) {
+        !bytes.take_sized(frame.contacts) || !bytes.take_sized(frame.reactions)) {
       throw damaged();
     }
     sum_.add(record(frame));
@@ -222,6 +222,7 @@ std::string Recording::record(const Frame3d& frame) {
   bytes.put(frame.positions);
   bytes.put(frame.channels);
   bytes.put_sized(frame.contacts);
+  bytes.put_sized(frame.reactions);
   return bytes.text();
 }
 

@@ -23,9 +23,9 @@ std::size_t nearest(const Vec& place, In x) {
   return best;
 }
 
-void add_contact(const Vec& place, const Vec& force, Frame3d& frame) {
+void add_force(const Vec& place, const Vec& force, std::vector<float>& to) {
   for (const double c : {place.x, place.y, place.z, force.x, force.y, force.z}) {
-    frame.contacts.push_back(static_cast<float>(c));
+    to.push_back(static_cast<float>(c));
   }
 }
 
@@ -155,6 +155,9 @@ Frame3d Readout::read(World& world) {
     };
     append(supports_[i / 3].place, loads.forces);
     append(supports_[i / 3].direction, loads.moments);
+    if (i >= loads.places.size() || !supports_[i / 3].place) continue;
+    const Vec force = load3(&loads.forces[i]);
+    if (is_finite(force)) add_force(load3(&loads.places[i]), force, frame.reactions);
   }
   const Stats now = world.stats();
   const auto steps = static_cast<double>(now.steps - before_.steps);
@@ -310,7 +313,7 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first,
         if (contact->effect != e) continue;
         const std::size_t at = nearest(contact->place, x);
         store3(load3(&f[3 * at]) + contact->force, &f[3 * at]);
-        add_contact(contact->place, contact->force, frame);
+        add_force(contact->place, contact->force, frame.contacts);
       }
     });
   }
@@ -318,7 +321,7 @@ void Readout::read_loads(World& world, std::size_t k, std::size_t first,
     read(add_load);
     for (std::size_t i = 0; i < points; ++i) {
       const Vec force = load3(&load[3 * i]);
-      if (norm(force) > 0) add_contact(load3(&x[3 * i]), force, frame);
+      if (norm(force) > 0) add_force(load3(&x[3 * i]), force, frame.contacts);
     }
   };
   // Effects between strands come after the others, in alphabetical order.

@@ -17,10 +17,11 @@ struct Reading {
 
 /// One instant of a scene for output and display.
 struct Frame3d {
-  std::vector<double> series;    // as Readout::series()
-  std::vector<float> positions;  // (3 points) m, points as Readout::lines()
-  std::vector<float> channels;   // (points) of the first channel, of the second ...
-  std::vector<float> contacts;   // (6 contacts) place, m, and force on the strand, N
+  std::vector<double> series;         // as Readout::series()
+  std::vector<float> positions;       // (3 points) m, points as Readout::lines()
+  std::vector<float> channels;        // (points) of the first channel, of the second ...
+  std::vector<float> contacts;        // (6 contacts) place, m, and force on the strand, N
+  std::vector<float> reactions = {};  // the same of supports that hold a place
 };
 
 /// Force and moment of a support on its strand, or of a joint on its end b.

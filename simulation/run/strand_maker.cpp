@@ -20,6 +20,18 @@ void hold(System& system, std::span<const StrandToMake> strands) {
   natural_strains(system)->set_natural(natural);
 }
 
+/// Takes the place of an effect on strands that it does not act on.
+class NoEffect final : public Effect {
+ public:
+  std::string_view name() const override { return "none"; }
+  models::Needs needs() const override { return {}; }
+  void add_load(double, const Points&, InOut) const noexcept override {}
+  void add_derivatives(double, const Points&, double, double,
+                       InOut) const noexcept override {}
+  double potential(double, const Points&) const noexcept override { return 0; }
+  double power(double, const Points&) const noexcept override { return 0; }
+};
+
 /// Lets strands whose free roots begin with the same velocity and spin turn as one body,
 /// about the root of the first.
 void spin_together(std::vector<Strand>& strands) {
@@ -46,11 +58,21 @@ StrandMaker::StrandMaker(const Scene& scene)
       effects_(make_effects(scene)),
       supports_(scene),
       joints_(scene),
-      guard_(scene.guard) {}
+      guard_(scene.guard) {
+  for (const EffectChoice& choice : scene.effects) {
+    if (choice.entry->make != nullptr) only_.push_back(choice.strand);
+  }
+}
 
 /// Those of the scene.
 Effects StrandMaker::effects_on(const StrandToMake& strand) const {
-  return strand.held == nullptr ? effects_ : supporting(effects_, *strand.held);
+  Effects all = strand.held == nullptr ? effects_ : supporting(effects_, *strand.held);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (only_[i].value_or(strand.number) != strand.number) {
+      all[i] = std::make_shared<NoEffect>();
+    }
+  }
+  return all;
 }
 
 /// Wraps each effect of the scene in a Metered, stored in `meters`.
@@ -97,7 +119,7 @@ SteppedSystem StrandMaker::joined(std::span<const StrandToMake> strands,
   for (std::size_t k = 0; k < strands.size(); ++k) {
     const std::size_t number = group.first + k;
     each.push_back(&begun[k]);
-    const StrandToMake own{begun[k], strands[k].between, strands[k].held};
+    const StrandToMake own{begun[k], strands[k].between, strands[k].held, number};
     systems.push_back(supports_.on(metered(own, meters), begun[k], number));
     if (!supports_.hold(number)) continue;
     const SupportedStart one =

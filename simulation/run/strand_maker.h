@@ -19,6 +19,7 @@ struct StrandToMake {
   const Strand& strand;             // stiffer(), if it is held
   Effects between = {};             // on it alone, as those between strands
   const HeldShape* held = nullptr;  // what holds it at rest, if its rest is inverse
+  std::size_t number = 0;           // in the scene
 };
 
 /// Makes the strands of a scene as systems with their effects, guards and integrators,
@@ -70,6 +71,7 @@ class StrandMaker {
   const IntegratorEntry* method_;
   Options options_;
   Effects effects_;
+  std::vector<std::optional<std::size_t>> only_;  // EffectChoice::strand of each
   SceneSupports supports_;
   SceneJoints joints_;
   bool guard_;

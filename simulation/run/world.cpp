@@ -157,6 +157,10 @@ World::SupportLoads World::support_loads() {
   for (const Body& body : bodies_) {
     SupportForces* const supports = tress::support_forces(*body.system);
     if (supports == nullptr) continue;
+    std::vector<double> places(3 * supports->supports()), unused(2 * places.size());
+    supports->support_motion(t_, places, Out(unused).first(places.size()),
+                             Out(unused).last(places.size()));
+    all.places.insert(all.places.end(), places.begin(), places.end());
     append(body, supports->supports(), [&](Out forces, Out moments) {
       return supports->support_forces(t_, body.seen_q(), body.seen_v(), forces, moments);
     });

@@ -126,6 +126,7 @@ class World {
   struct SupportLoads {
     std::vector<double> forces;   // N
     std::vector<double> moments;  // N m, about the held points
+    std::vector<double> places;   // of supports alone, m
   };
   /// Returns the loads of all supports and joints.
   SupportLoads support_loads();

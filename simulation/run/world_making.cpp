@@ -138,7 +138,7 @@ void World::build_strands(const Scene& scene, const Parameters* between) {
   }
   const auto to_make = [&](std::size_t k) {
     return StrandToMake{strands[k], effects_between(k),
-                        held_.empty() ? nullptr : &held_[k]};
+                        held_.empty() ? nullptr : &held_[k], k};
   };
   // A failed strand must not take others with it.
   const bool alone = scene.failed_strands == FailedStrands::stay ||
@@ -173,7 +173,7 @@ void World::build_coupled(const Scene& scene, const Parameters& between) {
   std::vector<StrandToMake> strands;
   std::vector<std::shared_ptr<const Metered>> meters;
   for (const Strand& strand : scene.strands) {
-    strands.push_back({strand});
+    strands.push_back({.strand = strand, .number = strands.size()});
     systems.push_back(maker_.metered(strands.back(), meters));
   }
   auto coupled = std::make_unique<CoupledStrands>(std::move(systems), between);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ class StrandSeries;
 
 /// One [effects.id] that a scene names.
 struct EffectChoice {
-  const EffectEntry* entry = nullptr;  // entry of the catalogue of effects
-  Parameters parameters;               // values of its parameters
+  const EffectEntry* entry = nullptr;      // entry of the catalogue of effects
+  Parameters parameters;                   // values of its parameters
+  std::optional<std::size_t> strand = {};  // the one that it acts on; none: all
 };
 
 /// Natural strains of strands: those of their tables (`natural`), or such that the shapes

@@ -1,5 +1,6 @@
 """./tress play without a browser: its server, its commands, and what it refuses."""
 
+import base64
 import contextlib
 import http.client
 import json
@@ -44,6 +45,26 @@ root_tangent = [1, 0, 0]
 [effects.gravity]
 gravity_m_s2 = [0, 0, 0]
 """
+
+
+def live_frames(scene, commands):
+    """The answers of a live run to commands."""
+    lines = "".join(json.dumps(command) + "\n" for command in commands)
+    run = subprocess.run([PROGRAM, str(scene), "--live"], input=lines, text=True,
+                         capture_output=True, check=True, cwd=ROOT)
+    return [json.loads(line) for line in run.stdout.splitlines()][-len(commands):]
+
+
+def heights_of(picture):
+    """z of the tips of all lines of a picture with one moment, m."""
+    data = base64.b64decode(picture["positions"])
+    low, high = picture["low"][2], picture["high"][2]
+    tips, point = [], 0
+    for count in picture["strand_points"]:
+        point += count
+        word = int.from_bytes(data[6 * point - 2:6 * point], "little")
+        tips.append(low + (high - low) * word / 65535)
+    return tips
 
 
 class Play:
@@ -251,6 +272,30 @@ class Played(unittest.TestCase):
         self.assertEqual(series_of(self.play.state())["t_s"], 0)
         self.assertIn("refused", self.play.do(do="pull", at=2, target=[0, 0, 0], stiffness_n_m=1))
         self.assertIn("refused", self.play.do(do="fly"))
+
+    def test_a_pull_moves_one_strand_of_several(self):
+        for coupling in ("", "lagged", "monolithic"):
+            touch = f'[effects.strand_interaction]\ncoupling = "{coupling}"\n' if coupling else ""
+            strands = "".join(
+                f"[[strand]]\nlength_m = {LENGTH}\nelements = 5\nroot_tangent = [1, 0, 0]\n"
+                f"position_m = [0, {0.01 * k}, 0]\n" for k in range(6))
+            head, tail = SCENE.split("[strand]")
+            scene = head + strands + "[effects.linear_drag]" + tail.split("[effects.linear_drag]")[1]
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / "several.toml"
+                path.write_text(scene + touch)
+                frames = live_frames(path, [
+                    {"do": "pull", "strand": 4, "at": 1, "target": [LENGTH, 0.04, 0.02],
+                     "stiffness_n_m": 1e-3},
+                    {"do": "step", "steps": 20, "within_s": 60},
+                    {"do": "pull", "strand": 6, "at": 1, "target": [0, 0, 0],
+                     "stiffness_n_m": 1e-3}])
+            self.assertIn("6", frames[-1]["refused"])
+            picture = frames[-2]["picture"]
+            heights = heights_of(picture)
+            self.assertGreater(heights[4], 1e-3)
+            for k in (0, 1, 2, 3, 5):
+                self.assertLess(abs(heights[k]), 1e-5)
 
     def test_a_run_that_failed_refuses_to_run(self):
         self.play.do(do="set", key="integrator.id", value="explicit_euler")

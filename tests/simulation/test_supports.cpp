@@ -110,6 +110,10 @@ TEST(Supports, WriteTheirForcesAmongTheColumns) {
       std::ranges::find(readout.series(), "force_strand_0_at_tip_x_n", &Reading::name);
   ASSERT_NE(column, readout.series().end());
   EXPECT_EQ(frame.series[std::size_t(column - readout.series().begin())], force[3]);
+  // For arrows: place and force of each.
+  ASSERT_EQ(frame.reactions.size(), 12U);
+  EXPECT_FLOAT_EQ(frame.reactions[6], 0.55F);
+  EXPECT_EQ(frame.reactions[9], static_cast<float>(force[3]));
 }
 
 /// Models whose points are coordinates, and one with constraints of its own.

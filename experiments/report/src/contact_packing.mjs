@@ -1,7 +1,7 @@
-// Contact forces as bytes, and back: what arrows of them show. A place lies on a grid of the
-// longest side of the scene's box over 1024, a force is rounded to a part of 128 of the usual
-// one, whose arrow is a sixth of the scene's radius; forces that are rounded to nothing are
-// left out. The order within a frame is by x.
+// Forces of contacts and supports as bytes, and back: what arrows of them show. A place lies
+// on a grid of the longest side of the scene's box over 1024, a force is rounded to a part of
+// 128 of the usual one, whose arrow is a sixth of the scene's radius; forces that are rounded
+// to nothing are left out. The order within a frame is by x.
 import { folded, unfolded } from './packing.mjs';
 
 const numbers = 6; // of a contact: place and force

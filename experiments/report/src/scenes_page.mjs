@@ -39,7 +39,7 @@ ${select_html(
 )}
 ${select_html('scene-beside', 'Next to it')}
 ${select_html('scene-colour', 'Colour')}
-${select_html('scene-forces', 'Contact forces', [
+${select_html('scene-forces', 'Forces', [
   ['hidden', 'hidden'],
   ['arrows', 'as arrows'],
 ])}

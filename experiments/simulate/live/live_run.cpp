@@ -168,28 +168,29 @@ void LiveRun::set(const std::string& key, const json& value) {
 }
 
 void LiveRun::pull(const json& command) {
-  if (now_.scene->strands.size() != 1) {
-    const std::size_t count = now_.scene->strands.size();
-    throw InputError(count == 0 ? "a pull is for a strand, and this model has a geometry "
-                                  "of its own"
-                                : fmt::format("a pull is for one strand, and the scene "
-                                              "has {}",
-                                              count),
-                     "live run", "take a scene of one [strand] to pull it");
-  }
+  const std::vector<Strand>& strands = now_.scene->strands;
+  refuse_if(strands.empty(),
+            "a pull is for a strand, and this model has a geometry of its own",
+            "live run", "take a scene with a [strand] to pull it");
+  const json which = command.value("strand", json(0U));
+  refuse_if(
+      !which.is_number_unsigned() || which.get<std::size_t>() >= strands.size(),
+      fmt::format("'strand' is no strand of the scene, which has {}", strands.size()),
+      "live command", "give its number, from 0 on");
+  const auto strand = which.get<std::size_t>();
   const auto target = command.find("target");
   if (target == command.end() || !target->is_array() || target->size() != 3 ||
       !std::ranges::all_of(*target, [](const json& x) { return x.is_number(); })) {
     throw InputError("'target' is no place", "live command", "give three numbers");
   }
   const double k = number_of(command, "stiffness_n_m");
-  EffectChoice choice{&pull_entry(), Parameters(tether_parameters(), "the pull")};
+  EffectChoice choice{&pull_entry(), Parameters(tether_parameters(), "the pull"), strand};
   const auto set = [&](const char* key, double x) {
     choice.parameters.set(key, number_text(x));
   };
   set("at", number_of(command, "at"));
   set("stiffness_n_m", k);
-  set("damping_n_s_m", std::sqrt(std::max(0.0, k) * now_.scene->strands.front().mass()));
+  set("damping_n_s_m", std::sqrt(std::max(0.0, k) * strands[strand].mass()));
   choice.parameters.set(
       "target_m", fmt::format("{},{},{}", (*target)[0].get<double>(),
                               (*target)[1].get<double>(), (*target)[2].get<double>()));

@@ -27,8 +27,8 @@ class LiveRun {
   ///     step     takes `steps` steps, or fewer if they last longer than `within_s`
   ///     restart  returns to t = 0 with the present values and no pull
   ///     set      sets `key` of the scene to `value`
-  ///     pull     pulls the point at the fraction `at` of the strand to `target` (m) with
-  ///              a spring of `stiffness_n_m`
+  ///     pull     pulls the point at the fraction `at` of the strand number `strand`
+  ///              (0 if left out) to `target` (m) with a spring of `stiffness_n_m`
   ///     release  ends the pull
   ///
   /// Throws InputError if it is refused; the run is then unchanged.

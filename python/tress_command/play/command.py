@@ -75,7 +75,7 @@ def _run(words, machine):
 
 COMMAND = Command(
     "play", "SCENE.toml [OPTIONS]",
-    "runs a scene live in the browser: run, pause, step, pull the strand with the mouse, change "
+    "runs a scene live in the browser: run, pause, step, pull a strand with the mouse, change "
     "a parameter. The server listens on the loopback address only. Ctrl-C ends it.",
     _run,
     example="./tress play scenes/hair_under_wind.toml",

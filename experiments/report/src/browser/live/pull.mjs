@@ -14,12 +14,18 @@ export function length_of(positions, first, end) {
   return length;
 }
 
-// The part of the strand's length up to each point: the drawn strand's, from 0 to 1.
-function parts(positions, points) {
+// The part of the strand's length up to each point of a line, from 0 to 1.
+function parts(positions, { starts }, line) {
   const arc = [0];
-  for (let i = 1; i < points; ++i)
-    arc.push(arc[i - 1] + distance(point_of(positions, i), point_of(positions, i - 1)));
+  for (let i = starts[line] + 1; i < starts[line + 1]; ++i)
+    arc.push(arc.at(-1) + distance(point_of(positions, i), point_of(positions, i - 1)));
   return arc.map((length) => length / (arc.at(-1) || 1));
+}
+
+// The strand of a line; none where strands branch, since a part of the length is then no place.
+function strand_of({ strand_ids, starts }, line) {
+  const ids = strand_ids ?? Array.from({ length: starts.length - 1 }, (_, i) => i);
+  return ids.filter((id) => id === ids[line]).length === 1 ? ids[line] : undefined;
 }
 
 export class Pull {
@@ -40,24 +46,27 @@ export class Pull {
   #take(event) {
     const { live } = this;
     if (live.picture === undefined || event.button !== 0 || event.shiftKey) return;
-    if (live.scene.strand_points.length !== 1) return;
     const mouse = this.#mouse(event);
     const view = live.picture.view();
     const positions = live.positions();
     let best = reach;
     let found;
-    for (let i = 0; i < live.scene.points; ++i) {
-      const seen = project(view, point_of(positions, i));
-      const away = Math.hypot(seen.x - mouse.x, seen.y - mouse.y);
-      if (away <= best) [best, found] = [away, { i, depth: seen.depth }];
-    }
-    if (found === undefined) return;
+    const { starts } = live.scene;
+    for (let line = 0; line + 1 < starts.length; ++line)
+      for (let i = starts[line]; i < starts[line + 1]; ++i) {
+        const seen = project(view, point_of(positions, i));
+        const away = Math.hypot(seen.x - mouse.x, seen.y - mouse.y);
+        if (away <= best) [best, found] = [away, { i, line, depth: seen.depth }];
+      }
+    const strand = found && strand_of(live.scene, found.line);
+    if (strand === undefined) return;
     event.stopImmediatePropagation();
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.focus({ preventScroll: true });
     this.held = {
       ...found,
-      part: parts(positions, live.scene.points)[found.i],
+      strand,
+      part: parts(positions, live.scene, found.line)[found.i - starts[found.line]],
       from: mouse,
       place: point_of(positions, found.i),
       target: point_of(positions, found.i),
@@ -79,6 +88,7 @@ export class Pull {
     );
     live.send_last({
       do: 'pull',
+      strand: held.strand,
       at: held.part,
       target: held.target,
       stiffness_n_m: Number(document.getElementById('live-stiffness').value),
@@ -97,16 +107,18 @@ export class Pull {
     const { held, live, canvas } = this;
     if (held === undefined) return;
     const positions = live.positions();
-    const arc = parts(positions, live.scene.points);
+    if (held.line + 1 >= live.scene.starts.length) return;
+    const arc = parts(positions, live.scene, held.line);
     const nearest = arc.reduce(
       (best, part, i) =>
         Math.abs(part - held.part) < Math.abs(arc[best] - held.part) ? i : best,
       0,
     );
     const view = live.picture.view();
-    const [from, to] = [point_of(positions, nearest), held.target].map((point) =>
-      project(view, point),
-    );
+    const [from, to] = [
+      point_of(positions, live.scene.starts[held.line] + nearest),
+      held.target,
+    ].map((point) => project(view, point));
     const context = canvas.getContext('2d');
     context.strokeStyle = theme.text;
     context.lineWidth = 1.5;

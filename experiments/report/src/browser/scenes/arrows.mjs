@@ -1,4 +1,5 @@
-// Forces of contact: an arrow from the place of contact, as long as the force is large.
+// Forces of contacts and supports on strands: an arrow from the place, as long as the
+// force is large.
 import { format_number } from '../../format.mjs';
 import { add, project } from './camera.mjs';
 
