@@ -17,10 +17,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Differences of a residual make a symmetric matrix to 1e-9 of its largest entry.
-constexpr double unsymmetric = 1e-6;
-/// A double real eigenvalue is computed as a pair sqrt(eps) apart.
-constexpr double complex_pair = 1e-6;
+/// Rounding of an eigenvalue over the largest one. A double real eigenvalue, such as that
+/// of bending in both planes of a round section, is computed as a pair whose distance
+/// over its size is the root of this rounding over its size.
+constexpr double eigenvalue_rounding = 64 * std::numeric_limits<double>::epsilon();
 
 /// Indices of the eigenvalues of least size that count as neutral.
 std::vector<Index> neutral_of(const VectorXd& values, int modes) {
@@ -49,11 +49,14 @@ Stability of_following_loads(StaticStrand& strand, const Balance& at,
       squares_of_motions(strand.mass(at), slopes.stiffness, slopes.gradient,
                          slopes.gradient.transpose(), strand.typical());
   all.values.resize(std::ssize(squares));
+  double largest = 0;
+  for (const std::complex<double>& square : squares) {
+    largest = std::max(largest, std::abs(square));
+  }
   for (std::size_t i = 0; i < squares.size(); ++i) {
     all.values[static_cast<Index>(i)] = squares[i].real() / unit;
-    if (std::abs(squares[i].imag()) > complex_pair * std::abs(squares[i])) {
-      all.oscillates = true;
-    }
+    const double split = std::sqrt(eigenvalue_rounding * largest * std::abs(squares[i]));
+    if (std::abs(squares[i].imag()) > split) all.oscillates = true;
   }
   all.neutral.resize(at.q.size(), 0);
   return all;
@@ -72,7 +75,7 @@ Stability stability(StaticStrand& strand, const Balance& at, int neutral_modes) 
                           ? (stiffness - stiffness.transpose()).cwiseAbs().maxCoeff()
                           : 0;
   Stability all;
-  if (skew > unsymmetric * largest) {
+  if (skew > slopes.rounding * largest) {
     all = of_following_loads(strand, at, slopes);
   } else {
     stiffness = (0.5 * (stiffness + stiffness.transpose())).eval();

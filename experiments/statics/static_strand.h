@@ -66,6 +66,9 @@ class StaticStrand {
   struct Slopes {
     Eigen::MatrixXd stiffness;  // dR/dq, (n x n)
     Eigen::MatrixXd gradient;   // G^T, (n x m)
+    /// Bound of the rounding errors of the stiffness over its largest entry. A load that
+    /// follows the strand may be as small against the stiffness of stretch: 1e-9.
+    double rounding;
   };
   /// Returns the derivatives by the coordinates.
   Slopes slopes(const Balance& at);

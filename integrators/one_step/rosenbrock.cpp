@@ -115,13 +115,22 @@ Status RosenbrockStages::step(double t, double h, In q, In v, In a, In /*lambda*
   add(q_, 1, x_[table_.stages - 1]);
   add(v_, 1, z_[table_.stages - 1]);
   add(a_, 1, alpha_[table_.stages - 1]);
-  return all_finite(q_) && all_finite(v_) && all_finite(a_) ? Status::ok : Status::retry;
+  if (!all_finite(q_) || !all_finite(v_) || !all_finite(a_)) return Status::retry;
+  end_ = t + h;
+  g_ = g;
+  return Status::ok;
 }
 
-Status RosenbrockStages::difference(Out dq, Out dv) const noexcept {
-  std::ranges::copy(x_[table_.stages - 1], dq.begin());
-  std::ranges::copy(z_[table_.stages - 1], dv.begin());
-  return Status::ok;
+Status RosenbrockStages::difference(Out dq, Out dv) noexcept {
+  Status s = dynamics_.residual(end_, q_, v_, a_, {}, rhs_, {});
+  if (s == Status::ok) s = dynamics_.solve(rhs_, {});
+  if (s != Status::ok) return s;
+  const std::size_t last = table_.stages - 1;
+  for (std::size_t k = 0; k < rhs_.size(); ++k) {
+    dq[k] = std::abs(x_[last][k]) + g_ * g_ * std::abs(rhs_[k]);
+    dv[k] = std::abs(z_[last][k]) + g_ * std::abs(rhs_[k]);
+  }
+  return s;
 }
 
 std::unique_ptr<Integrator> make_rosenbrock(const RosenbrockTable& table, System& system,

@@ -46,7 +46,8 @@ struct RosenbrockTable {
 /// need no further term, since a is part of the state at which S is taken.
 ///
 /// Cost of a step: a matrix, and three residuals and a solve for each stage, two
-/// residuals for dr/dt. The matrix must be the exact Jacobian.
+/// residuals for dr/dt, a residual and a solve for the estimate. The matrix must be the
+/// exact Jacobian.
 class RosenbrockStages {
  public:
   /// Works on `dynamics`, which must outlive it, as must `table`. Differences of
@@ -67,8 +68,11 @@ class RosenbrockStages {
   In a() const { return a_; }
   /// There are no multipliers.
   In lambda() const { return {}; }
-  /// Writes the method minus its comparison solution over the last step.
-  Status difference(Out dq, Out dv) const noexcept;
+  /// Writes the estimate of the error of the last step: |method minus its comparison
+  /// solution|, plus the correction of the end that the defect r(t, q, v, a) there
+  /// requires. All derivatives are those of the start: where a stiff mass or stiffness
+  /// changes much within a step, both solutions are wrong alike, and the defect shows it.
+  Status difference(Out dq, Out dv) noexcept;
 
  private:
   /// The state at which the derivatives are taken.
@@ -91,6 +95,7 @@ class RosenbrockStages {
   const RosenbrockTable& table_;
   Dynamics& dynamics_;
   double difference_part_;
+  double end_ = 0, g_ = 0;  // of the last step: its end (s), and gamma h
   std::vector<std::vector<double>> x_, z_, alpha_;  // increments of the stages
   std::vector<double> q_, v_, a_;                   // state of the stage, end of the step
   std::vector<double> d_, y_;                       // d and b + d/g of the stage

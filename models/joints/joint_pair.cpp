@@ -77,7 +77,7 @@ void JointPair::hold(const Joint& joint, In q, const std::string& where) {
   a_.hold_section(where);
   b_.hold_section(where);
   const auto at_start = [q](JointEnd& end, const std::optional<Frame>& begin) {
-    return begin ? end.of_model(0, q) * *begin : end.frame(0, q);
+    return begin && end.half_edge() ? end.of_model(0, q) * *begin : end.frame(0, q);
   };
   const Frame of_a = at_start(a_, joint.begin_a), of_b = at_start(b_, joint.begin_b);
   const Frame turn = relative(of_a, of_b);
