@@ -11,7 +11,7 @@
 
 #include "contract/input_error.h"
 #include "experiments/numerics/dense_algebra.h"
-#include "models/turning/turning_system.h"
+#include "models/driven/driven_system.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
@@ -30,12 +30,15 @@ std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
   refuse_if(simulation::SceneJoints(scene).any(),
             "matrices of joined strands, which are one system", "scene " + scene.name,
             "leave out [joints]");
+  refuse_if(!simulation::SceneSupports(scene).on_bodies().empty(),
+            "matrices of a strand that is fixed to a body that it drives",
+            "scene " + scene.name, "give the body another motion");
   const models::Effects effects = simulation::make_effects(scene);
   auto alone =
       scene.model->on_strand(scene.strands[strand], scene.model_options, effects);
-  return models::with_turning_bodies(simulation::SceneSupports(scene).on(
-                                         std::move(alone), scene.strands[strand], strand),
-                                     effects);
+  return models::with_driven_bodies(simulation::SceneSupports(scene).on(
+                                        std::move(alone), scene.strands[strand], strand),
+                                    effects);
 }
 
 Snapshot snapshot_at(const Scene& scene, double time) {

@@ -8,7 +8,7 @@
 #include "experiments/problems/formulations.h"
 #include "experiments/problems/strand_models.h"
 #include "simulation/run/world.h"
-#include "simulation/scene/turning_bodies.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments {
@@ -22,10 +22,11 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
           "the model brings its own geometry: no other model can do this scene", file,
           "give a scene with [strand] or [groom]");
     }
-    refuse_if(simulation::has_turning_bodies(scene),
-              "[effects.body] moves = \"turns\", which is not part of the strand that "
-              "this study makes",
-              file, "use another motion of the body");
+    refuse_if(
+        simulation::has_driven_bodies(scene),
+        "[effects.body] with moves = \"turns\" or \"free\", which is not part of the "
+        "strand that this study makes",
+        file, "use another motion of the body");
     all.push_back({std::filesystem::path(file).filename().string(), std::move(scene)});
   }
   return all;

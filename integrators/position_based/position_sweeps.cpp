@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "contract/forms/turning_bodies.h"
+#include "contract/forms/driven_bodies.h"
 
 namespace tress::integrators {
 namespace {
@@ -164,9 +164,9 @@ void PositionSweeps::solve(Square& a, Rows& b, std::size_t rows) {
 
 std::string compliances(System& system, Formulation /*formulation*/) {
   if (system.compliance_form() != nullptr) return {};
-  if (turning_bodies(system) != nullptr) {
+  if (driven_bodies(system) != nullptr) {
     return "takes forces as compliant constraints, which leave out bodies that strands "
-           "turn";
+           "drive";
   }
   return "needs the model's energy as compliant constraints";
 }

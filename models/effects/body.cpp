@@ -5,6 +5,7 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "models/effects/driven_body.h"
 #include "models/effects/exact_body.h"
 #include "models/mesh/mesh_grid.h"
 #include "models/motion/signals.h"
@@ -42,6 +43,44 @@ BodyShape make_shape(const Parameters& parameters) {
 Frame turned_by(const Vec& turn) {
   const double angle = norm(turn);
   return angle > 0 ? rotation((1 / angle) * turn, angle) : Frame{};
+}
+
+/// Principal moments of a body of constant density; none: its shape has none here.
+std::optional<Vec> inertia_of(const Parameters& parameters, double mass) {
+  const std::string_view word = parameters.word("shape");
+  const double r = parameters.number("radius_m"), square = r * r;
+  if (word == "sphere") {
+    const double i = 0.4 * mass * square;
+    return Vec{i, i, i};
+  }
+  if (word == "ellipsoid") {
+    const Vec a = parameters.vec("half_axes_m");
+    return mass / 5 *
+           Vec{a.y * a.y + a.z * a.z, a.x * a.x + a.z * a.z, a.x * a.x + a.y * a.y};
+  }
+  if (word != "capsule") return {};
+  // A cylinder along z and two half spheres, whose centres of mass are 3/8 r from their
+  // faces.
+  const double h = parameters.number("length_m"), whole = h + 4.0 / 3 * r;
+  const double cylinder = mass * h / whole, spheres = mass - cylinder;
+  const double across = cylinder * (h * h / 12 + square / 4) +
+                        spheres * (0.4 * square + h * h / 4 + 0.375 * h * r);
+  return Vec{across, across, cylinder * square / 2 + spheres * 0.4 * square};
+}
+
+FreeBody free_body(const Parameters& parameters) {
+  FreeBody body{.mass = parameters.number("mass_kg"),
+                .inertia = parameters.vec("principal_inertias_kg_m2"),
+                .velocity = parameters.vec("velocity_m_per_s"),
+                .spin = parameters.vec("spin_rad_per_s")};
+  if (norm(body.inertia) > 0) return body;
+  const std::optional<Vec> uniform = inertia_of(parameters, body.mass);
+  refuse_if(!uniform,
+            "moves = \"free\" without moments of inertia, which do not follow from this "
+            "shape",
+            "effect body", "give principal_inertias_kg_m2");
+  body.inertia = *uniform;
+  return body;
 }
 
 }  // namespace
@@ -85,11 +124,13 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                           turned_by(parameters.vec("rotation_rad"))};
   std::optional<RootMotion> follows = body_motion(parameters, head);
   const bool rigid = parameters.word("normal") == "rigid";
-  const bool turns = parameters.word("moves") == "turns";
+  const std::string moves(parameters.word("moves"));
+  const bool driven = moves == "turns" || moves == "free";
   if (parameters.word("friction_law") == "exact") {
-    refuse_if(turns,
-              "moves = \"turns\" with friction_law = \"exact\", whose solver takes the "
-              "motion of bodies as given",
+    refuse_if(driven,
+              "moves = \"" + moves +
+                  "\" with friction_law = \"exact\", whose solver "
+                  "takes the motion of bodies as given",
               "effect body", "use friction_law = \"regularised\"");
     return std::make_unique<ExactBody>(
         make_shape(parameters), place,
@@ -101,8 +142,11 @@ std::unique_ptr<const Effect> make_body(const Parameters& parameters,
                      "effect body", "set friction_law = \"exact\" or leave them out");
   }
   Body made(make_shape(parameters), place, law, std::move(follows));
-  if (!turns) return std::make_unique<Body>(std::move(made));
-  return std::make_unique<TurningBody>(
+  if (!driven) return std::make_unique<Body>(std::move(made));
+  if (moves == "free") {
+    return std::make_unique<DrivenBody>(std::move(made), free_body(parameters));
+  }
+  return std::make_unique<DrivenBody>(
       std::move(made), Bearing{.axis = parameters.vec("axis"),
                                .pivot = place.x + parameters.vec("pivot_m"),
                                .inertia = parameters.number("inertia_kg_m2"),

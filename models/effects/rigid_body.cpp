@@ -64,9 +64,10 @@ constexpr Parameter parameters_of_body[] = {
      .min = 0,
      .max = 1e6},
     {.name = "moves",
-     .help = "motion of the body: none, that of the head, that of its own rows, or the "
-             "turning about `axis` that strands and torque_n_m cause",
-     .choices = "fixed|head|keyframes|poses|turns"},
+     .help = "motion of the body: none, that of the head, or that of its own rows. "
+             "`turns`: strands and torque_n_m turn it about `axis`. `free`: strands and "
+             "[effects.gravity] move it",
+     .choices = "fixed|head|keyframes|poses|turns|free"},
     {.name = "keyframes",
      .help = "moves = keyframes: rows of t, x, y, z, angle (s, m, rad) relative to its "
              "place, as those of [root]. The angle is about `axis` through centre_m",
@@ -113,6 +114,32 @@ constexpr Parameter parameters_of_body[] = {
      .help = "moves = turns: angular velocity at the start (rad/s)",
      .min = -1e6,
      .max = 1e6},
+    {.name = "mass_kg",
+     .help = "moves = free: mass (kg); its centre is centre_m",
+     .number = 1e-3,
+     .min = 1e-30,
+     .max = 1e12},
+    {.name = "principal_inertias_kg_m2",
+     .help =
+         "moves = free: moments of inertia about the axes of the body (kg m^2), which "
+         "rotation_rad turns. 0, 0, 0: of a sphere, capsule or ellipsoid with "
+         "constant density",
+     .min = 0,
+     .max = 1e12,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "velocity_m_per_s",
+     .help = "moves = free: velocity of the centre at the start (m/s)",
+     .min = -1e6,
+     .max = 1e6,
+     .components = 3,
+     .fallback = "0,0,0"},
+    {.name = "spin_rad_per_s",
+     .help = "moves = free: angular velocity at the start, in the world (rad/s)",
+     .min = -1e6,
+     .max = 1e6,
+     .components = 3,
+     .fallback = "0,0,0"},
     {.name = "stiffness_n_m2",
      .help = "contact force per length and depth (N/m^2). At 10 a hair at rest sinks by "
              "6 um, and fixed steps of 1 ms allow little more",
@@ -172,6 +199,7 @@ constexpr EffectUse uses_of_body[] = {
     {"moves", "turns",
      "axis|pivot_m|inertia_kg_m2|bearing_damping_n_m_s|torque_n_m|"
      "angular_velocity_rad_per_s"},
+    {"moves", "free", "mass_kg|principal_inertias_kg_m2|velocity_m_per_s|spin_rad_per_s"},
     {"friction_law", "exact", "normal|restitution"},
     {"friction_law", "regularised", "slip_speed_m_s"},
     {"normal", "compliant", "stiffness_n_m2|damping_s_m"},

@@ -7,11 +7,12 @@
 
 namespace tress::models {
 
-StrandBlock::StrandBlock(std::vector<std::unique_ptr<System>> strands)
+StrandBlock::StrandBlock(std::vector<std::unique_ptr<System>> strands, std::size_t bodies)
     : strands_(std::move(strands)) {
   for (const auto& strand : strands_) {
     const MaterialPoints* points = strand->material_points();
     first_.push_back(first_.back() + strand->layout().coordinates);
+    if (first_.size() + bodies > strands_.size() + 1) continue;
     first_point_.push_back(first_point_.back() +
                            (points == nullptr ? 0 : points->count()));
   }
@@ -167,13 +168,13 @@ int StrandBlock::before(int i) const {
 }
 
 void StrandBlock::positions(double t, In q, Out x) {
-  for (std::size_t k = 0; k < strands(); ++k) {
+  for (std::size_t k = 0; k < shown(); ++k) {
     strands_[k]->material_points()->positions(t, part(q, k), points_of(k, x));
   }
 }
 
 void StrandBlock::velocities(double t, In q, In v, Out u) {
-  for (std::size_t k = 0; k < strands(); ++k) {
+  for (std::size_t k = 0; k < shown(); ++k) {
     strands_[k]->material_points()->velocities(t, part(q, k), part(v, k),
                                                points_of(k, u));
   }
@@ -181,7 +182,7 @@ void StrandBlock::velocities(double t, In q, In v, Out u) {
 
 std::optional<double> StrandBlock::stretch(double t, In q) {
   double most = 0;
-  for (std::size_t k = 0; k < strands(); ++k) {
+  for (std::size_t k = 0; k < shown(); ++k) {
     const auto own = strands_[k]->material_points()->stretch(t, part(q, k));
     if (!own) return {};
     most = std::max(most, *own);

@@ -19,8 +19,10 @@ class StrandBlock : public System,
                     protected Energetics,
                     protected MaterialPoints {
  public:
-  /// Strands without constraints, at least one.
-  explicit StrandBlock(std::vector<std::unique_ptr<System>> strands);
+  /// Strands without constraints, at least one. The last `bodies` of them are bodies,
+  /// whose points are not those of the block.
+  explicit StrandBlock(std::vector<std::unique_ptr<System>> strands,
+                       std::size_t bodies = 0);
 
   Layout layout() const override { return {first_.back(), 0}; }
   Traits traits() const override;
@@ -36,7 +38,7 @@ class StrandBlock : public System,
   Energetics* energetics() override;
   MaterialPoints* material_points() override { return this; }
 
-  /// Returns the number of strands.
+  /// Returns the number of strands and bodies.
   std::size_t strands() const { return strands_.size(); }
   /// Returns the system of strand k.
   System& strand(std::size_t k) const { return *strands_[k]; }
@@ -62,6 +64,8 @@ class StrandBlock : public System,
   Energy energy(double t, In q, In v) override;
   std::optional<Momentum> momentum(double t, In q, In v) override;
   double power(double t, In q, In v) override;
+  /// Returns the number of strands without bodies.
+  std::size_t shown() const { return first_point_.size() - 1; }
   int count() const override { return first_point_.back(); }
   int before(int i) const override;
   void positions(double t, In q, Out x) override;

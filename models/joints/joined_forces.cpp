@@ -78,6 +78,21 @@ Status JoinedSystem::joint_forces(double t, In q, In v, Out forces, Out moments)
   return Status::ok;
 }
 
+double JoinedSystem::power_into_bodies(double t, In q, In v) {
+  if (hold(t, q, v) != Status::ok) return std::nan("");
+  double sum = 0;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (body(ends_[2 * j].strand) == nullptr) continue;
+    const JointLoad load = joints_[j].load(t, q, v, rows_->of_joint(lambda_, j));
+    JointEnd& end = joints_[j].end(0);
+    sum -= dot(load.force, end.velocity(t, q, v));
+    if (norm(load.moment) > 0) {
+      sum -= dot(load.moment, end.section(t, q, v, zero_).omega);
+    }
+  }
+  return sum;
+}
+
 double JoinedSystem::moment_power(double t, In q, In v, const Vec& turning) {
   double sum = 0;
   for (std::size_t k = 0; k < strands(); ++k) {

@@ -24,8 +24,8 @@ InOut column(Eigen::MatrixXd& of, Eigen::Index k) {
 
 JoinedSystem::JoinedSystem(std::vector<std::unique_ptr<SupportedSystem>> strands,
                            const std::vector<Joint>& joints,
-                           const std::vector<std::string>& where)
-    : StrandBlock(as_systems(std::move(strands))) {
+                           const std::vector<std::string>& where, std::size_t bodies)
+    : StrandBlock(as_systems(std::move(strands)), bodies) {
   const auto n = static_cast<std::size_t>(StrandBlock::layout().coordinates);
   std::vector<JoinedRows::Member> members;
   for (std::size_t k = 0; k < this->strands(); ++k) {
@@ -267,6 +267,25 @@ void JoinedSystem::take_stresses(double t, In q, Stresses stresses) noexcept {
 
 void JoinedSystem::reset() {
   for (std::size_t k = 0; k < strands(); ++k) strand(k).reset();
+}
+
+std::optional<std::size_t> JoinedSystem::member_of(const DrivenBody& effect) const {
+  for (std::size_t k = shown(); k < strands(); ++k) {
+    if (&body(k)->effect() == &effect) return k;
+  }
+  return {};
+}
+
+BodySystem* JoinedSystem::body(std::size_t k) const {
+  return k < shown() ? nullptr : &dynamic_cast<BodySystem&>(held_[k]->strand());
+}
+
+std::unique_ptr<SupportedSystem> as_supported(std::unique_ptr<System> strand) {
+  if (dynamic_cast<SupportedSystem*>(strand.get()) != nullptr) {
+    return std::unique_ptr<SupportedSystem>(
+        static_cast<SupportedSystem*>(strand.release()));
+  }
+  return std::make_unique<SupportedSystem>(std::move(strand), std::vector<Support>{});
 }
 
 }  // namespace tress::models

@@ -14,6 +14,7 @@
 #include "contract/forms/support_forces.h"
 #include "linear/bordered.h"
 #include "linear/dense_lu.h"
+#include "models/bodies/body_system.h"
 #include "models/groom/strand_block.h"
 #include "models/joints/joined_rows.h"
 
@@ -38,15 +39,25 @@ class JoinedSystem final : public StrandBlock,
                            private MovingHistory,
                            private StressForm {
  public:
-  /// `where`: of each joint, in messages. Throws InputError naming it if the models do
-  /// not admit the joint.
+  /// `where`: of each joint, in messages. The last `bodies` strands are BodySystems; they
+  /// are the first ends of joints. Throws InputError naming a joint that the models do
+  /// not admit.
   JoinedSystem(std::vector<std::unique_ptr<SupportedSystem>> strands,
-               const std::vector<Joint>& joints, const std::vector<std::string>& where);
+               const std::vector<Joint>& joints, const std::vector<std::string>& where,
+               std::size_t bodies = 0);
 
   /// Returns the constraints.
   JoinedRows& rows() { return *rows_; }
   /// Returns a strand with its supports.
   SupportedSystem& held(std::size_t k) const { return *held_[k]; }
+  /// Returns the number of the strand that is this body; empty: none.
+  std::optional<std::size_t> member_of(const DrivenBody& effect) const;
+  /// Returns the body that is strand k; null: it is a strand.
+  BodySystem* body(std::size_t k) const;
+  /// Returns the first coordinate of strand k.
+  std::size_t first_coordinate(std::size_t k) const { return first_of(k); }
+  /// Returns the power of the joints on bodies, W.
+  double power_into_bodies(double t, In q, In v);
   /// The state from which runs begin.
   void begin_at(In q, In v);
 
@@ -141,5 +152,8 @@ class JoinedSystem final : public StrandBlock,
   std::unique_ptr<Bordered> eliminated_;
   std::vector<double> gradient_, lambda_, acceleration_, alone_, zero_, v_typ_, scratch_;
 };
+
+/// Returns a strand as one with supports, which it may be already.
+std::unique_ptr<SupportedSystem> as_supported(std::unique_ptr<System> strand);
 
 }  // namespace tress::models

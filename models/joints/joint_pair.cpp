@@ -86,7 +86,7 @@ void JointPair::hold(const Joint& joint, In q, const std::string& where) {
     measure_ = Sections::Turning::tangent;
     axes_ = along(of_b.back(joint.axis));
   }
-  if (a_.half_edge()) {
+  if (a_.half_edge() || b_.half_edge()) {
     Matrix3d k = in_series(joint.half_a.stiffness, joint.half_b.stiffness, matrix(turn));
     const double da = joint.half_a.friction.x, db = joint.half_b.friction.x;
     const double friction = da > 0 && db > 0 ? 1 / (1 / da + 1 / db) : 0;

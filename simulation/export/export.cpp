@@ -10,7 +10,8 @@
 #include <numeric>
 
 #include "math/quaternion.h"
-#include "models/effects/body.h"
+#include "models/effects/driven_body.h"
+#include "simulation/run/body_columns.h"
 
 namespace tress::simulation {
 namespace {
@@ -72,13 +73,11 @@ nlohmann::ordered_json pose_of(const Outline& body) {
   return {body.x.x, body.x.y, body.x.z, q.w, q.v.x, q.v.y, q.v.z};
 }
 
-/// Place of a body in a frame, which has the angle of one that strands turn.
+/// Place of a body in a frame, which has the columns of one that strands drive.
 Outline outline_in(const Animation& animation, const Frame3d& frame, const Effect& effect,
                    const std::string& name) {
-  if (const auto* turning = dynamic_cast<const models::TurningBody*>(&effect)) {
-    const auto column = std::ranges::find(
-        animation.series, fmt::format("angle_{}_rad", name), &Reading::name);
-    turning->turn_to(frame.series[std::size_t(column - animation.series.begin())], 0);
+  if (const auto* driven = dynamic_cast<const models::DrivenBody*>(&effect)) {
+    driven->move_to(place_in(*driven, name, animation.series, frame.series));
   }
   return *effect.outline(frame.series[0]);
 }

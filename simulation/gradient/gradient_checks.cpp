@@ -8,10 +8,10 @@
 #include "integrators/gradient/gradient_run.h"
 #include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/scene_gradient.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
-#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -67,10 +67,11 @@ void check_derivatives(const Scene& scene) {
             "no gradient of strands with [joints]: derivatives of joined strands, which "
             "move as one system, are not available",
             place, "leave out [joints]");
-  refuse_if(has_turning_bodies(scene),
-            "no gradient of a strand that turns a body: derivatives of the body's motion "
-            "are not available",
-            place, "use another motion of [effects.body] than moves = \"turns\"");
+  refuse_if(
+      has_driven_bodies(scene),
+      "no gradient of a strand that drives a body: derivatives of the body's motion "
+      "are not available",
+      place, "use another motion of [effects.body] than moves = \"turns\" or \"free\"");
   const SceneSupports supports(scene);
   if (supports.drive()) {
     throw InputError(

@@ -5,9 +5,9 @@
 #include "contract/shipped_file.h"
 #include "simulation/files/toml_text.h"
 #include "simulation/head/no_head.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -26,9 +26,11 @@ std::optional<NoHead> no_strand_alone(const Scene& scene) {
     return NoHead{"[joints] make one system of several strands",
                   "leave them out, or give --as strands", "joints"};
   }
-  if (has_turning_bodies(scene)) {
-    return NoHead{"[effects.body] moves = \"turns\" makes one system of strand and body",
-                  "use another motion, or give --as strands", "effects.body"};
+  if (has_driven_bodies(scene)) {
+    return NoHead{
+        "[effects.body] with moves = \"turns\" or \"free\" makes one system of strand "
+        "and body",
+        "use another motion, or give --as strands", "effects.body"};
   }
   if (scene.friction() != nullptr) {
     return NoHead{"[effects.strand_friction] solves the contacts of all strands together",

@@ -41,7 +41,7 @@ Guard::Guard(System& system, std::vector<GuardedStrand> strands, std::size_t fir
       strands_(std::move(strands)),
       first_(first),
       supports_(support_forces(system)),
-      bodies_(turning_bodies(system)),
+      bodies_(driven_bodies(system)),
       natural_moves_(supports_ != nullptr && supports_->natural_moves()) {
   const auto count = points_ == nullptr ? 0 : static_cast<std::size_t>(points_->count());
   for (auto* list : {&x_, &u_, &tangent_, &load_}) list->resize(3 * count);
@@ -63,13 +63,14 @@ void Guard::start(double t, In q, In v) {
   account_.start(t, begin, slack(t, q, v, begin));
 }
 
-/// Bodies that strands turn drive them, and have an energy of their own: as much as it
-/// may be, it is no slack of the strands.
+/// Bodies drive the strands that drive them, and have an energy of their own: as much as
+/// it may be, it is no slack of the strands.
 Guard::Seen Guard::look(double t, In q, In v) {
   Seen seen{energetics_->energy(t, q, v), energetics_->power(t, q, v)};
   if (bodies_ == nullptr) return seen;
-  const TurningBodies::OfBodies bodies = bodies_->energy_of_bodies(t, q, v);
+  const DrivenBodies::OfBodies bodies = bodies_->energy_of_bodies(t, q, v);
   seen.energy.kinetic -= bodies.kinetic;
+  seen.energy.potential -= bodies.potential;
   seen.power -= bodies.rate;
   seen.to_bodies = bodies.from_strands;
   return seen;

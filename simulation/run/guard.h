@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "contract/forms/driven_bodies.h"
 #include "contract/forms/energetics.h"
 #include "contract/forms/material_points.h"
 #include "contract/forms/support_forces.h"
-#include "contract/forms/turning_bodies.h"
 #include "simulation/run/energy_account.h"
 #include "simulation/run/guarded_strand.h"
 #include "simulation/run/method_dissipation.h"
@@ -83,7 +83,7 @@ class Guard {
   struct Natural {
     double put_in = 0, work = 0, uncertain = 0;
   };
-  /// Energy of the strands and its rate, without the bodies that they turn.
+  /// Energy of the strands and its rate, without the bodies that they drive.
   struct Seen {
     Energy energy;
     double power = 0, to_bodies = 0;  // W; to_bodies: into the bodies
@@ -113,7 +113,7 @@ class Guard {
   std::vector<int> before_;                     // each point along its strand, -1: none
   std::vector<double> x_, u_, tangent_, load_;  // (3 points); u_: relative to the frame
   SupportForces* supports_;                     // null: none
-  TurningBodies* bodies_;                       // null: none
+  DrivenBodies* bodies_;                        // null: none
   bool natural_moves_;                          // natural strains do
   Natural natural_;
   double t_before_ = 0;           // s, at the last step, if natural strains move

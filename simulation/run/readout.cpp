@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "models/effects/effect.h"
+#include "simulation/run/body_columns.h"
 #include "simulation/run/line_curvature.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
-#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -35,12 +36,13 @@ Readout::Readout(const Scene& scene, const World& world)
     : scene_(scene),
       effects_(make_effects(scene)),
       supports_(SceneSupports(scene).named()) {
-  for (NamedSupport& joint : SceneJoints(scene).named()) {
-    supports_.push_back(std::move(joint));
+  for (auto& more :
+       {SceneJoints(scene).named(), SceneSupports(scene).named_on_bodies()}) {
+    supports_.insert(supports_.end(), more.begin(), more.end());
   }
   find_lines(world);
-  const std::vector<std::string> names = effect_names(scene),
-                                 turning = turning_body_names(scene);
+  const std::vector<std::string> names = effect_names(scene);
+
   const auto add = [this](std::string name, std::string help) {
     series_.push_back({std::move(name), std::move(help)});
   };
@@ -62,7 +64,7 @@ Readout::Readout(const Scene& scene, const World& world)
   add("penetration_m",
       "largest depth of a strand in a body since the last frame, at the ends of all "
       "steps and on paths through a body within a step. Strands are straight between "
-      "their points. Paths through bodies that strands turn are left out");
+      "their points. Paths through bodies that strands drive are left out");
   add("touching_pairs",
       "strands that come closer than the inner radius; pairs of pieces that rub");
   add("mean_distance_m", "mean distance from a strand to the nearest other one");
@@ -75,10 +77,8 @@ Readout::Readout(const Scene& scene, const World& world)
   if (scene.failed_strands == FailedStrands::stay) {
     add("failed_strands", "strands that have failed and stay where they are");
   }
-  for (const std::string& name : turning) {
-    add(fmt::format("angle_{}_rad", name),
-        "angle by which strands have turned the body, about its axis");
-    add(fmt::format("speed_{}_rad_per_s", name), "angular velocity of the body");
+  for (const DrivenName& body : driven_body_names(scene)) {
+    for (Reading& column : columns_of(body)) series_.push_back(std::move(column));
   }
   first_load_ = series_.size();
   for (const NamedSupport& support : supports_) {
@@ -114,11 +114,9 @@ Frame3d Readout::read(World& world) {
   Frame3d frame;
   std::vector<double>& row = frame.series;
   row.assign(1, world.time());
-  const std::vector<TurningBodies::Turn> turns = world.turns();
-  const auto bodies = models::turning_bodies(effects_);
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    bodies[k]->turn_to(turns[k].angle, turns[k].speed);
-  }
+  const std::vector<DrivenBodies::Motion> motions = world.body_motions();
+  const auto bodies = models::driven_bodies(effects_);
+  for (std::size_t k = 0; k < bodies.size(); ++k) bodies[k]->move_to(motions[k]);
   read_points(world, frame);
   const Energies energies = world.energies();
   row.push_back(energies.kinetic);
@@ -147,7 +145,9 @@ Frame3d Readout::read(World& world) {
   if (scene_.failed_strands == FailedStrands::stay) {
     row.push_back(static_cast<double>(world.lost().size()));
   }
-  for (const auto& [angle, speed] : turns) row.insert(row.end(), {angle, speed});
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    append_motion(*bodies[k], motions[k], row);
+  }
   const World::SupportLoads loads = world.support_loads();
   for (std::size_t i = 0; i < 3 * supports_.size(); i += 3) {
     const auto append = [&](bool held, const std::vector<double>& of) {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "contract/forms/natural_strains.h"
-#include "models/turning/turning_system.h"
+#include "models/driven/driven_system.h"
 #include "simulation/scene/joined_start.h"
 
 namespace tress::simulation {
@@ -102,7 +102,7 @@ SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) c
   if (supports_.hold(number)) {
     made.supported = begin_on_supports(*made.system, supports_.place(number));
   }
-  made.system = models::with_turning_bodies(std::move(made.system), effects_);
+  made.system = models::with_driven_bodies(std::move(made.system), effects_);
   add_guard(made, {&strand, 1}, number);
   return made;
 }
@@ -126,11 +126,11 @@ SteppedSystem StrandMaker::joined(std::span<const StrandToMake> strands,
         begin_on_supports(*systems.back(), supports_.place(number));
     if (one.moved >= supported.moved) supported = one;
   }
-  SteppedSystem made(joints_.join(group, std::move(systems), each));
+  SteppedSystem made(joints_.join(group, std::move(systems), each, effects_));
   made.meters = std::move(meters);
   made.supported = supported;
-  if (!group.joints.empty()) begin_on_joints(*made.system, joints_.places(group));
-  made.system = models::with_turning_bodies(std::move(made.system), effects_);
+  if (joints_.hold(group)) begin_on_joints(*made.system, joints_.places(group));
+  made.system = models::with_driven_bodies(std::move(made.system), effects_);
   if (!guard_) return made;
   // Joints between strands do no work only in a common frame.
   std::vector<GuardedStrand> all = guarded(strands);

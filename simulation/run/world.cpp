@@ -101,6 +101,16 @@ Energies World::energies() {
       of_effects += body.meters[i]->last();
     }
     if (body.coupled != nullptr) of_effects += body.coupled->contact_potential(t_, q, v);
+    if (DrivenBodies* const driven = tress::driven_bodies(*body.system)) {
+      const Vec moment = driven->mass_moment(q);
+      for (std::size_t i = 0; i < sum.effects.size(); ++i) {
+        if (maker_.effects()[i]->name() != "gravity") continue;
+        const double weight =
+            -dot(maker_.effects()[i]->uniform_acceleration().value_or(Vec{}), moment);
+        sum.effects[i] += weight;
+        of_effects += weight;
+      }
+    }
     sum.kinetic += one.kinetic;
     sum.elastic += one.potential - of_effects;
   }
@@ -131,12 +141,12 @@ std::vector<ContactForce> World::contact_forces() {
   return all;
 }
 
-std::vector<TurningBodies::Turn> World::turns() const {
-  std::vector<TurningBodies::Turn> all;
+std::vector<DrivenBodies::Motion> World::body_motions() const {
+  std::vector<DrivenBodies::Motion> all;
   for (const Body& body : bodies_) {
-    const TurningBodies* const bodies = tress::turning_bodies(*body.system);
+    const DrivenBodies* const bodies = tress::driven_bodies(*body.system);
     for (std::size_t k = 0; bodies != nullptr && k < bodies->bodies(); ++k) {
-      all.push_back(bodies->turn(body.seen_q(), body.seen_v(), k));
+      all.push_back(bodies->motion(body.seen_q(), body.seen_v(), k));
     }
   }
   return all;

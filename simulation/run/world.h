@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "contract/forms/turning_bodies.h"
+#include "contract/forms/driven_bodies.h"
 #include "integrators/control/point_norm.h"
 #include "integrators/control/rewindable.h"
 #include "integrators/control/step_control.h"
@@ -131,7 +131,7 @@ class World {
   /// Returns the loads of all supports and joints.
   SupportLoads support_loads();
   /// Returns the motions of bodies that strands turn.
-  std::vector<TurningBodies::Turn> turns() const;
+  std::vector<DrivenBodies::Motion> body_motions() const;
   /// Returns the strands that began away from their supports, in words.
   std::vector<std::string> supported_starts() const;
 

@@ -7,7 +7,7 @@
 
 #include "contract/input_error.h"
 #include "math/pack.h"
-#include "models/turning/turning_system.h"
+#include "models/driven/driven_system.h"
 #include "simulation/rest/overlap_at_start.h"
 #include "simulation/run/memory.h"
 #include "simulation/run/world.h"
@@ -80,13 +80,15 @@ void World::add(SteppedSystem made, std::size_t strands, const StrandBlock* bloc
   }
   body.memory.assign(strands, 0);
   body.memory.front() = system->memory().size();
+  std::size_t all = 0;
   for (std::size_t k = 0; k < strands; ++k) {
     System& strand = block->strand(k);
     body.coordinates[k] = static_cast<std::size_t>(strand.layout().coordinates);
+    all += body.coordinates[k];
     points_.push_back(strand.material_points()->count());
   }
-  // Angles of bodies come last.
-  body.coordinates.back() += n - static_cast<std::size_t>(block->layout().coordinates);
+  // Those of bodies come last.
+  body.coordinates.back() += n - all;
 }
 
 Effects World::effects_between(std::size_t strand) const {

@@ -10,8 +10,8 @@
 #include "contract/input_error.h"
 #include "models/joints/joined_system.h"
 #include "models/strand/geometry.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/turning_bodies.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
@@ -151,11 +151,13 @@ Table read_joint(const toml::table& table, const std::string& file) {
   return read;
 }
 
-SceneJoints::SceneJoints(const Scene& scene) : tables_(scene.tables) {
+SceneJoints::SceneJoints(const Scene& scene)
+    : tables_(scene.tables), on_bodies_(SceneSupports(scene).on_bodies()) {
   if (tables_ != nullptr && !tables().empty()) read_ends();
   std::size_t last = 0;
   for (const Ends& ends : ends_) last = std::max({last, ends.a, ends.b});
-  if (!has_turning_bodies(scene) || scene.strands.size() < 2) {
+  const bool one = scene.strands.size() < 2 && on_bodies_.empty();
+  if (!has_driven_bodies(scene) || one) {
     if (any()) find_groups(last + 1);
     return;
   }
@@ -234,6 +236,7 @@ std::vector<NamedSupport> SceneJoints::named() const {
 std::vector<std::string> SceneJoints::places(const Group& group) const {
   std::vector<std::string> all;
   for (const std::size_t j : group.joints) all.push_back(tables()[j].place());
+  for (const auto& support : on_bodies_) all.push_back(support.table->place());
   return all;
 }
 
@@ -241,10 +244,11 @@ const std::string& SceneJoints::place() const { return tables().front().place();
 
 std::unique_ptr<System> SceneJoints::join(const Group& group,
                                           std::vector<std::unique_ptr<System>> systems,
-                                          std::span<const Strand* const> strands) const {
+                                          std::span<const Strand* const> strands,
+                                          const models::Effects& effects) const {
   std::vector<std::unique_ptr<SupportedSystem>> held;
   std::vector<std::vector<double>> x;
-  const bool joined = !group.joints.empty();
+  const bool joined = hold(group);
   const std::string where = joined ? places(group).front() : "effect body";
   for (std::size_t k = 0; k < systems.size(); ++k) {
     models::check_unbranched(*strands[k], where);
@@ -263,12 +267,7 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
     systems[k]->initial_state(q, v);
     points->positions(0, q,
                       x.emplace_back(3 * static_cast<std::size_t>(points->count())));
-    if (dynamic_cast<SupportedSystem*>(systems[k].get()) != nullptr) {
-      held.emplace_back(dynamic_cast<SupportedSystem*>(systems[k].release()));
-    } else {
-      held.push_back(std::make_unique<SupportedSystem>(std::move(systems[k]),
-                                                       std::vector<models::Support>{}));
-    }
+    held.push_back(models::as_supported(std::move(systems[k])));
   }
   std::vector<Joint> joints;
   for (const std::size_t j : group.joints) {
@@ -281,11 +280,7 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
       const auto [name, at] = end_of(table, key);
       const int point =
           point_at(at, *strands[k], fmt::format("strand {}", name), table.place(key));
-      const auto& segments = strands[k]->segments;
-      const models::Segment& edge = point == 0 ? segments.front() : segments.back();
-      half = models::rod_joint(*strands[k], nullptr, edge, {});
-      // A strand that has found its equilibrium has no moment at an end.
-      if (!held[k]->begins_elsewhere()) begin = models::strain_of_half(edge, point > 0);
+      prepare_half(*strands[k], *held[k], point, half, begin);
       return models::StrandPoint{k, point};
     };
     joint.a = end("a", ends_[j].a, joint.half_a, joint.begin_a);
@@ -304,7 +299,20 @@ std::unique_ptr<System> SceneJoints::join(const Group& group,
                                                                             : 0;
     joints.push_back(joint);
   }
-  return std::make_unique<models::JoinedSystem>(std::move(held), joints, places(group));
+  std::vector<PointOnBody> on_bodies;
+  for (const BodySupport& support : on_bodies_) {
+    const Parameters& p = support.table->values();
+    const auto number = static_cast<std::size_t>(p.whole("strand"));
+    const std::size_t k = number - group.first;
+    const int point =
+        point_at(p.word("at"), *strands[k], fmt::format("strand {}", number),
+                 support.table->place("at"));
+    on_bodies.push_back({support, {k, point}});
+  }
+  const std::size_t bodies =
+      add_body_joints(on_bodies, effects, {strands, x, held, joints});
+  return std::make_unique<models::JoinedSystem>(std::move(held), joints, places(group),
+                                                bodies);
 }
 
 void SceneJoints::check(const Scene& scene) const {

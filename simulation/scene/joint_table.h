@@ -29,12 +29,16 @@ class SceneJoints {
   explicit SceneJoints(const Scene& scene);
 
   /// Strands first to first + count - 1, which their joints make one system. Bodies that
-  /// strands turn make all strands of the scene one system.
+  /// strands drive make all strands of the scene one system.
   struct Group {
     std::size_t first = 0;              // number of the first strand
     std::size_t count = 1;              // number of strands
     std::vector<std::size_t> joints{};  // numbers of tables
   };
+  /// Returns true if joints or supports on driven bodies hold a group.
+  bool hold(const Group& group) const {
+    return !group.joints.empty() || !on_bodies_.empty();
+  }
   /// Returns true if the scene has joints.
   bool any() const { return !ends_.empty(); }
   /// Returns all groups, ascending.
@@ -45,17 +49,18 @@ class SceneJoints {
   const Group* of(std::size_t strand) const;
   /// Returns the names of all joints, group after group.
   std::vector<NamedSupport> named() const;
-  /// Returns the locations of the joints of a group.
+  /// Returns the locations of the joints of a group, then of supports on driven bodies.
   std::vector<std::string> places(const Group& group) const;
   /// Returns the location of the first joint, which must exist.
   const std::string& place() const;
 
   /// Returns the strands of a group, as SceneSupports::on() makes them, with their
-  /// joints. Throws InputError with the location of a joint that the strands do not
-  /// admit.
+  /// joints and those of the driven bodies among `effects` that carry supports. Throws
+  /// InputError with the location of a joint or a support that the strands do not admit.
   std::unique_ptr<System> join(const Group& group,
                                std::vector<std::unique_ptr<System>> systems,
-                               std::span<const Strand* const> strands) const;
+                               std::span<const Strand* const> strands,
+                               const models::Effects& effects) const;
   /// Throws InputError with its location if the rest of the scene does not admit joints.
   void check(const Scene& scene) const;
 
@@ -70,6 +75,7 @@ class SceneJoints {
 
   std::shared_ptr<const StrandTables> tables_;
   std::vector<Ends> ends_;  // of each table
+  std::vector<BodySupport> on_bodies_;
   std::vector<Group> groups_;
 };
 

@@ -12,10 +12,10 @@
 #include "models/effects/body.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
-#include "simulation/scene/turning_bodies.h"
 
 namespace tress::simulation {
 namespace {
@@ -173,8 +173,8 @@ void check_joints(const Scene& scene, const ScenePlaces& places,
       });
       systems.push_back(supports.on(std::move(alone), strand, k));
     }
-    const auto system = models::with_turning_bodies(
-        joints.join(group, std::move(systems), strands), effects);
+    const auto system = models::with_driven_bodies(
+        joints.join(group, std::move(systems), strands, effects), effects);
     check_integrator(scene, *system, places);
   }
 }
@@ -202,7 +202,7 @@ std::string not_carried(const EffectChoice& choice) {
   if (id == "tether" || id == "ring") return "which holds a point at a place of its own";
   if (id == "control_mesh") return "whose links hold between steps";
   if (id == "strand_friction") return "whose impulses act between steps";
-  if (turns(choice)) return "whose bearing does not jump";
+  if (driven(choice)) return "which does not jump";
   return {};
 }
 
@@ -281,7 +281,7 @@ void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
   const SceneJoints joints(scene);
   supports.check(scene);
   joints.check(scene);
-  check_turning_bodies(scene, places.effects, strands);
+  check_driven_bodies(scene, places.effects, strands);
   check_teleports(scene, places);
   check_friction(scene, places);
   check_mesh(scene, places);
@@ -316,7 +316,7 @@ void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
     };
     auto alone = supports.on(at_place(place, make), scene.strands[i], number);
     const auto system = at_place(
-        place, [&] { return models::with_turning_bodies(std::move(alone), effects); });
+        place, [&] { return models::with_driven_bodies(std::move(alone), effects); });
     if (!scene.head.teleports.empty() || !scene.strands[i].root.teleports.empty()) {
       const std::string why = not_carried(scene, scene.strands[i], *system);
       refuse_if(!why.empty(), "a root that teleports with " + why, place,

@@ -65,8 +65,9 @@ constexpr Parameter support_parameters[] = {
      .rows = true},
     {.name = "on",
      .help = "carrier of the support, which moves it rigidly: \"head\" (the motion of "
-             "[root]), or a body with a prescribed motion. A body has its name in the "
-             "columns, such as \"body_2\". Empty: none",
+             "[root]), or a body that moves. Strands drive a body with moves = "
+             "\"turns\" or \"free\" by it. A body has its name in the columns, such as "
+             "\"body_2\". Empty: none",
      .text = true,
      .fallback = ""},
     {.name = "slide",

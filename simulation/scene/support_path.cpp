@@ -10,7 +10,7 @@
 #include "contract/input_error.h"
 #include "models/effects/body.h"
 #include "models/motion/signals.h"
-#include "simulation/scene/turning_bodies.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/table/read_table.h"
 
 namespace tress::simulation {
@@ -114,8 +114,8 @@ std::vector<Carrier> carriers(const Scene& scene) {
     if (choice.entry->id != "body") continue;
     if (auto motion = models::body_motion(choice.parameters, scene.head)) {
       all.push_back({names[i], *std::move(motion)});
-    } else {
-      all.push_back({names[i], {}, turns(choice) ? Carrier::turned : Carrier::still});
+    } else if (!driven(choice)) {
+      all.push_back({names[i], {}, Carrier::still});
     }
   }
   return all;
@@ -137,19 +137,12 @@ RootMotion support_path(const Table& table, const models::StrandPlace& start,
                 on == "head" ? "leave on out, or give [root] a motion of the head"
                              : "leave on out, or give the body moves = \"keyframes\" or "
                                "\"poses\"");
-      refuse_if(carrier.is == Carrier::turned,
-                fmt::format("a support on \"{}\", which strands turn: its motion is not "
-                            "prescribed",
-                            on),
-                table.place("on"),
-                "give the body moves = \"keyframes\" or \"poses\", or leave on out");
       return models::carried(carrier.motion, start);
     }
     throw InputError(fmt::format("a support on '{}', which is no body of the scene", on),
                      table.place("on"),
                      known.empty()
-                         ? "leave on out: nothing in the scene has a prescribed "
-                           "motion"
+                         ? "leave on out, or give a body that moves"
                          : known);
   }
   const auto [t, x, y, z] = columns<4>(table.values().numbers("keyframes"));

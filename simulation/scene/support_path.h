@@ -10,15 +10,15 @@
 /// Motion of a support over time, from its table.
 namespace tress::simulation {
 
-/// A head or a body, on which supports may be.
+/// A head, or a body that strands do not drive.
 struct Carrier {
-  /// Kinds of motion: prescribed, none, or computed.
-  enum Motion { moves, still, turned };
+  /// Kinds of motion: prescribed or none.
+  enum Motion { moves, still };
   std::string name;           // "head", or that of a body
   models::RootMotion motion;  // if it moves
   Motion is = moves;          // supports are on those that move
 };
-/// Returns the head and the bodies of a scene.
+/// Returns the head and the bodies of a scene that strands do not drive.
 std::vector<Carrier> carriers(const Scene& scene);
 
 /// Returns the motion that a [[supports]] table describes: that of its carrier among

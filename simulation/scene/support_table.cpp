@@ -14,6 +14,7 @@
 #include "models/strand/geometry.h"
 #include "models/supports/supported_system.h"
 #include "simulation/driven/strand_drives.h"
+#include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_keys.h"
 #include "simulation/scene/support_path.h"
@@ -33,6 +34,14 @@ int point_of(const Table& table, const Strand& strand) {
   return point_at(table.values().word("at"), strand,
                   fmt::format("strand {}", table.values().whole("strand")),
                   table.place("at"));
+}
+
+NamedSupport name_of(const Table& table) {
+  const std::string_view kind = table.values().word("kind");
+  const std::string name = fmt::format("strand_{}_at_{}", table.values().whole("strand"),
+                                       table.values().word("at"));
+  return {name, kind != "direction", kind != "ball",
+          "the support " + name + " on the strand"};
 }
 
 /// The edge at an end of a strand.
@@ -114,7 +123,9 @@ SceneSupports::SceneSupports(const Scene& scene)
   const auto on_body = [](const Table& table) {
     return !table.values().word("on").empty();
   };
-  if (std::ranges::any_of(tables(), on_body)) carriers_ = carriers(scene);
+  if (std::ranges::none_of(tables(), on_body)) return;
+  carriers_ = carriers(scene);
+  for (const DrivenName& body : driven_body_names(scene)) driven_.push_back(body.name);
 }
 
 const std::vector<Table>& SceneSupports::tables() const {
@@ -139,20 +150,33 @@ const std::string& SceneSupports::first_place() const {
 std::vector<const Table*> SceneSupports::of(std::size_t strand) const {
   std::vector<const Table*> own;
   for (const Table& table : tables()) {
+    if (std::ranges::count(driven_, table.values().word("on")) > 0) continue;
     if (table.values().whole("strand") == static_cast<int>(strand)) own.push_back(&table);
   }
   return own;
 }
 
+std::vector<BodySupport> SceneSupports::on_bodies() const {
+  std::vector<BodySupport> all;
+  for (const Table& table : tables()) {
+    const auto body = std::ranges::find(driven_, table.values().word("on"));
+    if (body == driven_.end()) continue;
+    all.push_back({&table, static_cast<std::size_t>(body - driven_.begin())});
+  }
+  return all;
+}
+
+std::vector<NamedSupport> SceneSupports::named_on_bodies() const {
+  std::vector<NamedSupport> all;
+  for (const BodySupport& support : on_bodies()) all.push_back(name_of(*support.table));
+  return all;
+}
+
 std::vector<NamedSupport> SceneSupports::named() const {
   std::vector<std::pair<int, NamedSupport>> all;
   for (const Table& table : tables()) {
-    const int strand = table.values().whole("strand");
-    const std::string_view kind = table.values().word("kind");
-    const std::string name =
-        fmt::format("strand_{}_at_{}", strand, table.values().word("at"));
-    all.emplace_back(strand, NamedSupport{name, kind != "direction", kind != "ball",
-                                          "the support " + name + " on the strand"});
+    if (std::ranges::count(driven_, table.values().word("on")) > 0) continue;
+    all.emplace_back(table.values().whole("strand"), name_of(table));
   }
   std::ranges::stable_sort(all, {}, &std::pair<int, NamedSupport>::first);
   std::vector<NamedSupport> named;

@@ -8,6 +8,7 @@
 
 #include "contract/system.h"
 #include "models/supports/support_rows.h"
+#include "simulation/driven/body_joints.h"
 #include "simulation/files/toml_text.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/support_path.h"
@@ -48,9 +49,14 @@ class SceneSupports {
   bool constrain() const;
   /// Returns the name of the first of these tables, such as "[supports]".
   std::string table_name() const;
-  /// Returns the names of all supports, strand after strand.
+  /// Returns the names of all supports that are not on driven bodies, strand after
+  /// strand.
   std::vector<NamedSupport> named() const;
-  /// Returns true if a strand has supports.
+  /// Returns the supports on driven bodies in the order of their tables.
+  std::vector<BodySupport> on_bodies() const;
+  /// Returns their names.
+  std::vector<NamedSupport> named_on_bodies() const;
+  /// Returns true if a strand has supports that are not on driven bodies.
   bool hold(std::size_t strand) const { return !of(strand).empty(); }
   /// Returns true if on() changes a strand.
   bool change(std::size_t strand) const { return drive() || hold(strand); }
@@ -84,6 +90,7 @@ class SceneSupports {
   Parameters model_options_;
   double duration_;
   std::vector<Carrier> carriers_;
+  std::vector<std::string> driven_;  // names of the driven bodies
 };
 
 /// Returns the formulation that suits the scene's method. It is index 3 for a method of

@@ -66,7 +66,7 @@ TEST(MovingBody, MovesAsTheHeadByTheSameKeyframes) {
 
 /// A belt carries a strand that sticks to it: the belt's acceleration is 1.4 m/s^2 at
 /// most, friction bears 4.9. The strand keeps its place on the belt to the tolerance of
-/// contact, 1e-6 m (TurningBody in tests/models/effects).
+/// contact, 1e-6 m (DrivenBody in tests/models/effects).
 TEST(MovingBody, CarriesAStrandThatSticks) {
   for (const char* model : {"der", "super_helix", "mass_spring"}) {
     SCOPED_TRACE(model);

@@ -34,9 +34,9 @@ Turned run(const std::string& text, double end) {
   const Scene scene = parse_scene(text, "pulley.toml");
   World world(scene);
   EXPECT_EQ(world.advance(end), Status::ok) << world.failure();
-  const auto turns = world.turns();
-  EXPECT_EQ(turns.size(), 1U);
-  return {turns.front().angle, turns.front().speed};
+  const auto motions = world.body_motions();
+  EXPECT_EQ(motions.size(), 1U);
+  return {motions.front().angle, motions.front().speed};
 }
 
 /// An inextensible limp rope on a pulley, x the half of the difference of its sides:
@@ -145,7 +145,7 @@ TEST(APulley, PullsAtASupportByItsMoment) {
     const Scene scene = parse_scene(text, "pulley.toml");
     World world(scene);
     EXPECT_EQ(world.advance(20), Status::ok) << world.failure();
-    EXPECT_LT(std::abs(world.turns().front().speed), 1e-4);
+    EXPECT_LT(std::abs(world.body_motions().front().speed), 1e-4);
     return world.support_loads().forces[2];
   };
   EXPECT_NEAR(force("0.02") - force("-0.02"), -0.04 / 0.201, 0.014 * 0.04 / 0.201);
@@ -183,8 +183,8 @@ TEST(APulley, WritesItsAngleAndSpeed) {
     ADD_FAILURE() << name;
     return 0.0;
   };
-  EXPECT_EQ(column("angle_body_rad"), world.turns().front().angle);
-  EXPECT_EQ(column("speed_body_rad_per_s"), world.turns().front().speed);
+  EXPECT_EQ(column("angle_body_rad"), world.body_motions().front().angle);
+  EXPECT_EQ(column("speed_body_rad_per_s"), world.body_motions().front().speed);
   EXPECT_GT(column("speed_body_rad_per_s"), 0);
 }
 
@@ -201,7 +201,7 @@ TEST(APulley, RefusesWhatItsEquationsLeaveOut) {
   says(refusal([&] {
          World(parse_scene("failed_strands = \"stay\"\n" + two_ropes(), "pulley.toml"));
        }),
-       "failed_strands = \"stay\" for strands that turn a body");
+       "failed_strands = \"stay\" for strands that drive a body");
   says(refused("inertia_kg_m2 = 6.6e-3", "inertia_kg_m2 = 0"), "inertia_kg_m2");
   says(refused("axis = [0, 1, 0]", "axis = [0, 0, 0]"), "its axis has no direction");
   says(refused("moves = \"turns\"", "moves = \"fixed\""),

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "linear/kkt.h"
+#include "models/effects/driven_body.h"
 #include "models/strand/rod_joint.h"
 #include "tests/models/joints/joined_strands.h"
 #include "tests/support/catalogue_cases.h"
@@ -25,6 +27,7 @@ struct Case {
   const char* model;
   JointKind kind;
   bool loop = false;  // a second joint between the middles of the strands
+  enum class Body { none, turns, free } body = Body::none;  // in place of the second
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }  // NOLINT
 
@@ -32,8 +35,45 @@ const ModelSettings curved{{"elements", "4"},
                            {"natural_curvature_per_m", "10"},
                            {"internal_friction_kg_m3_s", "0"}};
 
+/// A strand with a moving clamp, and a body at its tip. It is as heavy as the strand.
+std::unique_ptr<models::JoinedSystem> with_body(const Case& of) {
+  const ModelSettings settings = with(curved, {{"motion", "shake_rotate"}});
+  const Strand strand = strand_at(of.model, settings);
+  const Vec tip = tip_of(strand).x;
+  const models::BodyContact law{.stiffness = 1, .damping = 0, .friction = 0};
+  models::BodyDrive drive = models::FreeBody{.mass = 1e-6,
+                                             .inertia = {1e-10, 1.5e-10, 2e-10},
+                                             .velocity = {},
+                                             .spin = {1, 2, 3}};
+  if (of.body == Case::Body::turns) {
+    drive = models::Bearing{.axis = {0.3, 1, -0.2},
+                            .pivot = tip + Vec{0.01, -0.02, 0.03},
+                            .inertia = 1e-9,
+                            .damping = 1e-9};
+  }
+  static std::vector<std::unique_ptr<models::DrivenBody>> bodies;
+  bodies.push_back(std::make_unique<models::DrivenBody>(
+      models::Body(models::Sphere{0.01},
+                   {tip + Vec{0.01, 0, 0.02}, rotation({0, 0, 1}, 0.3)}, law),
+      drive));
+  std::vector<std::unique_ptr<SupportedSystem>> members;
+  members.push_back(joinable(of.model, settings, strand));
+  auto body = models::make_body_system(*bodies.back(), {0, 0, -9.81},
+                                       models::typical_motion(*members.front()));
+  Joint joint = joint_of(of.kind, {1, body->add_point(tip)}, {0, 4});
+  joint.axis = {0.3, 1, -0.2};
+  constexpr double rigid = std::numeric_limits<double>::infinity();
+  joint.half_a = {{}, {rigid, rigid, rigid}, {rigid, rigid, rigid}};
+  joint.half_b = rod_joint(strand, nullptr, strand.segments.back(), {});
+  members.push_back(models::as_supported(std::move(body)));
+  return std::make_unique<models::JoinedSystem>(std::move(members),
+                                                std::vector<Joint>{joint},
+                                                std::vector<std::string>{"joint"}, 1);
+}
+
 /// A strand with a moving clamp, and one whose free root begins at its tip, at an angle.
 std::unique_ptr<models::JoinedSystem> pair_of(const Case& of) {
+  if (of.body != Case::Body::none) return with_body(of);
   const ModelSettings settings = with(curved, {{"motion", "shake_rotate"}});
   const Strand a = strand_at(of.model, settings);
   StrandPlace root = tip_of(a);
@@ -254,6 +294,28 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"der_weld", "der", JointKind::weld},
                     Case{"der_hinge", "der", JointKind::hinge, true},
                     Case{"der_spring", "der", JointKind::spring}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+constexpr auto turns = Case::Body::turns, moves = Case::Body::free;
+
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, JoinedStrands,
+    testing::Values(
+        Case{"helix_ball_turns", "super_helix", JointKind::ball, false, turns},
+        Case{"helix_ball_free", "super_helix", JointKind::ball, false, moves},
+        Case{"helix_weld_turns", "super_helix", JointKind::weld, false, turns},
+        Case{"helix_weld_free", "super_helix", JointKind::weld, false, moves},
+        Case{"helix_hinge_free", "super_helix", JointKind::hinge, false, moves},
+        Case{"clothoid_weld_free", "super_clothoid", JointKind::weld, false, moves},
+        Case{"clothoid_hinge_turns", "super_clothoid", JointKind::hinge, false, turns},
+        Case{"chain_ball_free", "articulated_chain", JointKind::ball, false, moves},
+        Case{"chain_weld_free", "articulated_chain", JointKind::weld, false, moves},
+        Case{"der_ball_free", "der", JointKind::ball, false, moves},
+        Case{"der_weld_turns", "der", JointKind::weld, false, turns},
+        Case{"der_weld_free", "der", JointKind::weld, false, moves},
+        Case{"der_hinge_free", "der", JointKind::hinge, false, moves},
+        Case{"springs_ball_free", "mass_spring", JointKind::ball, false, moves},
+        Case{"corde_weld_free", "corde", JointKind::weld, false, moves}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace tress::test_joined_system

@@ -9,10 +9,10 @@ namespace tress::models {
 
 /// The constraints of a strand as those of the strand with turning bodies, whose angles
 /// come after the strand's coordinates: rows of G without entries at the angles.
-class TurningRows final : public ConstraintForm {
+class DrivenRows final : public ConstraintForm {
  public:
   /// `coordinates`: with the angles. `strand` must outlive it.
-  TurningRows(System& strand, std::size_t coordinates);
+  DrivenRows(System& strand, std::size_t coordinates);
 
   const Pattern& pattern() const override { return pattern_; }
   void scale(Out g_typ) const override { rows_.scale(g_typ); }

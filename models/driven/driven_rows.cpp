@@ -1,4 +1,4 @@
-#include "models/turning/turning_rows.h"
+#include "models/driven/driven_rows.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace tress::models {
 
-TurningRows::TurningRows(System& strand, std::size_t coordinates)
+DrivenRows::DrivenRows(System& strand, std::size_t coordinates)
     : strand_(strand),
       rows_(*strand.constraint_form()),
       size_(static_cast<std::size_t>(strand.layout().coordinates)),
@@ -14,8 +14,8 @@ TurningRows::TurningRows(System& strand, std::size_t coordinates)
   pattern_.rows = static_cast<int>(coordinates);
 }
 
-Status TurningRows::add_curvature(double t, In q, In lambda, double factor,
-                                  InOut s) noexcept {
+Status DrivenRows::add_curvature(double t, In q, In lambda, double factor,
+                                 InOut s) noexcept {
   const Pattern& own = strand_.sparse_form()->pattern();
   own_.assign(static_cast<std::size_t>(own.nonzeros()), 0.0);
   const Status status = rows_.add_curvature(t, of_strand(q), lambda, factor, own_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/forms/bordered_form.h"
+#include "contract/forms/driven_bodies.h"
 #include "contract/forms/energetics.h"
 #include "contract/forms/explicit_form.h"
 #include "contract/forms/joint_forces.h"
@@ -14,51 +15,50 @@
 #include "contract/forms/moving_history.h"
 #include "contract/forms/stress_form.h"
 #include "contract/forms/support_forces.h"
-#include "contract/forms/turning_bodies.h"
 #include "linear/dense_lu.h"
-#include "models/effects/body.h"
+#include "models/bodies/body_system.h"
+#include "models/driven/driven_rows.h"
 #include "models/groom/strand_block.h"
+#include "models/joints/joined_system.h"
 #include "models/supports/dense_tangent.h"
-#include "models/turning/turning_rows.h"
 
 namespace tress::models {
 
-/// A strand, or several as one system, with the bodies that they turn. The coordinates
-/// are those of the strand, then the angle theta of each body about its axis:
+/// A strand, or several as one system, with the bodies that they drive. The coordinates
+/// are those of the strand, then those of each body (BodySystem). Bodies to which strands
+/// are joined are members of the JoinedSystem, its last ones; others follow it. Strand
+/// and bodies are solved together, so a light body is as stable as a heavy one.
 ///
-///     I theta'' + c theta' - M - m(q, q', theta, theta') = 0,
+/// The matrix is that of strand and bodies, plus U V^T: the derivatives of the contact
+/// forces, two columns for each coordinate of a body that is touched
+/// (Sherman-Morrison-Woodbury). They are mapped by the strand's own residual with these
+/// as loads. In models whose points are not linear in the coordinates, the derivative of
+/// the points' velocities by the coordinates is a central difference along the motion. A
+/// matrix costs two solves and 3 to 7 residuals for each such coordinate more.
 ///
-/// with the moment of inertia I, the damping c of the bearing, the prescribed moment M
-/// and the moment m of the contact forces (TurningBody). The equations are solved
-/// together, so a light body is as stable as a heavy one.
-///
-/// The matrix is that of the strand with a border: a column and a row for each body. The
-/// border has the derivatives of the contact forces, mapped by the strand's own residual
-/// with these as loads. In models whose points are not linear in the coordinates, the
-/// derivative of the points' velocities by the coordinates is a central difference along
-/// the motion. A matrix costs one solve and 3 to 7 residuals for each body more.
-///
-/// Supports, joints and constraints are those of the strand (TurningRows).
-class TurningSystem final : public System,
-                            public TurningBodies,
-                            public BorderedForm,
-                            public SupportForces,
-                            public JointForces,
-                            private SparseForm,
-                            private Energetics,
-                            private ExplicitForm,
-                            private MaterialPoints,
-                            private MovingHistory,
-                            private StressForm {
+/// Supports, joints and constraints are those of the strand (DrivenRows).
+class DrivenSystem final : public System,
+                           public DrivenBodies,
+                           public BorderedForm,
+                           public SupportForces,
+                           public JointForces,
+                           private SparseForm,
+                           private Energetics,
+                           private ExplicitForm,
+                           private MaterialPoints,
+                           private MovingHistory,
+                           private StressForm {
  public:
   /// The bodies are effects on the strand and must outlive it. A strand with constraints
-  /// must have a BorderedForm. Throws InputError if it has exact contact.
-  TurningSystem(std::unique_ptr<System> strand, std::vector<const TurningBody*> bodies);
+  /// must have a BorderedForm. `gravity`: acceleration of free bodies, m/s^2. Throws
+  /// InputError if the strand has exact contact.
+  DrivenSystem(std::unique_ptr<System> strand,
+               const std::vector<const DrivenBody*>& bodies, const Vec& gravity);
 
   Layout layout() const override {
     return {static_cast<int>(all_), strand_->layout().constraints};
   }
-  Traits traits() const override { return strand_->traits(); }
+  Traits traits() const override;
   void initial_state(Out q, Out v) const override;
   void scale(Out q_typ, Out v_typ) const override;
   Status residual(double t, In q, In v, In a, Out r) noexcept override;
@@ -95,10 +95,11 @@ class TurningSystem final : public System,
   System& strand() const { return *strand_; }
 
   std::size_t bodies() const override { return bodies_.size(); }
-  Turn turn(In q, In v, std::size_t body) const override {
-    return {q[strand_size_ + body], v[strand_size_ + body]};
+  Motion motion(In q, In v, std::size_t body) const override {
+    return bodies_[body].system->motion(of_body(q, body), of_body(v, body));
   }
   OfBodies energy_of_bodies(double t, In q, In v) override;
+  Vec mass_moment(In q) const override;
 
   std::size_t supports() const override {
     return supports_ == nullptr ? 0 : supports_->supports();
@@ -123,41 +124,62 @@ class TurningSystem final : public System,
     std::vector<double> q, v, a, lambda;
     Weights w;
   };
+  /// A body.
+  struct Driven {
+    const DrivenBody* effect;
+    BodySystem* system;
+    std::size_t first, size;            // coordinates among all
+    std::size_t column;                 // first one among those of all bodies
+    std::optional<std::size_t> member;  // number in the JoinedSystem
+  };
   template <class Span>
   Span of_strand(Span all) const {
     return all.first(strand_size_);
   }
-  /// Sets the angles and the angular velocities of all bodies.
+  template <class Span>
+  Span of_body(Span all, std::size_t k) const {
+    return all.subspan(bodies_[k].first, bodies_[k].size);
+  }
+  /// Sets the motion of all bodies.
   void place(In q, In v) const;
   /// Calls act(), a residual of the strand, while the bodies record their loads.
   template <class Act>
   Status recorded(const Act& act) noexcept {
-    for (const TurningBody* body : bodies_) body->record();
+    for (const Driven& body : bodies_) body.effect->record();
     const Status s = act();
-    for (const TurningBody* body : bodies_) body->act();
+    for (const Driven& body : bodies_) body.effect->act();
     return s;
+  }
+  /// Calls act(body, its number) for each body that is no member of the JoinedSystem.
+  template <class Act>
+  Status each_loose(const Act& act) const noexcept {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (bodies_[k].member) continue;
+      if (const Status s = act(*bodies_[k].system, k); s != Status::ok) return s;
+    }
+    return Status::ok;
   }
   static InOut column(Eigen::MatrixXd& of, std::size_t k) {
     return {of.col(static_cast<Eigen::Index>(k)).data(),
             static_cast<std::size_t>(of.rows())};
   }
-  double driving_moment(std::size_t k, double speed) const;
-  /// Returns the kinetic energy of the bodies, J.
-  double kinetic(In v) const;
   Status border(double t, In q, In v, Weights w) noexcept;
+  Status border_of(std::size_t k, double t, In q, In v, Weights w) noexcept;
   double lift(In loads) const;
-  Status pull(double t, In q, std::size_t k, In loads, Out to) noexcept;
-  Status add_turning_points(double t, In q, In v, std::size_t k) noexcept;
+  Status pull(double t, In q, std::size_t k, In loads, InOut to) noexcept;
+  Status add_turning_points(double t, In q, In v, std::size_t k, In rate,
+                            InOut to) noexcept;
+  Status couple() noexcept;
+  Status solve_parts(InOut x) noexcept;
 
   const Pattern& pattern() const override { return full_->pattern(); }
   Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
   Status factor(double t, In q, In v, In a, In lambda, Weights w) noexcept;
   Status acceleration(double t, In q, In v, Out a) noexcept override;
   Energy energy(double t, In q, In v) override;
-  /// Returns the momentum of the strand alone: the bearings carry momentum away.
-  std::optional<Momentum> momentum(double t, In q, In v) override {
-    return strand_->energetics()->momentum(t, of_strand(q), of_strand(v));
-  }
+  /// Returns the momentum of the strand and the free bodies: bearings carry momentum
+  /// away.
+  std::optional<Momentum> momentum(double t, In q, In v) override;
   double power(double t, In q, In v) override;
 
   int count() const override { return points_->count(); }
@@ -180,44 +202,44 @@ class TurningSystem final : public System,
   void reset() override;
   std::vector<double> memory() const override;
   void recall(In memory) override;
-  bool carry(double t, InOut q, InOut v, InOut a) const override {
-    return tress::carry(*strand_, t, of_strand(q), of_strand(v), of_strand(a));
-  }
+  bool carry(double t, InOut q, InOut v, InOut a) const override;
   std::string not_smooth() const override { return tress::not_smooth(*strand_); }
   void take_stresses(double t, In q, Stresses stresses) noexcept override {
     strand_->stress_form()->take_stresses(t, of_strand(q), stresses);
   }
 
   std::unique_ptr<System> strand_;
-  std::vector<const TurningBody*> bodies_;
+  JoinedSystem* joined_;  // the strand; null: it is another system
+  std::vector<Driven> bodies_;
+  std::vector<std::unique_ptr<BodySystem>> loose_;
   MaterialPoints* points_;
   BorderedForm* constrained_;  // null: the strand has no constraints
   SupportForces* supports_;    // null: none
   JointForces* joints_;        // null: none
-  std::optional<TurningRows> rows_;
+  std::optional<DrivenRows> rows_;
   std::optional<DenseTangent> full_;  // made when it is needed
   std::size_t strand_size_, all_;
   bool linear_points_;  // points are means of coordinates
-  double rate_ = 0;     // largest typical rate of a coordinate, 1/s
   std::vector<double> q_typ_, zero_;
   Linearized last_;         // of systems with constraints
   bool disturbed_ = false;  // values() has factored another matrix since
-  // Of the last linearize().
-  bool bordered_ = false;      // the strand and the bodies touch
-  Eigen::MatrixXd column_;     // derivatives of the strand's residual by bodies
-  Eigen::MatrixXd responses_;  // S^-1 of them
-  Eigen::MatrixXd row_;        // derivatives of the bodies' residuals, a column each
-  Eigen::VectorXd own_;        // of these by their own motion
-  Eigen::MatrixXd inner_;      // Schur complement
+  // Of the last linearize(), where strand and bodies touch: column k of u_ has the
+  // derivatives of the strand's residual by a coordinate of a body, that of v_ a 1 there;
+  // of the second half, the opposite.
+  bool coupled_ = false;
+  Eigen::MatrixXd u_, v_;
+  Eigen::MatrixXd responses_;  // S^-1 U
+  Eigen::MatrixXd inner_;      // 1 + V^T S^-1 U
   Eigen::VectorXd inner_x_;
   DenseLu lu_;
-  TurningBody::Slopes slopes_;
-  std::vector<double> r_, base_, shifted_, ahead_, behind_;  // scratch
+  std::vector<Screw> screws_;
+  DrivenBody::Slopes slopes_;
+  std::vector<double> r_, base_, pulled_, shifted_;  // scratch
 };
 
-/// Returns the strand, with the turning bodies among these effects if there are any.
-std::unique_ptr<System> with_turning_bodies(std::unique_ptr<System> strand,
-                                            const Effects& effects);
+/// Returns the strand, with the driven bodies among these effects if there are any.
+std::unique_ptr<System> with_driven_bodies(std::unique_ptr<System> strand,
+                                           const Effects& effects);
 /// Returns the strands that are one system, with bodies or without; null for one strand.
 const StrandBlock* block_of(const System& system);
 
