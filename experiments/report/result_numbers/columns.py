@@ -180,6 +180,11 @@ def series(tables):
         ("<effect>_j", "potential energy of the effect"),
         ("angle_<body>_rad", "angle by which strands have turned a body, about its axis"),
         ("speed_<body>_rad_per_s", "angular velocity of a body that strands turn"),
+        ("position_<body>_x_m, position_<body>_y_m, position_<body>_z_m", "centre of mass of a free body"),
+        (", ".join(f"orientation_<body>_{part}" for part in "wxyz"),
+         "quaternion that turns the world's axes to those of a free body"),
+        (", ".join(f"velocity_<body>_{part}_m_per_s" for part in "xyz"), "velocity of the centre of mass"),
+        (", ".join(f"spin_<body>_{part}_rad_per_s" for part in "xyz"), "angular velocity of a free body"),
         ("force_<support>_x_n, force_<support>_y_n, force_<support>_z_n", "force of a support on the strand"),
     ]
     there = {column for columns, _ in strands for column in columns.split(", ")}
