@@ -17,9 +17,10 @@ struct BodyMotionOf {
 
 /// A body that turns about a bearing.
 struct TurningKernel {
-  static constexpr int size = 1;
-  Bearing bearing;
+  static constexpr int size = 1;  // coordinates: the angle
+  Bearing bearing;                // its axis has length 1
 
+  /// Returns the motion at coordinates, their rates and second derivatives.
   template <class T>
   BodyMotionOf<T> motion(const T* q, const T* v, const T* a) const {
     using std::cos;
@@ -36,12 +37,12 @@ struct TurningKernel {
     m.alpha = a[0] * e;
     return m;
   }
-  /// r: the generalised force of a force and a moment at the reference point.
+  /// Writes the generalised force r of a force and a moment at the reference point.
   template <class T>
   void project(const T*, const Vec3<T>&, const Vec3<T>& moment, T* r) const {
     r[0] = dot(Vec3<T>(bearing.axis), moment);
   }
-  /// r = M a - f, without strands.
+  /// Writes r = M a - f, without the forces of strands.
   template <class T>
   void equations(const T*, const T* v, const T* a, T* r) const {
     r[0] = bearing.inertia * a[0] + bearing.damping * v[0] - T(bearing.moment);
@@ -50,33 +51,38 @@ struct TurningKernel {
 
 /// A body that moves freely.
 struct FreeKernel {
-  static constexpr int size = 6;
-  FreeBody body;
-  Mat3 inertia;  // about the axes of the world, turned with the body
-  Vec gravity;
-  Frame reference{};
+  static constexpr int size = 6;  // coordinates: place and rotation vector
+  FreeBody body;                  // mass, and the motion at the start
+  Mat3 inertia;                   // about the axes of the world, turned with the body
+  Vec gravity;                    // acceleration, m/s^2
+  Frame reference{};              // rotation from which the rotation vector counts
 
+  /// Returns the rotation of the rotation vector.
   template <class T>
   RotationChart<T> chart(const T* q) const {
     return RotationChart<T>(Vec3<T>(q[3], q[4], q[5]));
   }
+  /// Returns a vector with components in the reference in those of the world.
   template <class T>
   Vec3<T> world(const Vec3<T>& x) const {
     return FrameOf<T>{Vec3<T>(reference.e0), Vec3<T>(reference.e1),
                       Vec3<T>(reference.e2)} *
            x;
   }
+  /// Returns a vector with components in the world in those of the reference.
   template <class T>
   Vec3<T> in_reference(const Vec3<T>& x) const {
     return {dot(Vec3<T>(reference.e0), x), dot(Vec3<T>(reference.e1), x),
             dot(Vec3<T>(reference.e2), x)};
   }
+  /// Returns the angular momentum of an angular velocity, both in the body's components.
   template <class T>
   Vec3<T> momentum(const Vec3<T>& omega) const {
     return {dot(Vec3<T>(inertia.r0), omega), dot(Vec3<T>(inertia.r1), omega),
             dot(Vec3<T>(inertia.r2), omega)};
   }
 
+  /// Returns the motion at coordinates, their rates and second derivatives.
   template <class T>
   BodyMotionOf<T> motion(const T* q, const T* v, const T* a) const {
     const RotationChart<T> at = chart(q);
@@ -86,11 +92,13 @@ struct FreeKernel {
             {a[0], a[1], a[2]}, {world(turn.e0), world(turn.e1), world(turn.e2)},
             world(at.w(rate)),  world(at.w(second) + at.w_rate(rate))};
   }
+  /// Writes the generalised force r of a force and a moment at the centre.
   template <class T>
   void project(const T* q, const Vec3<T>& force, const Vec3<T>& moment, T* r) const {
     store3(force, r);
     store3(chart(q).w_transposed(in_reference(moment)), r + 3);
   }
+  /// Writes r = M a - f, without the forces of strands.
   template <class T>
   void equations(const T* q, const T* v, const T* a, T* r) const {
     const RotationChart<T> at = chart(q);

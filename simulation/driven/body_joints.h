@@ -24,7 +24,7 @@ struct BodySupport {
 };
 /// A support and the point that it holds.
 struct PointOnBody {
-  BodySupport support;
+  BodySupport support;     // its table and its body
   models::StrandPoint at;  // among the joined strands
 };
 
@@ -36,10 +36,10 @@ void prepare_half(const models::Strand& strand, const models::SupportedSystem& h
 
 /// Strands that are joined.
 struct JoinedStrands {
-  std::span<const models::Strand* const> strands;
-  std::span<const std::vector<double>> points;  // of each strand at the start
-  std::vector<std::unique_ptr<models::SupportedSystem>>& held;
-  std::vector<models::Joint>& joints;
+  std::span<const models::Strand* const> strands;  // as the scene describes them
+  std::span<const std::vector<double>> points;     // of each strand at the start
+  std::vector<std::unique_ptr<models::SupportedSystem>>& held;  // bodies come last
+  std::vector<models::Joint>& joints;  // those of supports on bodies come last
 };
 
 /// Adds the driven bodies among `effects` that carry supports, and a joint for each
