@@ -135,15 +135,13 @@ RootMotion support_path(const Table& table, const models::StrandPlace& start,
                 fmt::format("a support on \"{}\", which does not move", on),
                 table.place("on"),
                 on == "head" ? "leave on out, or give [root] a motion of the head"
-                             : "leave on out, or give the body moves = \"keyframes\" or "
-                               "\"poses\"");
+                             : "leave on out, or give the body moves = \"keyframes\", "
+                               "\"poses\", \"turns\" or \"free\"");
       return models::carried(carrier.motion, start);
     }
     throw InputError(fmt::format("a support on '{}', which is no body of the scene", on),
                      table.place("on"),
-                     known.empty()
-                         ? "leave on out, or give a body that moves"
-                         : known);
+                     known.empty() ? "leave on out, or give a body that moves" : known);
   }
   const auto [t, x, y, z] = columns<4>(table.values().numbers("keyframes"));
   check_ascending(table, "keyframes", t);
