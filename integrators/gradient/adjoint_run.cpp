@@ -6,6 +6,7 @@
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "integrators/gradient/run_phases.h"
+#include "integrators/gradient/step_memory.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
@@ -18,16 +19,20 @@ bool all_zero(In x) {
 }
 
 System& with_adjoint(System& system, const GradientRun::Method& method) {
-  const std::string reason = no_adjoint(system);
-  if (reason.empty()) return with_gradient(system, method);
-  throw InputError("no adjoint of this run", reason, "use GradientRun");
+  with_gradient(system, method);
+  const std::string reason = no_adjoint(system, method.id, method.options);
+  if (reason.empty()) return system;
+  throw InputError("no adjoint of this run: " + reason,
+                   "method " + std::string(method.id), "use GradientRun");
 }
 
 }  // namespace
 
-std::string no_adjoint(System& system) {
-  if (system.contact_form() == nullptr) return {};
-  return "the derivatives of exact contact are computed forward";
+std::string no_adjoint(System& system, std::string_view method, const Options& options) {
+  if (system.contact_form() != nullptr) {
+    return "the derivatives of exact contact are computed forward";
+  }
+  return no_transposed_steps(method, options);
 }
 
 AdjointRun::AdjointRun(System& system, std::unique_ptr<System> exact,

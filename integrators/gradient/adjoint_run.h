@@ -13,7 +13,7 @@
 namespace tress::integrators {
 
 /// Why runs of this system have no adjoint; empty: they have, if they have a gradient.
-std::string no_adjoint(System& system);
+std::string no_adjoint(System& system, std::string_view method, const Options& options);
 
 /// A run and the exact derivatives of numbers of its motion by parameters, backward in
 /// time: the discrete adjoint. The run records its stages. A sweep then goes back through

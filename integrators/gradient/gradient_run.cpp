@@ -7,6 +7,7 @@
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "integrators/gradient/run_phases.h"
+#include "integrators/gradient/step_memory.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
@@ -68,6 +69,12 @@ std::optional<NoGradient> no_gradient(std::string_view method, System& system,
                           " does not solve the equations of implicit stages, at whose "
                           "solutions derivatives are taken",
                       "use " + able};
+  }
+  if (!shows_stages(method)) {
+    return NoGradient{std::string(method) +
+                          " does not show the solutions of its stages (StageWatcher), at "
+                          "which derivatives are taken",
+                      "let the method solve its stages by Stage"};
   }
   if (auto no = no_contact_gradient(find_integrator(method), system)) return no;
   if (system.layout().constraints == 0) {

@@ -53,8 +53,7 @@ class StepProbe final : public System,
                         private ExplicitForm,
                         private MovingHistory {
  public:
-  /// Takes the `options` of the run. Throws std::logic_error where FixedStep::state() has
-  /// a span that is no vector of n.
+  /// Takes the `options` of the run, by a method without no_transposed_steps().
   StepProbe(std::string_view method, const Options& options);
 
   /// Starts the method at time t.

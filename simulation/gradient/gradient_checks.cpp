@@ -36,7 +36,8 @@ void check_gradient(const Scene& scene) {
   check_derivatives(scene);
   const std::string way(scene.tables->gradient->values().word("way"));
   if (gradient_way(way) != GradientWay::adjoint) return;
-  const std::string reason = integrators::no_adjoint(*exact_system_of(scene, 0));
+  const std::string reason = integrators::no_adjoint(*exact_system_of(scene, 0),
+                                                     scene.integrator, scene.options);
   refuse_if(!reason.empty(), "no adjoint: " + reason, scene.tables->gradient->place(),
             "use way = \"auto\"");
 }

@@ -265,7 +265,7 @@ StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
                                            : std::size_t{1});
     const std::size_t frames = task.of == GradientOf::last_tip ? 1 : task.times.size();
     adjoint = task.parameters.size() > 3 * numbers * frames &&
-              integrators::no_adjoint(*system).empty();
+              integrators::no_adjoint(*system, scene.integrator, scene.options).empty();
   }
   StrandGradient found = StrandRun(scene, strand, task).gradient(adjoint);
   const bool again = found.frames_moved && task.way == GradientWay::automatic;

@@ -7,9 +7,9 @@
 #include "integrators/catalogue.h"
 #include "integrators/fixed_step.h"
 #include "integrators/gradient/step_memory.h"
-#include "integrators/gradient/step_probe.h"
 #include "integrators/stage/stage.h"
 #include "simulation/gradient/linearized_step.h"
+#include "simulation/gradient/scene_gradient.h"
 #include "simulation/scene/scene.h"
 #include "tests/support/refusal.h"
 
@@ -21,7 +21,7 @@ using namespace integrators;
 using testing::HasSubstr;
 using testing_support::refusal;
 
-enum class Keeps { nothing, the_step_before, a_span_of_three };
+enum class Keeps { nothing, the_step_before, the_step_before_unseen, a_span_of_three };
 
 /// Bdf2Formula, or backward Euler by methods that do not keep the step before.
 template <Keeps keeps>
@@ -56,7 +56,9 @@ class Added final : public FixedStep {
   }
 
   Status step(double t, double h) override {
-    const bool two = keeps == Keeps::the_step_before && h_previous_ > 0;
+    const bool two =
+        (keeps == Keeps::the_step_before || keeps == Keeps::the_step_before_unseen) &&
+        h_previous_ > 0;
     const auto [c0, c1, bh] = Bdf2Formula(h, two ? h / h_previous_ : 0);
     for (std::size_t i = 0; i < q_.size(); ++i) {
       v_bar_[i] = c0 * v_[i] - c1 * v_previous_[i];
@@ -76,7 +78,39 @@ class Added final : public FixedStep {
   std::vector<double> q_bar_, v_bar_, q_previous_, v_previous_, three_;
 };
 
-template <Keeps keeps>
+/// Backward Euler with a loop of its own.
+class OwnLoop final : public Integrator {
+ public:
+  OwnLoop(System& system, const Options& options) : euler_(system, options) {}
+
+  Status start(double t, In q, In v) override { return euler_.start(t, q, v); }
+  Status advance(double t_end, const Observer& each_step) override {
+    return euler_.advance(t_end, each_step);
+  }
+  double time() const override { return euler_.time(); }
+  In q() const override { return euler_.q(); }
+  In v() const override { return euler_.v(); }
+  Stats stats() const override { return euler_.stats(); }
+  std::string failure() const override { return euler_.failure(); }
+  Limit limit() const override { return euler_.limit(); }
+
+ private:
+  Added<Keeps::nothing> euler_;
+};
+
+/// Backward Euler's prediction, without a Stage.
+class Unseen final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Status step(double /*t*/, double h) override {
+    for (std::size_t i = 0; i < q_.size(); ++i) q_[i] += h * v_[i];
+    return Status::ok;
+  }
+};
+
+template <class Method>
 void add(std::string_view id) {
   add_integrator({.id = id,
                   .summary = "added",
@@ -84,7 +118,7 @@ void add(std::string_view id) {
                   .tangent = true,
                   .stages = 1,
                   .formulations = of_order(1, stage_formulations),
-                  .make = make_method<Added<keeps>>},
+                  .make = make_method<Method>},
                  "this test");
 }
 
@@ -92,15 +126,18 @@ class AddedMethods : public testing::Test {
  protected:
   // Before anything reads the catalogue, which closes it.
   static void SetUpTestSuite() {
-    add<Keeps::nothing>("added_step");
-    add<Keeps::the_step_before>("added_two_steps");
-    add<Keeps::a_span_of_three>("added_span");
+    add<Added<Keeps::nothing>>("added_step");
+    add<Added<Keeps::the_step_before>>("added_two_steps");
+    add<Added<Keeps::the_step_before_unseen>>("added_unseen_step");
+    add<Added<Keeps::a_span_of_three>>("added_span");
+    add<OwnLoop>("added_loop");
+    add<Unseen>("added_unseen_stages");
   }
 };
 
 TEST_F(AddedMethods, RememberStepsAsBuiltInOnesIfTheirFormulaDoes) {
   const std::set<std::string_view> remember{"bdf2", "generalized_alpha",
-                                            "added_two_steps"};
+                                            "added_two_steps", "added_unseen_step"};
   std::set<std::string_view> found;
   for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (entry.stages > 0 && remembers_steps(entry.id)) found.insert(entry.id);
@@ -126,11 +163,75 @@ TEST_F(AddedMethods, AreRefusedByTheLinearizedStepIfTheyRememberSteps) {
   EXPECT_EQ(refused.find("added_two_steps", refused.find("use one of")), refused.npos);
 }
 
-TEST_F(AddedMethods, AreRefusedByTheAdjointIfTheirStateHasOtherSpans) {
-  EXPECT_NO_THROW(StepProbe("added_two_steps", {}));
-  EXPECT_THAT([] { StepProbe("added_span", {}); },
-              testing::ThrowsMessage<std::logic_error>(
-                  HasSubstr("state() of added_span has a span of 3 numbers")));
+/// Scene of a strand with a gradient by this method.
+simulation::Scene scene_with_gradient(const std::string& method, const std::string& way) {
+  return simulation::parse_scene(
+      "title = \"t\"\nduration_s = 0.02\n[integrator]\nid = \"" + method +
+          "\"\ndt_s = 0.002\n[material]\n[strand]\nelements = 2\n[root]\n"
+          "[effects.gravity]\n[gradient]\nby = [\"density_kg_m3\", "
+          "\"natural_curvature_per_m.each\", \"natural_twist_per_m.each\", "
+          "\"natural_curvature2_per_m.each\", \"initial_curvature_per_m.each\", "
+          "\"initial_twist_per_m.each\"]\nof = \"last_tip\"\nway = \"" +
+          way + "\"\n",
+      "s.toml");
+}
+
+TEST_F(AddedMethods, AreRefusedByTheAdjointIfItCannotTransposeThem) {
+  const std::pair<std::string, std::string> reasons[] = {
+      {"added_span", "state() of added_span has a span of 3 numbers"},
+      {"added_unseen_step",
+       "depends on numbers that its state() and numbers() leave out"},
+      {"added_loop", "added_loop is no FixedStep"}};
+  for (const auto& [method, reason] : reasons) {
+    SCOPED_TRACE(method);
+    EXPECT_THAT(no_transposed_steps(method, {}), HasSubstr(reason));
+    const auto scene = scene_with_gradient(method, "adjoint");
+    EXPECT_THAT(refusal([&] { simulation::check_gradient(scene); }), HasSubstr(reason));
+    EXPECT_THAT(refusal([&] { simulation::scene_gradient(scene); }), HasSubstr(reason));
+  }
+}
+
+// With more parameters than automatic gradients take forward.
+TEST_F(AddedMethods, HaveTheAdjointOfTheirFormulaOrAreTakenForward) {
+  for (const char* method : {"added_step", "added_two_steps", "added_loop", "added_span",
+                             "added_unseen_step"}) {
+    SCOPED_TRACE(method);
+    const bool transposed = no_transposed_steps(method, {}).empty();
+    EXPECT_EQ(transposed, std::string(method) == "added_step" ||
+                              std::string(method) == "added_two_steps");
+    const auto scene = scene_with_gradient(method, "auto");
+    EXPECT_NO_THROW(simulation::check_gradient(scene));
+    const auto found = simulation::scene_gradient(scene).strands.front();
+    EXPECT_EQ(found.unfinished, "");
+    EXPECT_EQ(found.adjoint, transposed);
+    const auto forward =
+        simulation::scene_gradient(scene_with_gradient(method, "forward"))
+            .strands.front();
+    for (std::size_t k = 0; k < forward.by.size(); ++k) {
+      for (std::size_t c = 1; c <= 3; ++c) {
+        const double expected = *(forward.by[k].back().end() - c);
+        EXPECT_NEAR(*(found.by[k].back().end() - c), expected,
+                    1e-7 * std::abs(expected) + 1e-12)
+            << k;
+      }
+    }
+  }
+}
+
+TEST_F(AddedMethods, AreRefusedIfTheyDoNotShowTheirStages) {
+  for (const char* way : {"auto", "forward", "adjoint"}) {
+    const auto scene = scene_with_gradient("added_unseen_stages", way);
+    EXPECT_THAT(refusal([&] { simulation::check_gradient(scene); }),
+                HasSubstr("does not show the solutions of its stages"));
+  }
+}
+
+TEST_F(AddedMethods, BuiltInStatesAreAllThatTheNextStepDependsOn) {
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
+    if (entry.stages == 0 || entry.id.starts_with("added_")) continue;
+    EXPECT_EQ(no_transposed_steps(entry.id, {}), "") << entry.id;
+    EXPECT_TRUE(shows_stages(entry.id)) << entry.id;
+  }
 }
 
 }  // namespace tress::test_added_methods
