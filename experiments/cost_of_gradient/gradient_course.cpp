@@ -151,7 +151,8 @@ Course course(const Scene& scene, int steps, const Way& way) {
   GradientRun::Method method{.id = scene.integrator, .options = scene.options};
   method.options.step = scene.duration / steps;
   method.start = way.start;
-  method.sparse = !way.elastic;  // which is then not the derivative of the residual
+  // The elastic Jacobian is not the derivative of the residual.
+  method.forces.sparse = !way.elastic;
   const auto system = system_of(own);
   GradientRun run(*system, system_of(own), by, method);
   const simulation::ThreadTimer timer;

@@ -46,11 +46,12 @@ AdjointRun::AdjointRun(System& system, std::unique_ptr<System> exact,
       run_(system, method),
       again_(*exact_, method),
       parameters_(*exact_, parameters, method.options),
-      stages_(*exact_, method.options, method.sparse),
+      stages_(*exact_, method.options, method.forces),
       q_hat_(n_),
       v_hat_(n_) {
   if (stages_.m() > 0) {
-    starts_.emplace(*exact_, acceleration_options(method.options), false);
+    starts_.emplace(*exact_, acceleration_options(method.options),
+                    KnownForces{false, method.forces.quadratic});
   }
   for (auto* x : {&motion_.q, &motion_.v, &motion_.a}) x->resize(n_);
   motion_.lambda.resize(stages_.m());

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/forms/moved_clamp.h"
 #include "contract/forms/transposed_form.h"
 #include "integrators/gradient/probe.h"
 #include "linear/vector_ops.h"
@@ -56,62 +57,106 @@ std::vector<double> constants_of(System& system) {
   return form == nullptr ? std::vector<double>{} : form->constants();
 }
 
+/// Of a system whose mu is known. NaN: not available.
+double power_of_clamp(System& system, System& other) {
+  MovedClamp* const form = moved_clamp(system);
+  return form == nullptr ? std::nan("") : form->power_of_clamp(other);
+}
+
+/// Whether the parameter moves points at the start, or at the coordinates q.
+bool moves_points(System& system, System& far, In q) {
+  std::vector<double> q_here(q.size()), v_here(q_here), q_far(q_here), v_far(q_here);
+  system.initial_state(q_here, v_here);
+  far.initial_state(q_far, v_far);
+  return q_here != q_far || v_here != v_far || points_at(system, q) != points_at(far, q);
+}
+
+/// Derivatives of the constants. Their sizes differ by many orders.
+std::vector<double> by_constants(const std::vector<double>& here, const Distances& at) {
+  const std::vector<double> far = constants_of(*at.far),
+                            middle = constants_of(*at.middle);
+  std::vector<double> by(here.size());
+  for (std::size_t i = 0; i < at.near.size(); ++i) {
+    add(by, central_stencil.weight[i], constants_of(*at.near[i]));
+  }
+  for (std::size_t j = 0; j < here.size(); ++j) {
+    if (!affine({here[j]}, {middle[j]}, {far[j]})) continue;
+    by[j] = affine_stencil.base * here[j] + affine_stencil.weight[0] * far[j];
+  }
+  return by;
+}
+
+/// The sum over central_stencil.
+template <class Power>
+double slope_of(const std::vector<std::unique_ptr<System>>& near, Power power) {
+  double by = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    by += central_stencil.weight[i] * power(*near[i]);
+  }
+  return by;
+}
+
 }  // namespace
 
 std::optional<ConstantsDerivative> constants_derivative(System& system,
                                                         const RunParameter& parameter) {
   TransposedForm* const form = transposed_form(system);
-  // Forces that depend on a place may begin to act later.
-  if (parameter.places) return {};
   if (form == nullptr || system.layout().constraints > 0) return {};
   const std::vector<double> here = form->constants();
   if (here.empty()) return {};
   Distances distances(parameter);
+  const std::vector<double> far = constants_of(*distances.far);
+  if (far.size() != here.size()) return {};
   const Probe probe(system);
-  std::vector<double> q(probe.q.size()), v(q), q_far(q), v_far(q);
+  std::vector<double> q(probe.q.size()), v(q);
   system.initial_state(q, v);
-  distances.far->initial_state(q_far, v_far);
-  const std::vector<double> far = constants_of(*distances.far),
-                            middle = constants_of(*distances.middle);
-  if (far.size() != here.size() || q != q_far || v != v_far ||
-      points_at(system, probe.q) != points_at(*distances.far, probe.q)) {
-    return {};
-  }
-  ConstantsDerivative found{std::vector<double>(here.size()), {affine_stencil, {}, {}}};
-  for (std::size_t i = 0; i < distances.near.size(); ++i) {
-    add(found.by, central_stencil.weight[i], constants_of(*distances.near[i]));
-  }
-  for (std::size_t j = 0; j < here.size(); ++j) {  // their sizes differ by many orders
-    if (!affine({here[j]}, {middle[j]}, {far[j]})) continue;
-    found.by[j] = affine_stencil.base * here[j] + affine_stencil.weight[0] * far[j];
-  }
+  ConstantsDerivative found;
+  found.by = by_constants(here, distances);
+  found.loads.stencil = affine_stencil;
+  found.moves_points = moves_points(system, *distances.far, probe.q);
   // Rounding of residuals, 1e-16, over the distance of the stencil, 3e-6.
   constexpr double rounding = 1e-9;
-  bool loaded = false, straight = true, acts = here != far;
+  bool loaded = false, straight = true, clamped = false;
   for (int k = 0; k < 3; ++k) {
     const Trial trial(probe, q, k);
     const Slope slope(trial, distances.near);
     form->place_transposed(trial.t, trial.q, trial.v, trial.a, trial.mu);
-    std::vector<double> by_constants(here.size());
-    form->add_by_constants(by_constants);
-    const double load = form->power_of_loads(system),
-                 load_far = form->power_of_loads(*distances.far),
-                 load_middle = form->power_of_loads(*distances.middle);
-    double by = scalar_product(found.by, by_constants), by_loads = 0;
-    for (std::size_t i = 0; i < distances.near.size(); ++i) {
-      by_loads += central_stencil.weight[i] * form->power_of_loads(*distances.near[i]);
-    }
+    std::vector<double> products(here.size());
+    form->add_by_constants(products);
+    const auto load_of = [&](System& of) { return form->power_of_loads(of); };
+    const double load = load_of(system), load_far = load_of(*distances.far),
+                 load_middle = load_of(*distances.middle);
+    double by = scalar_product(found.by, products);
+    if (load != load_far) by -= slope_of(distances.near, load_of);
     loaded = loaded || load != load_far;
     straight = straight && affine({load}, {load_middle}, {load_far});
-    if (load != load_far) by -= by_loads;
-    acts = acts || load != load_far;
+    const auto clamp_of = [&](System& of) { return power_of_clamp(system, of); };
+    const double clamp_far = clamp_of(*distances.far);
+    if (!std::isnan(clamp_far)) {
+      by += slope_of(distances.near, clamp_of);
+      // What places may move the clamp later.
+      clamped = clamped || clamp_far != 0 || parameter.places;
+    }
     if (!slope.ok || !(std::abs(by - slope.by) <= rounding * slope.size)) return {};
   }
-  if (!acts) return {};  // here: it may act elsewhere
-  if (loaded && straight) found.loads.systems.push_back(std::move(distances.far));
-  if (loaded && !straight) {
+  if (here == far && !loaded && !clamped) return {};  // here: it may act elsewhere
+  if (found.moves_points && !clamped) return {};
+  if (parameter.places || clamped) {
+    found.loads.stencil = placed_stencil(parameter);
+    for (const double s : found.loads.stencil.at) {
+      found.loads.systems.push_back(parameter(s));
+    }
+  } else if (loaded && straight) {
+    found.loads.systems.push_back(std::move(distances.far));
+  } else if (loaded) {
     found.loads.stencil = central_stencil;
-    found.loads.systems = std::move(distances.near);
+    for (const double s : central_stencil.at) {
+      found.loads.systems.push_back(parameter(s));
+    }
+  }
+  if (clamped) {
+    found.clamp.stencil = central_stencil;
+    found.clamp.systems = std::move(distances.near);
   }
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contract/forms/bordered_form.h"
 #include "contract/forms/contact_form.h"
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
@@ -18,6 +19,17 @@ std::vector<VariedSystem> varied_systems(System& system,
   std::vector<VariedSystem> all;
   for (const RunParameter& parameter : parameters) {
     all.push_back(varied_system(system, parameter));
+  }
+  return all;
+}
+
+/// Names of the methods with stages for which this is true.
+template <class Is>
+std::string methods_that(Is is) {
+  std::string all;
+  for (const IntegratorEntry& entry : integrator_catalogue()) {
+    if (entry.stages == 0 || !is(entry.id)) continue;
+    all += (all.empty() ? "" : ", ") + std::string(entry.id);
   }
   return all;
 }
@@ -61,14 +73,10 @@ void add_counts(const Stats& more, Stats& all) {
 std::optional<NoGradient> no_gradient(std::string_view method, System& system,
                                       const Options& options) {
   if (find_integrator(method).stages == 0) {
-    std::string able;
-    for (const IntegratorEntry& entry : integrator_catalogue()) {
-      if (entry.stages > 0) able += (able.empty() ? "" : ", ") + std::string(entry.id);
-    }
     return NoGradient{std::string(method) +
                           " does not solve the equations of implicit stages, at whose "
                           "solutions derivatives are taken",
-                      "use " + able};
+                      "use " + methods_that([](std::string_view) { return true; })};
   }
   if (!shows_stages(method)) {
     return NoGradient{std::string(method) +
@@ -82,6 +90,14 @@ std::optional<NoGradient> no_gradient(std::string_view method, System& system,
     return NoGradient{
         "the mass matrix is singular, so that accelerations have no derivative",
         "use rotary_inertia = \"on\", or another model"};
+  }
+  if (bordered_form(system) != nullptr && starts_from_accelerations(method)) {
+    return NoGradient{
+        std::string(method) +
+            " starts from accelerations, whose derivatives lose their digits in reduced "
+            "coordinates with constraints",
+        "use " + methods_that(
+                     [](std::string_view id) { return !starts_from_accelerations(id); })};
   }
   if (options.formulation == Formulation::index3) return {};
   return NoGradient{"constraints as " + std::string(name(options.formulation)) +
@@ -109,7 +125,7 @@ GradientRun::GradientRun(System& system, std::unique_ptr<System> exact,
       copies_(std::move(copies)),
       varied_(varied_systems(system, parameters)),
       watched_(system),
-      variational_(watched_, *exact_, varied_, method.options, method.sparse,
+      variational_(watched_, *exact_, varied_, method.options, method.forces,
                    copies_.get()),
       q_(size(system.layout().coordinates)),
       v_(q_),

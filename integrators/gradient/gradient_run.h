@@ -42,7 +42,7 @@ class GradientRun {
     std::string_view id;                          // id of the integrator
     Options options;                              // Options::step: the longest step
     GradientStart start = GradientStart::as_run;  // treatment of the start
-    bool sparse = true;                           // as ResidualDerivative
+    KnownForces forces = {};                      // properties of the forces
   };
 
   /// `exact`: the same system, with the exact Jacobian. `copies`: as ResidualDerivative,

@@ -7,9 +7,9 @@
 namespace tress::integrators {
 
 Linearized::Linearized(System& system, std::span<const VariedSystem> varied,
-                       const Options& options, bool sparse, System* copies)
+                       const Options& options, KnownForces forces, System* copies)
     : dynamics_(system, options),
-      derivative_(dynamics_, sparse, copies),
+      derivative_(dynamics_, forces, copies),
       varied_(varied),
       base_r_(size(dynamics_.n())),
       base_c_(size(dynamics_.m())),
@@ -20,7 +20,7 @@ Linearized::Linearized(System& system, std::span<const VariedSystem> varied,
       dv_(varied.size() * base_r_.size()),
       da_(dv_) {
   for (const VariedSystem& one : varied) {
-    based_ = based_ || (!one.simple && one.stencil.base != 0);
+    based_ = based_ || (!one.starts && !one.simple && one.stencil.base != 0);
     auto& equations = equations_.emplace_back();
     for (const auto& made : one.systems) {
       equations.push_back(std::make_unique<Dynamics>(*made, options));
@@ -71,6 +71,7 @@ Status Linearized::accelerate(In dq, In dv, Out da) noexcept {
 }
 
 Status Linearized::add_parameter(std::size_t k, InOut dr, InOut dc) noexcept {
+  if (varied_[k].starts) return Status::ok;
   if (const auto& simple = varied_[k].simple) {
     for (std::size_t i = 0; i < dr.size(); ++i) {
       dr[i] += simple->constant[i] + simple->by_q[i] * state_->q[i] +

@@ -18,9 +18,9 @@ namespace tress::integrators {
 /// with constraints g_q dq + dg/ds_k = 0 and the derivatives of their multipliers.
 class Linearized {
  public:
-  /// `sparse`, `copies`: as ResidualDerivative. All must outlive it.
+  /// `forces`, `copies`: as ResidualDerivative. All must outlive it.
   Linearized(System& system, std::span<const VariedSystem> varied, const Options& options,
-             bool sparse, System* copies);
+             KnownForces forces, System* copies);
 
   /// Returns the system with the form of its constraints.
   Dynamics& dynamics() { return dynamics_; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contract/forms/material_points.h"
+#include "contract/forms/moved_clamp.h"
 #include "contract/forms/transposed_form.h"
 #include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
@@ -36,7 +37,7 @@ std::vector<VariedSystem> others(System& system, std::span<const RunParameter> p
                                  const std::vector<std::vector<double>>& natural_by) {
   std::vector<VariedSystem> all;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    if (known[k] || !natural_by[k].empty()) continue;
+    if (!natural_by[k].empty() || (known[k] && !known[k]->moves_points)) continue;
     all.push_back(varied_system(system, parameters[k], VariedMemory::of_run));
   }
   return all;
@@ -143,12 +144,17 @@ PulledParameters::PulledParameters(System& system,
       constants_by_(constants_derivatives(system, parameters)),
       natural_by_(natural_directions(system, parameters, constants_by_)),
       varied_(others(system, parameters, constants_by_, natural_by_)),
-      stages_(system, varied_, options, false, nullptr),
+      stages_(system, varied_, options, KnownForces{.sparse = false}, nullptr),
       r_(size(stages_.dynamics().n())),
       c_(size(stages_.dynamics().m())) {
   for (std::size_t k = 0; k < natural_by_.size(); ++k) {
     any_constants_ = any_constants_ || constants_by_[k];
-    if (!constants_by_[k] && natural_by_[k].empty()) index_.push_back(k);
+    if (!natural_by_[k].empty()) continue;
+    if (constants_by_[k] && !constants_by_[k]->moves_points) continue;
+    if (!constants_by_[k] && !varied_[index_.size()].starts) {
+      residuals_.push_back(index_.size());
+    }
+    index_.push_back(k);
   }
   system.reset();
   const std::vector<double> memory = system.memory();
@@ -160,7 +166,8 @@ PulledParameters::PulledParameters(System& system,
     }
   }
   if (stages_.dynamics().m() > 0) {
-    starts_.emplace(system, varied_, acceleration_options(options), false, nullptr);
+    starts_.emplace(system, varied_, acceleration_options(options),
+                    KnownForces{.sparse = false}, nullptr);
   }
   if (std::ranges::any_of(natural_by_, [](const auto& by) { return !by.empty(); })) {
     natural_.emplace(system, stages_.dynamics());
@@ -185,7 +192,11 @@ void PulledParameters::pull_constants(const WatchedSystem::Motion& at, bool plac
   std::optional<double> own;
   for (std::size_t k = 0; k < count(); ++k) {
     if (!constants_by_[k]) continue;
-    const VariedSystem& loads = constants_by_[k]->loads;
+    const VariedSystem &loads = constants_by_[k]->loads, &clamp = constants_by_[k]->clamp;
+    for (std::size_t i = 0; i < clamp.systems.size(); ++i) {
+      by_loads_[number][k] -= clamp.stencil.weight[i] *
+                              moved_clamp(system_)->power_of_clamp(*clamp.systems[i]);
+    }
     for (std::size_t i = 0; i < loads.systems.size(); ++i) {
       by_loads_[number][k] +=
           loads.stencil.weight[i] * form.power_of_loads(*loads.systems[i]);
@@ -209,10 +220,11 @@ void PulledParameters::recall(In memory) {
 
 Status PulledParameters::pull(const WatchedSystem::Motion& at, bool starts,
                               std::span<const std::vector<double>> x) noexcept {
-  if (varied_.empty() && !natural_) return Status::ok;
+  if (residuals_.empty() && !natural_) return Status::ok;
   Linearized& linearized = starts && starts_ ? *starts_ : stages_;
   Status status = linearized.move(at);
-  for (std::size_t k = 0; k < varied_.size() && status == Status::ok; ++k) {
+  for (const std::size_t k : residuals_) {
+    if (status != Status::ok) break;
     std::ranges::fill(r_, 0.0);
     std::ranges::fill(c_, 0.0);
     status = linearized.add_parameter(k, r_, c_);
@@ -254,10 +266,11 @@ void PulledParameters::pull_points(System& system, double t, In q,
 void PulledParameters::write(Out by) const {
   for (std::size_t s = 0; s < by_.size(); ++s) {
     const Out row = by.subspan(s * count(), count());
+    std::ranges::fill(row, 0.0);
     for (std::size_t k = 0; k < index_.size(); ++k) row[index_[k]] = by_[s][k];
     for (std::size_t k = 0; k < count(); ++k) {
       if (constants_by_[k]) {
-        row[k] = by_loads_[s][k] - scalar_product(constants_by_[k]->by, c_hat_[s]);
+        row[k] += by_loads_[s][k] - scalar_product(constants_by_[k]->by, c_hat_[s]);
       }
       if (!natural_by_[k].empty()) row[k] = scalar_product(natural_by_[k], n_hat_[s]);
     }

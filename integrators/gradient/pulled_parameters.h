@@ -40,9 +40,9 @@ class PulledNatural {
 
 /// p_hat -= R_s^T x for the parameters s of a run, with x = (mu, nu) of
 /// TransposedEquations. Those that act through constants of the system alone
-/// (TransposedForm) cost one product together, and loads of effects their own evaluation.
-/// Natural strains of other systems are together as expensive as a few residuals. Any
-/// other parameter costs the residuals of its stencil.
+/// (TransposedForm) cost one product together, loads of effects and the motion of the
+/// clamp their own evaluation. Natural strains of other systems are together as expensive
+/// as a few residuals. Any other parameter costs the residuals of its stencil.
 class PulledParameters {
  public:
   /// `system` must outlive it.
@@ -56,8 +56,8 @@ class PulledParameters {
   /// The systems remember what the run did, relative to what each began with: reference
   /// frames at the start depend on parameters.
   void recall(In memory);
-  /// Adds the part of the constants for one number. `placed`: the system has just solved
-  /// for x with its TransposedForm at this state.
+  /// Adds the part of constants, loads and clamp for one number. `placed`: the system has
+  /// just solved for x with its TransposedForm at this state.
   void pull_constants(const WatchedSystem::Motion& at, bool placed, std::size_t number,
                       In x) noexcept;
   /// Adds the other part of a stage with x (n + m) for each number. `starts`: the stage
@@ -76,8 +76,9 @@ class PulledParameters {
   System& system_;
   std::vector<std::optional<ConstantsDerivative>> constants_by_;  // where it is all
   std::vector<std::vector<double>> natural_by_;  // empty: by constants or a stencil
-  std::vector<VariedSystem> varied_;
-  std::vector<std::size_t> index_;  // of varied_
+  std::vector<VariedSystem> varied_;             // of start and points, and of residuals
+  std::vector<std::size_t> index_;               // of varied_, among the parameters
+  std::vector<std::size_t> residuals_;  // those of varied_ that no constants replace
   /// Memory at the start of each system of varied_, less that of the run's system.
   std::vector<std::vector<double>> began_;
   Linearized stages_;
@@ -87,7 +88,7 @@ class PulledParameters {
   std::vector<std::vector<double>> n_hat_;  // [number]
   bool any_constants_ = false;
   std::vector<std::vector<double>> c_hat_;     // [number], of constants
-  std::vector<std::vector<double>> by_loads_;  // [number][parameter]
+  std::vector<std::vector<double>> by_loads_;  // [number][parameter], and of the clamp
   std::vector<double> r_, c_;
 };
 

@@ -10,11 +10,15 @@ namespace {
 
 /// Of a direction's length over System::scale. At fixed q the residual is quadratic in
 /// velocities but for laws of friction and drag. What does not depend on them cancels in
-/// a difference but for its last digit.
+/// a difference but for its last digit. A surface whose friction turns at 1e-3 of the
+/// typical velocity bends it by 1e-4 within this distance, and needs order 4.
 constexpr double distance = 1e-5;
 /// Likewise of dq in reduced coordinates: of order 4, its error is 1e-18 f'''''' and
 /// 5e-12 f from rounding, which the smallest inertia enlarges in accelerations.
 constexpr double distance_along = 3e-5;
+/// The same next to forces of surfaces, into which hair at rest sinks by 6e-5 of its
+/// length.
+constexpr double short_distance_along = 1e-6;
 /// Copies are worthwhile where their state serves more than one direction.
 constexpr std::size_t fewest_for_copies = 2;
 
@@ -30,10 +34,13 @@ void add_product(const Pattern& pattern, In values, In x, InOut y) {
 
 }  // namespace
 
-ResidualDerivative::ResidualDerivative(Dynamics& dynamics, bool sparse, System* copies)
+ResidualDerivative::ResidualDerivative(Dynamics& dynamics, KnownForces forces,
+                                       System* copies)
     : dynamics_(dynamics),
-      sparse_(sparse ? dynamics.system().sparse_form() : nullptr),
+      sparse_(forces.sparse ? dynamics.system().sparse_form() : nullptr),
       copies_(sparse_ == nullptr ? copies : nullptr),
+      by_rates_(forces.quadratic ? placing_differences(1) : central_differences(1)),
+      distance_along_(forces.quadratic ? distance_along : short_distance_along),
       none_(size(dynamics.n())),
       q_shift_(none_),
       v_shift_(none_),
@@ -52,7 +59,7 @@ ResidualDerivative::ResidualDerivative(Dynamics& dynamics, bool sparse, System* 
   q_copies_.resize(size(copies_->layout().coordinates));
   v_copies_ = a_copies_ = r_copies_ = q_copies_;
   count_ = q_copies_.size() / none_.size();
-  e_.resize(count_ / 2);
+  e_.resize(count_ / by_rates_.at.size());
 }
 
 Status ResidualDerivative::move(double t, In q, In v, In a, In lambda) noexcept {
@@ -76,7 +83,7 @@ Status ResidualDerivative::move(double t, In q, In v, In a, In lambda) noexcept 
 
 Status ResidualDerivative::at_fixed_q(In dv, In da, Out dr) noexcept {
   const std::size_t n = q_.size();
-  if (count_ > 0 && dv.size() >= fewest_for_copies * n) {
+  if (!e_.empty() && dv.size() >= fewest_for_copies * n) {
     return differences_of_copies(dv, da, dr);
   }
   if (sparse_ != nullptr) std::ranges::fill(dr, 0.0);
@@ -105,22 +112,23 @@ Status ResidualDerivative::difference(In dv, In da, Out dr, Out dc) noexcept {
   std::ranges::fill(dc, 0.0);
   const double of_direction = length(dv, da);
   if (of_direction == 0) return Status::ok;
-  for (const double e : {distance / of_direction, -distance / of_direction}) {
-    shifted(v_shift_, v_, e, dv);
-    shifted(a_shift_, a_, e, da);
+  const double e = distance / of_direction;
+  for (std::size_t i = 0; i < by_rates_.at.size(); ++i) {
+    shifted(v_shift_, v_, e * by_rates_.at[i], dv);
+    shifted(a_shift_, a_, e * by_rates_.at[i], da);
     const Status s = dynamics_.residual(t_, q_, v_shift_, a_shift_, lambda_, r_, c_);
     if (s != Status::ok) return s;
-    add(dr, 1 / (2 * e), r_);
-    add(dc, 1 / (2 * e), c_);
+    add(dr, by_rates_.weight[i] / e, r_);
+    add(dc, by_rates_.weight[i] / e, c_);
   }
   return Status::ok;
 }
 
-/// Two copies for each direction.
+/// A copy for each term of the stencil and each direction.
 Status ResidualDerivative::differences_of_copies(In dv, In da, Out dr) noexcept {
   const std::size_t n = q_.size();
   const auto part = [n](auto all, std::size_t k) { return all.subspan(k * n, n); };
-  const std::size_t directions = dv.size() / n;
+  const std::size_t directions = dv.size() / n, terms = by_rates_.at.size();
   for (std::size_t from = 0; from < directions; from += e_.size()) {
     const std::size_t some = std::min(e_.size(), directions - from);
     for (std::size_t k = 0; k < e_.size(); ++k) {
@@ -128,10 +136,10 @@ Status ResidualDerivative::differences_of_copies(In dv, In da, Out dr) noexcept 
       const In by_v = part(dv, of), by_a = part(da, of);
       const double of_direction = length(by_v, by_a);
       e_[k] = of_direction > 0 ? distance / of_direction : 1;
-      for (const std::size_t side : {0u, 1u}) {
-        const double e = side == 0 ? e_[k] : -e_[k];
-        shifted(part(Out(v_copies_), 2 * k + side), v_, e, by_v);
-        shifted(part(Out(a_copies_), 2 * k + side), a_, e, by_a);
+      for (std::size_t i = 0; i < terms; ++i) {
+        const double e = e_[k] * by_rates_.at[i];
+        shifted(part(Out(v_copies_), terms * k + i), v_, e, by_v);
+        shifted(part(Out(a_copies_), terms * k + i), a_, e, by_a);
       }
     }
     const Status s = copies_->residual(t_, q_copies_, v_copies_, a_copies_, r_copies_);
@@ -139,8 +147,9 @@ Status ResidualDerivative::differences_of_copies(In dv, In da, Out dr) noexcept 
     for (std::size_t k = 0; k < some; ++k) {
       const Out to = part(dr, from + k);
       std::ranges::fill(to, 0.0);
-      add(to, 1 / (2 * e_[k]), part(In(r_copies_), 2 * k));
-      add(to, -1 / (2 * e_[k]), part(In(r_copies_), 2 * k + 1));
+      for (std::size_t i = 0; i < terms; ++i) {
+        add(to, by_rates_.weight[i] / e_[k], part(In(r_copies_), terms * k + i));
+      }
     }
   }
   return Status::ok;
@@ -174,7 +183,7 @@ Status ResidualDerivative::differences(In dq, In dv, In da, Out dr, Out dc) noex
   if (const Status s = difference(dv, da, dr, dc); s != Status::ok) return s;
   const double of_direction = scaled_norm(dq, dynamics_.q_typ());
   if (of_direction == 0) return Status::ok;
-  const double longer = distance_along / central_distance / of_direction;
+  const double longer = distance_along_ / central_distance / of_direction;
   for (std::size_t i = 0; i < central_stencil.at.size(); ++i) {
     shifted(q_shift_, q_, longer * central_stencil.at[i], dq);
     const Status s = dynamics_.residual(t_, q_shift_, v_, a_, lambda_, r_, c_);

@@ -3,18 +3,29 @@
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
+#include "integrators/gradient/varied_system.h"
 
 namespace tress::integrators {
+
+/// Properties of the forces in a system.
+struct KnownForces {
+  /// Whether the SparseForm is all of dr/dv, which it is not where effects couple distant
+  /// points.
+  bool sparse = true;
+  /// Whether they are inertia, elasticity and viscous drag alone, which are at most
+  /// quadratic in velocities at fixed q. Others, such as contact, may turn within short
+  /// distances.
+  bool quadratic = false;
+};
 
 /// Derivatives of (r - G^T lambda, c), the equations of Dynamics, along directions at one
 /// state. Those at fixed q come from the matrices of SparseForm where the system has one,
 /// else from central differences.
 class ResidualDerivative {
  public:
-  /// `sparse`: whether the SparseForm is all of dr/dv, which it is not where effects
-  /// couple distant points. `copies`: the same system several times as one, whose
-  /// residuals cost less so; null: none. All must outlive it.
-  ResidualDerivative(Dynamics& dynamics, bool sparse, System* copies);
+  /// `copies`: the same system several times as one, whose residuals cost less so; null:
+  /// none. All must outlive it.
+  ResidualDerivative(Dynamics& dynamics, KnownForces forces, System* copies);
 
   /// Moves to a state. The spans must last until the next call.
   Status move(double t, In q, In v, In a, In lambda) noexcept;
@@ -34,6 +45,8 @@ class ResidualDerivative {
   Dynamics& dynamics_;
   SparseForm* sparse_;     // null: not used
   System* copies_;         // null: not used
+  Stencil by_rates_;       // of differences along (dv, da), in parts of a distance
+  double distance_along_;  // of differences along dq
   std::size_t count_ = 0;  // of copies
   double t_ = 0;
   In q_, v_, a_, lambda_;

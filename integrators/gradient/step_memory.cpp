@@ -28,6 +28,7 @@ class Oscillators final : public System, public StageWatcher {
   }
   Status linearize(double /*t*/, In /*q*/, In /*v*/, In /*a*/,
                    Weights w) noexcept override {
+    accelerates_ = accelerates_ || (w.vel == 0 && w.pos == 0);
     s_ = w.acc + w.vel * friction + w.pos;
     return Status::ok;
   }
@@ -41,6 +42,8 @@ class Oscillators final : public System, public StageWatcher {
   }
   /// Returns whether solutions of stages were seen.
   bool seen() const { return seen_; }
+  /// Returns whether accelerations of a state were computed.
+  bool accelerates() const { return accelerates_; }
 
  private:
   static constexpr double friction = 0.5;
@@ -52,7 +55,7 @@ class Oscillators final : public System, public StageWatcher {
 
   int n_;
   double s_ = 1;
-  bool seen_ = false;
+  bool seen_ = false, accelerates_ = false;
 };
 
 void require(Status status, const Integrator& run) {
@@ -74,6 +77,7 @@ class ContinuedRun {
   Integrator& run() { return *run_; }
   Integrator& continued() { return *continued_; }
   bool seen_stages() const { return oscillators_.seen(); }
+  bool accelerates() const { return oscillators_.accelerates(); }
 
   /// Whether the next steps of both end at different states.
   bool parts() {
@@ -131,6 +135,10 @@ bool remembers_steps(std::string_view method) { return ContinuedRun(method, {}).
 
 bool shows_stages(std::string_view method) {
   return ContinuedRun(method, {}).seen_stages();
+}
+
+bool starts_from_accelerations(std::string_view method) {
+  return ContinuedRun(method, {}).accelerates();
 }
 
 std::string no_transposed_steps(std::string_view method, const Options& options) {

@@ -16,6 +16,9 @@ bool remembers_steps(std::string_view method);
 /// Stage does.
 bool shows_stages(std::string_view method);
 
+/// Returns whether the method computes accelerations from the state at its start.
+bool starts_from_accelerations(std::string_view method);
+
 /// Why the steps of a method cannot be transposed, and what its author must do; empty:
 /// they can. FixedStep::state() and numbers() must be all that the next step depends on.
 std::string no_transposed_steps(std::string_view method, const Options& options);

@@ -1,6 +1,7 @@
 #include "integrators/gradient/transposed_equations.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "linear/sparse_pattern.h"
 #include "linear/vector_ops.h"
@@ -29,10 +30,11 @@ void subtract_transposed(const Pattern& pattern, In values, In x, InOut y) {
 }  // namespace
 
 TransposedEquations::TransposedEquations(System& system, const Options& options,
-                                         bool sparse)
+                                         KnownForces forces)
     : dynamics_(system, options),
-      derivative_(dynamics_, sparse && dynamics_.m() > 0, nullptr),
-      sparse_(sparse && dynamics_.m() == 0 ? system.sparse_form() : nullptr),
+      derivative_(dynamics_, {forces.sparse && dynamics_.m() > 0, forces.quadratic},
+                  nullptr),
+      sparse_(forces.sparse && dynamics_.m() == 0 ? system.sparse_form() : nullptr),
       transposed_(dynamics_.m() == 0 ? transposed_form(system) : nullptr),
       n_(size(dynamics_.n())),
       m_(size(dynamics_.m())),
@@ -61,7 +63,9 @@ Status TransposedEquations::move(const WatchedSystem::Motion& state, Weights w) 
   products_ = transposed_ != nullptr &&
               transposed_->factor_transposed(state.t, state.q, state.v, state.a, w);
   if (products_) return Status::ok;
-  Status s = sparse_ != nullptr ? by_matrices(state) : by_columns(state);
+  of_mass_ = m_ > 0 && w.pos == 0 && w.vel == 0;
+  if (of_mass_) return by_columns(state, 2);
+  Status s = sparse_ != nullptr ? by_matrices(state) : by_columns(state, by_.size());
   if (s != Status::ok) return s;
   for (std::size_t p = 0; p < combined_.size(); ++p) {
     combined_[p] = w.acc * by_[2][p] + w.vel * by_[1][p] + w.pos * by_[0][p];
@@ -86,9 +90,11 @@ Status TransposedEquations::by_matrices(const WatchedSystem::Motion& at) noexcep
   return Status::ok;
 }
 
-Status TransposedEquations::by_columns(const WatchedSystem::Motion& at) noexcept {
+/// By q and v, and by a if these are 3 kinds.
+Status TransposedEquations::by_columns(const WatchedSystem::Motion& at,
+                                       std::size_t kinds) noexcept {
   Status s = derivative_.move(at.t, at.q, at.v, at.a, at.lambda);
-  for (std::size_t k = 0; k < by_.size(); ++k) {
+  for (std::size_t k = 0; k < kinds; ++k) {
     for (std::size_t j = 0; j < n_ && s == Status::ok; ++j) {
       unit_[j] = 1;
       const auto column = Out(by_[k]).subspan(j * (n_ + m_), n_ + m_);
@@ -104,6 +110,12 @@ Status TransposedEquations::solve(InOut x) noexcept {
   if (products_) {
     std::ranges::copy(x, right_.begin());
     return transposed_->solve_transposed(right_, x, product_q_, product_v_);
+  }
+  if (of_mass_) {
+    nu_.assign(m_, 0.0);
+    const Status s = dynamics_.solve(x.first(n_), nu_);
+    std::ranges::transform(nu_, x.subspan(n_).begin(), std::negate());
+    return s;
   }
   std::ranges::fill(x.subspan(n_), 0.0);
   return solver_->solve(x);

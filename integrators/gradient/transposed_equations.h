@@ -22,17 +22,19 @@ namespace tress::integrators {
 ///
 /// With TransposedForm the system solves and multiplies. Else the derivatives are the
 /// matrices of SparseForm where the system has one and no constraints, or columns by
-/// central differences, O(n) residuals.
+/// central differences, O(n) residuals. Where S is the mass of a start with constraints,
+/// which is symmetric, the solution is that of Dynamics: columns lose the digits of the
+/// smallest inertia.
 class TransposedEquations {
  public:
-  /// `sparse`: as ResidualDerivative. `system` must outlive this.
-  TransposedEquations(System& system, const Options& options, bool sparse);
+  /// `forces`: as ResidualDerivative. `system` must outlive this.
+  TransposedEquations(System& system, const Options& options, KnownForces forces);
 
   /// Returns the number of coordinates.
   std::size_t n() const { return n_; }
   /// Returns the number of constraints.
   std::size_t m() const { return m_; }
-  /// Computes the accelerations and multipliers of a motion from q and v.
+  /// Computes the accelerations and multipliers of a motion from q and v, before move().
   Status accelerate(WatchedSystem::Motion& motion) noexcept {
     return dynamics_.accelerate(motion.t, motion.q, motion.v, motion.a, motion.lambda);
   }
@@ -47,7 +49,7 @@ class TransposedEquations {
   void pull(In x, InOut q_hat, InOut v_hat) noexcept;
 
  private:
-  Status by_columns(const WatchedSystem::Motion& state) noexcept;
+  Status by_columns(const WatchedSystem::Motion& state, std::size_t kinds) noexcept;
   Status by_matrices(const WatchedSystem::Motion& state) noexcept;
 
   Dynamics dynamics_;
@@ -55,6 +57,7 @@ class TransposedEquations {
   SparseForm* sparse_;          // null: not used
   TransposedForm* transposed_;  // null: not used
   bool products_ = false;       // in use at this state
+  bool of_mass_ = false;        // S is the mass, with constraints
   std::size_t n_, m_;
   Pattern pattern_;                        // (n + m) x n, of each of by_
   std::array<std::vector<double>, 3> by_;  // q, v, a
@@ -64,6 +67,7 @@ class TransposedEquations {
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> right_, product_q_, product_v_;  // (n), of products_
   std::vector<double> combined_, gradient_, none_, unit_;
+  std::vector<double> nu_;  // (m), of of_mass_
 };
 
 }  // namespace tress::integrators

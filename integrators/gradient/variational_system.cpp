@@ -26,15 +26,16 @@ std::string frame_moves(const std::string& name, double s) {
 
 VariationalSystem::VariationalSystem(const WatchedSystem& run, System& system,
                                      std::span<const VariedSystem> varied,
-                                     const Options& options, bool sparse, System* copies)
+                                     const Options& options, KnownForces forces,
+                                     System* copies)
     : run_(run),
       system_(system),
       varied_(varied),
       n_(size(system.layout().coordinates)),
-      stages_(system, varied, options, sparse, copies) {
+      stages_(system, varied, options, forces, copies) {
   const int constraints = stages_.dynamics().m();
   if (constraints > 0) {
-    starts_.emplace(system, varied, acceleration_options(options), sparse, copies);
+    starts_.emplace(system, varied, acceleration_options(options), forces, copies);
   }
   if (system.contact_form() != nullptr) {
     contacts_.emplace(stages_.dynamics(), varied);

@@ -42,10 +42,10 @@ class VariationalSystem final : public System,
                                 private MovingHistory {
  public:
   /// `system`: the one of the run, with the exact Jacobian; it follows the run. `run`
-  /// records it. `sparse`, `copies`: as ResidualDerivative. All must outlive this.
+  /// records it. `forces`, `copies`: as ResidualDerivative. All must outlive this.
   VariationalSystem(const WatchedSystem& run, System& system,
                     std::span<const VariedSystem> varied, const Options& options,
-                    bool sparse, System* copies);
+                    KnownForces forces, System* copies);
 
   /// Writes the columns of initial_state().
   void initial_state(Out dq, Out dv) const override;

@@ -220,6 +220,24 @@ class ExactTangent {
     }
   }
 
+  /// Returns the product of what compute() found for the state of the root with the
+  /// change of the root's motion from `here` to `there`, to first order.
+  static double change(const State& by_root, const FrameMotion& here,
+                       const FrameMotion& there) {
+    const auto product = [&by_root](int level, const Vec& translation,
+                                    const Vec& rotation) {
+      const auto [by_translation, by_rotation] = vectors(by_root, level * size);
+      return dot(by_translation, translation) + dot(by_rotation, rotation);
+    };
+    const Frame& f = here.frame;
+    const Vec e0 = f.back(there.frame.e0), e1 = f.back(there.frame.e1),
+              e2 = f.back(there.frame.e2);
+    return product(0, f.back(there.x - here.x),
+                   0.5 * Vec{e1.z - e2.y, e2.x - e0.z, e0.y - e1.x}) +
+           product(1, there.v - here.v, there.omega - here.omega) +
+           product(2, there.a - here.a, there.alpha - here.alpha);
+  }
+
   /// Returns the translation and the rotation that begin at entry `from`.
   template <class Column>
   static std::pair<Vec, Vec> vectors(const Column& column, int from) {

@@ -12,6 +12,7 @@
 #include "contract/forms/history.h"
 #include "contract/forms/loaded_tangent.h"
 #include "contract/forms/material_points.h"
+#include "contract/forms/moved_clamp.h"
 #include "contract/forms/natural_strains.h"
 #include "contract/forms/point_accelerations.h"
 #include "contract/forms/sections.h"
@@ -41,6 +42,7 @@ template <class Kernel, int modes>
 class ReducedSystem : public System,
                       public NaturalStrains,
                       public TransposedForm,
+                      public MovedClamp,
                       public PointAccelerations,
                       public Sections,
                       public LoadedTangent,
@@ -319,7 +321,13 @@ class ReducedSystem : public System,
     if (!of->dynamics_.loaded()) return 0;
     const Needs wanted = of->dynamics_.effect_needs();
     if (!loads_placed_) {
-      dynamics_.place(wanted | Needs{.position = true, .velocity = true});
+      // residual() has placed the points of the own effects.
+      const Needs own = dynamics_.effect_needs();
+      const bool placed = dynamics_.loaded() && own.position >= wanted.position &&
+                          own.velocity >= wanted.velocity &&
+                          own.tangent >= wanted.tangent;
+      if (!placed)
+        dynamics_.place(own | wanted | Needs{.position = true, .velocity = true});
       for (std::size_t i = 0; i < kinematics_.segments().size(); ++i) {
         const auto& segment = kinematics_.segments()[i];
         for (std::size_t b = segment.first_block; b < segment.last_block; ++b) {
@@ -330,6 +338,16 @@ class ReducedSystem : public System,
     }
     const In loads = of->dynamics_.find_loads(t_transposed_, dynamics_.points(wanted));
     return scalar_product(loads, u_world_);
+  }
+
+  /// Motion across the plane of a planar strand is not among the states of its tangent.
+  [[gnu::cold, gnu::noinline]] double power_of_clamp(System& other) noexcept override {
+    auto* const of = dynamic_cast<ReducedSystem*>(&other);
+    if (of == nullptr || modes == 1 || kinematics_.free() || of->kinematics_.free()) {
+      return std::nan("");
+    }
+    return exact_tangent_.change(transposed_.at_root(), kinematics_.root(),
+                                 of->kinematics_.clamp(t_transposed_));
   }
 
   /// Rigid links have one at the tip; others at all points, except a clamped root.

@@ -82,7 +82,7 @@ LinearizedStep linearized_step(const Scene& scene, std::size_t strand, double t,
                              .options = options_beside_supports(*system, scene.options)};
   method.options.tolerance = 0;
   method.options.step = step;
-  method.sparse = !needs(make_effects(scene)).couplings;
+  method.forces = known_forces(scene);
   GradientRun run(*system, exact_system_of(scene, strand), columns, method);
   Status s = run.start(from);
   if (s == Status::ok) s = run.advance(t + step);

@@ -8,11 +8,9 @@
 
 #include "contract/forms/material_points.h"
 #include "contract/forms/moving_history.h"
-#include "contract/jacobian_choice.h"
 #include "integrators/catalogue.h"
 #include "integrators/gradient/adjoint_run.h"
 #include "integrators/gradient/gradient_run.h"
-#include "models/strand_copies.h"
 #include "simulation/gradient/contact_at_stops.h"
 #include "simulation/gradient/run_stops.h"
 #include "simulation/scene/strand_tables.h"
@@ -26,32 +24,6 @@ using integrators::GradientRun;
 using integrators::GradientStart;
 using integrators::RunParameter;
 
-/// The model's options with the exact Jacobian.
-Parameters exact_options(const Scene& scene) {
-  Parameters options = scene.model_options;
-  for (const Parameter& p : scene.model->parameters) {
-    if (p.name == jacobian_parameter.name) {
-      options.set(p.name, words_of(jacobian_parameter.choices).front());
-    }
-  }
-  return options;
-}
-
-/// The model of a strand with its supports.
-std::unique_ptr<System> on_supports(const Scene& scene, std::size_t strand,
-                                    const Parameters& model_options) {
-  const Strand& one = scene.strands[strand];
-  return SceneSupports(scene).on(
-      scene.model->on_strand(one, model_options, make_effects(scene)), one, strand);
-}
-
-/// Copies of a strand for the derivatives of its residual; null: supports change it.
-std::unique_ptr<System> copies_of(const Scene& scene, std::size_t strand) {
-  if (SceneSupports(scene).change(strand)) return nullptr;
-  return models::strand_copies(*scene.model, scene.strands[strand], scene.model_options,
-                               make_effects(scene));
-}
-
 double farthest(const std::vector<double>& x, const std::vector<double>& y) {
   double most = 0;
   for (std::size_t i = 0; i + 2 < x.size(); i += 3) {
@@ -61,21 +33,10 @@ double farthest(const std::vector<double>& x, const std::vector<double>& y) {
   return most;
 }
 
-/// Of a parameter that places something. Hair at rest sinks into a compliant body by 6e-5
-/// of its length, and the differences must not take points into or out of contact.
-/// Positions are rounded at 1e-16 of the length, frames several times at 1e-16.
-double distance_of_places(const Scene& scene, std::size_t strand,
-                          const SceneParameter& parameter) {
-  constexpr double part_of_length = 2e-9, turn = 1e-8;  // turn: rad
-  const bool turns = parameter.unit == "rad";
-  const double change = turns ? turn : part_of_length * scene.strands[strand].length();
-  return std::min(integrators::central_distance, change / parameter.measure);
-}
-
 GradientRun::Method method_of(const Scene& scene, bool with_damping) {
   GradientRun::Method method{.id = scene.integrator, .options = scene.options};
   method.start = with_damping ? GradientStart::damped : GradientStart::as_run;
-  method.sparse = !needs(make_effects(scene)).couplings;
+  method.forces = known_forces(scene);
   if (scene.options.tolerance == 0) return method;
   constexpr double one_step = 1e30;  // to the next stop
   method.options.tolerance = 0;
@@ -94,6 +55,7 @@ class StrandRun {
         system_(system_of(scene, strand)),
         parameters_(run_parameters(scene, strand, task.parameters)),
         method_(method_of(scene, task.damped)) {
+    check_starts(scene, strand, *system_, task.parameters);
     method_.options = options_beside_supports(*system_, method_.options);
     if (chosen_) accepted_ = accepted_steps(scene, strand, task.times);
     stops_ = chosen_ ? divided(accepted_.stops, task.parts) : stops_at(task.times);
@@ -217,31 +179,6 @@ class StrandRun {
 };
 
 }  // namespace
-
-std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
-  return on_supports(scene, strand, scene.model_options);
-}
-
-std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand) {
-  return on_supports(scene, strand, exact_options(scene));
-}
-
-std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
-                                         std::span<const SceneParameter> parameters) {
-  std::vector<RunParameter> all;
-  for (const SceneParameter& parameter : parameters) {
-    all.emplace_back([&scene, strand, &parameter](double s) {
-      Scene changed = scene;
-      parameter.change(changed, s);
-      return exact_system_of(changed, strand);
-    });
-    all.back().name = parameter.name;
-    if (parameter.places) {
-      all.back().places = distance_of_places(scene, strand, parameter);
-    }
-  }
-  return all;
-}
 
 bool starts_damped(std::string_view start, std::span<const SceneParameter> parameters) {
   if (start != "auto") return start == "damped";

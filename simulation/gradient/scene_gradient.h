@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "integrators/gradient/varied_system.h"
+#include "simulation/gradient/gradient_systems.h"
 #include "simulation/scene/gradient_table.h"
 
 namespace tress::simulation {
@@ -76,14 +76,6 @@ std::vector<double> times_of_frames(const Scene& scene);
 /// The gradient of one strand's run. With a tolerance, steps also end at the times.
 StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
                                const GradientTask& task);
-
-/// Makes the model of a strand, with the model's own Jacobian.
-std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand);
-/// Makes the model of a strand, with the exact Jacobian.
-std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand);
-/// The systems of a strand at changed values of the parameters, which both must outlive.
-std::vector<integrators::RunParameter> run_parameters(
-    const Scene& scene, std::size_t strand, std::span<const SceneParameter> parameters);
 
 /// Returns how many derivatives [gradient] asks for: of each coordinate, at each frame,
 /// by each parameter.

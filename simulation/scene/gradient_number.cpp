@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "contract/input_error.h"
 #include "simulation/scene/gradient_table.h"
+#include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
 namespace {
@@ -38,6 +40,49 @@ constexpr EffectUse effect_uses[] = {
     {"wind", "coefficients", drag_coefficients},
     {"quadratic_drag", "coefficients", drag_coefficients},
 };
+
+/// Tables of [[supports]] and of drives, which are no effects of the catalogue.
+struct ListedTables {
+  std::string_view name;                    // of the first one; the second is name_2
+  std::vector<Table> StrandTables::*plain;  // null: of drives
+  std::vector<Table> DrivenTables::*driven;
+
+  template <class Tables>
+  auto& of(Tables& tables) const {
+    return plain != nullptr ? tables.*plain : tables.driven.*driven;
+  }
+};
+constexpr ListedTables listed[] = {{"supports", &StrandTables::supports, nullptr},
+                                   {"point_moment", nullptr, &DrivenTables::moments},
+                                   {"natural_shape", nullptr, &DrivenTables::shapes}};
+
+/// Numbers of these tables that have no derivative.
+struct RefusedKey {
+  std::string_view table, key, reason;
+};
+constexpr RefusedKey refused_keys[] = {
+    {"point_moment", "at", "the end of an element cannot move a little"},
+    {"natural_shape", "from", "derivatives jump where a part ends between elements"},
+    {"natural_shape", "to", "derivatives jump where a part ends between elements"},
+    {"supports", "axis", "the length of a direction does nothing"},
+    {"supports", "slide", "the length of a direction does nothing"}};
+
+bool is_refused(std::string_view table, std::string_view key) {
+  return std::ranges::any_of(refused_keys, [&](const RefusedKey& one) {
+    return one.table == table && one.key == key;
+  });
+}
+
+/// see(list, i, name) of every such table.
+template <class See>
+void each_listed(const Scene& scene, See see) {
+  for (const ListedTables& list : listed) {
+    for (std::size_t i = 0; i < list.of(*scene.tables).size(); ++i) {
+      see(list, i,
+          i == 0 ? std::string(list.name) : fmt::format("{}_{}", list.name, i + 1));
+    }
+  }
+}
 
 double or_one(double value) { return value != 0 ? std::abs(value) : 1; }
 
@@ -83,6 +128,51 @@ std::string unused_number(std::string_view effect, std::string_view key,
     return fmt::format("{} = \"{}\" does not use it", one.choice, word);
   }
   return {};
+}
+
+bool add_table_parameter(const Scene& scene, std::string_view name,
+                         const std::string& place, std::vector<SceneParameter>& to) {
+  const std::size_t dot = name.find('.');
+  if (dot == name.npos) return false;
+  bool found = false;
+  each_listed(
+      scene, [&](const ListedTables& list, std::size_t i, const std::string& of_table) {
+        if (name.substr(0, dot) != of_table) return;
+        found = true;
+        const Table& table = list.of(*scene.tables)[i];
+        const std::string_view written = name.substr(dot + 1);
+        std::string_view key = written;
+        take_component(key);
+        for (const RefusedKey& one : refused_keys) {
+          if (one.table != list.name || one.key != key) continue;
+          refuse_gradient(name, one.reason, place, "leave it out");
+        }
+        const GradientNumber of =
+            gradient_number(name, written, table.declared(), table.values(), place);
+        to.push_back({std::string(name), of.unit, of.value, of.measure, false,
+                      [of, list, i](Scene& changed, double s) {
+                        auto own = std::make_shared<StrandTables>(*changed.tables);
+                        Table& one = list.of(*own)[i];
+                        one.set(of.key, of.text(one.values(), s), one.place());
+                        changed.tables = std::move(own);
+                      },
+                      of.positive, of.min, of.max});
+      });
+  return found;
+}
+
+std::vector<std::string> table_parameter_names(const Scene& scene) {
+  std::vector<std::string> all;
+  each_listed(
+      scene, [&](const ListedTables& list, std::size_t i, const std::string& of_table) {
+        for (const Parameter& p : list.of(*scene.tables)[i].declared()) {
+          if (p.text || p.rows || p.whole || !p.choices.empty()) continue;
+          if (is_refused(list.name, p.name)) continue;
+          all.push_back(
+              fmt::format("{}.{}{}", of_table, p.name, p.components == 3 ? ".x" : ""));
+        }
+      });
+  return all;
 }
 
 Vec axis_of(std::size_t k) {

@@ -27,7 +27,8 @@ constexpr Parameter gradient_keys[] = {
          "Add `.each` for one value per element. Root: `root_angle_rad.x` (.y, "
          ".z: about that axis), `root_position_m.x`. Keys of [root] as "
          "`root.amplitude_m`, of effects as `linear_drag.drag_kg_m_s` or "
-         "`wind.velocity_m_s.x`",
+         "`wind.velocity_m_s.x`, of moments and compliant supports as "
+         "`point_moment.moment_n_m.x` and `supports.stiffness_n_per_m`",
      .rows = true,
      .text = true,
      .fallback = "youngs_modulus_pa,radius_m,density_kg_m3"},
@@ -128,7 +129,8 @@ class Finder {
       if (one.name == name) refuse(name, one.reason, one.remedy);
     }
     if (of_strand(name, to) || of_shape(name, to) || of_root(name, to) ||
-        of_root_table(name, to) || of_effect(name, to)) {
+        of_root_table(name, to) || of_effect(name, to) ||
+        add_table_parameter(scene_, name, place_, to)) {
       return;
     }
     std::vector<std::string> known = names();
@@ -173,8 +175,11 @@ class Finder {
     const auto found = std::ranges::find(of_shapes, name.substr(0, dot), &OfShape::name);
     if (found == std::end(of_shapes)) return false;
     const std::string_view which = dot == name.npos ? "" : name.substr(dot + 1);
-    const std::size_t count = first().segments.size();
-    if (which.empty()) {
+    std::size_t count = 0;
+    for (const Strand& strand : scene_.strands) {
+      count = std::max(count, strand.segments.size());
+    }
+    if (dot == name.npos) {
       add_shape(*found, std::string(name), {}, to);
     } else if (which == "each") {
       for (std::size_t i = 0; i < count; ++i) {
@@ -184,7 +189,10 @@ class Finder {
       std::size_t i = 0;
       while (i < count && which != std::to_string(i)) ++i;
       if (i == count) {
-        refuse(name, fmt::format("the strand has elements 0 to {}", count - 1),
+        refuse(name,
+               fmt::format("{} elements 0 to {}",
+                           scene_.strands.size() > 1 ? "strands have" : "the strand has",
+                           count - 1),
                "give .each, or one of these numbers");
       }
       add_shape(*found, std::string(name), i, to);
@@ -195,7 +203,10 @@ class Finder {
   void add_shape(const OfShape& of, std::string name, std::optional<std::size_t> element,
                  std::vector<SceneParameter>& to) const {
     const double measure = 1 / first().length();
-    const double value = first().segments[element.value_or(0)].*of.shape.*of.component;
+    const auto longer = std::ranges::find_if(scene_.strands, [&](const Strand& strand) {
+      return strand.segments.size() > element.value_or(0);
+    });
+    const double value = longer->segments[element.value_or(0)].*of.shape.*of.component;
     to.push_back({std::move(name), "1/m", value, measure, true,
                   [of, element, measure](Scene& scene, double s) {
                     for (Strand& strand : scene.strands) {
@@ -205,6 +216,7 @@ class Finder {
                       }
                     }
                   }});
+    to.back().starts = of.shape == &Segment::initial;
   }
 
   bool of_root(std::string_view name, std::vector<SceneParameter>& to) const {
@@ -311,6 +323,8 @@ class Finder {
         }
       }
     }
+    const std::vector<std::string> of_tables = table_parameter_names(scene_);
+    all.insert(all.end(), of_tables.begin(), of_tables.end());
     return all;
   }
 

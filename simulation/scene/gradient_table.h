@@ -69,7 +69,16 @@ struct SceneParameter {
   /// Whether it places points, bodies or targets: lengths and angles of [root] and of
   /// effects.
   bool places = false;
+  bool starts = false;  // whether it is the shape at t = 0
 };
+
+/// Adds the number of [[supports]] or [[effects.point_moment]] with this name, such as
+/// `supports_2.stiffness_n_per_m`. Returns false if the name is of no such table. Throws
+/// InputError with `place` on a key by which nothing can be differentiated.
+bool add_table_parameter(const Scene& scene, std::string_view name,
+                         const std::string& place, std::vector<SceneParameter>& to);
+/// Returns the names of all such numbers.
+std::vector<std::string> table_parameter_names(const Scene& scene);
 
 /// Returns the parameters that the scene's [gradient] names. Throws InputError with its
 /// location on a name that is no number of the scene, or by which nothing can be

@@ -227,11 +227,15 @@ TEST_F(AddedMethods, AreRefusedIfTheyDoNotShowTheirStages) {
 }
 
 TEST_F(AddedMethods, BuiltInStatesAreAllThatTheNextStepDependsOn) {
+  std::set<std::string_view> start;
   for (const IntegratorEntry& entry : integrator_catalogue()) {
     if (entry.stages == 0 || entry.id.starts_with("added_")) continue;
     EXPECT_EQ(no_transposed_steps(entry.id, {}), "") << entry.id;
     EXPECT_TRUE(shows_stages(entry.id)) << entry.id;
+    if (starts_from_accelerations(entry.id)) start.insert(entry.id);
   }
+  EXPECT_EQ(start, (std::set<std::string_view>{"esdirk43", "generalized_alpha", "newmark",
+                                               "tr_bdf2"}));
 }
 
 }  // namespace tress::test_added_methods

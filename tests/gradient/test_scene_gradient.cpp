@@ -18,12 +18,12 @@ using testing_support::refusal;
 /// A curled hair in wind over a plane that it does not reach.
 std::string scene_text(
     const std::string& gradient,
-    const std::string& integrator = "dt_s = 0.002\nnewton_tolerance = 1e-13") {
+    const std::string& integrator = "dt_s = 0.002\nnewton_tolerance = 1e-13",
+    const std::string& strand = "[strand]") {
   return "title = \"t\"\nduration_s = 0.1\nframes_per_s = 20\n[integrator]\nid = "
          "\"tr_bdf2\"\n" +
-         integrator +
-         "\n[material]\ninternal_friction_kg_m3_s = 1e-10\n"
-         "[strand]\nelements = 5\nshape = \"helix\"\ninitial = \"straight\"\n"
+         integrator + "\n[material]\ninternal_friction_kg_m3_s = 1e-10\n" + strand +
+         "\nelements = 5\nshape = \"helix\"\ninitial = \"straight\"\n"
          "[root]\nmotion = \"swing\"\namplitude_m = 0.01\nfrequency_hz = 3\n"
          "[effects.gravity]\n[effects.linear_drag]\ndrag_kg_m_s = 1e-4\n"
          "[effects.wind]\nvelocity_m_s = [1, 0.5, 0]\n" +
@@ -107,6 +107,22 @@ TEST(SceneGradient, OfAStrandOfEachElementIsThatOfAll) {
     most = std::max(most, std::abs(sum));
   }
   EXPECT_LT(worst, 1e-8 * most);
+}
+
+TEST(SceneGradient, OfEachElementHasThoseOfTheLongestStrand) {
+  const Scene scene =
+      parse_scene(scene_text("[[strand]]\nelements = 7\nposition_m = [0, 0.01, "
+                             "0]\n[gradient]\nby = [\"natural_curvature_per_m.each\", "
+                             "\"natural_twist_per_m.6\"]\n",
+                             "dt_s = 0.002\nnewton_tolerance = 1e-13", "[[strand]]"),
+                  "s.toml");
+  const SceneGradient found = scene_gradient(scene);
+  ASSERT_EQ(found.parameters.size(), 8u);
+  const auto tip = [&](std::size_t strand, std::size_t k) {
+    return std::abs(found.strands[strand].by[k].back().back());
+  };
+  EXPECT_LT(tip(0, 6), 1e-9 * tip(1, 6));  // rounding
+  EXPECT_EQ(found.parameters[7].value, 0);
 }
 
 /// Largest difference of the derivatives of the tip at the last frame over the largest.
@@ -280,6 +296,8 @@ TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
   EXPECT_NE(refused("by = [\"initial_velocity_m_s\"]\n").find("starts at rest"),
             std::string::npos);
   EXPECT_NE(refused("by = [\"natural_twist_per_m.5\"]\n").find("elements 0 to 4"),
+            std::string::npos);
+  EXPECT_NE(refused("by = [\"natural_twist_per_m.\"]\n").find("give .each"),
             std::string::npos);
   EXPECT_NE(refused("by = [\"root_angle_rad\"]\n").find("give root_angle_rad.x"),
             std::string::npos);

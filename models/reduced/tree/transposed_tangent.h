@@ -65,6 +65,8 @@ class TransposedProduct {
   const State& by_state(std::size_t i) const { return by_state_[i]; }
   /// Returns what compute() found for the wrench on the tip of segment i.
   const Wrench& by_tip(std::size_t i) const { return by_tip_[i]; }
+  /// Returns what compute() found for the state of the root.
+  const State& at_root() const { return at_root_; }
   /// Returns what compute() found for the wrench on the root.
   const Wrench& by_root() const { return of_root_; }
   /// Returns what compute() found for the rows [w; r] of segment i.
