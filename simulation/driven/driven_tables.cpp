@@ -87,7 +87,7 @@ constexpr Parameter shape_parameters[] = {
 constexpr DrivenKind kinds[] = {
     {"point_moment",
      "moment on the section at one place of a strand, dead or following the material, "
-     "constant or over time. Refused with bodies in exact contact and with gradients",
+     "constant or over time. Refused with bodies in exact contact",
      "Euler", moment_parameters},
     {"natural_shape",
      "natural curvature and twist over time, of a whole strand or a part: muscles, curls "

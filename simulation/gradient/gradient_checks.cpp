@@ -73,19 +73,6 @@ void check_derivatives(const Scene& scene) {
       "no gradient of a strand that drives a body: derivatives of the body's motion "
       "are not available",
       place, "use another motion of [effects.body] than moves = \"turns\" or \"free\"");
-  const SceneSupports supports(scene);
-  if (supports.drive()) {
-    throw InputError(
-        fmt::format("no gradient of strands with {}: derivatives of strands that are "
-                    "driven are not available",
-                    supports.table_name()),
-        place, "leave out " + supports.table_name());
-  }
-  refuse_if(
-      supports.constrain(),
-      "no gradient of strands on rigid [supports]: derivatives of their constraints "
-      "are not available",
-      place, "give [supports] stiffness_n_per_m, or leave out [supports]");
   const auto system = exact_system_of(scene, 0);
   const auto no = integrators::no_gradient(
       scene.integrator, *system, options_beside_supports(*system, scene.options));
