@@ -46,6 +46,7 @@ struct IntegratorEntry {
   bool error_controlled = false;  // takes Options::tolerance as well as step
   bool impulsive = false;         // goes on after impulses at ends of steps (Impulsive)
   bool tangent = false;           // solves with the model's tangent
+  bool exact_jacobian = false;    // an approximate Jacobian lowers its order
   bool replaces_steps = false;    // backward Euler replaces steps (Stats::replaced)
   int stages = 0;                 // solutions by Newton's method in a step (Stage)
   Contact contact = Contact::regular;  // contact forces that it can drive

@@ -61,6 +61,7 @@ IntegratorEntry rodas5p_entry() {
           .source = "Steinebach 2023",
           .error_controlled = true,
           .tangent = true,
+          .exact_jacobian = true,
           .formulations = {{Formulation::parametric, table.order}},
           .gaps = {{Formulation::acceleration, no_constraints},
                    {Formulation::baumgarte, no_constraints},

@@ -11,10 +11,12 @@
 
 #include "simulation/run/remedy.h"
 #include "simulation/run/world.h"
+#include "tests/support/refusal.h"
 
 namespace tress::test_guard {
 
 using namespace simulation;
+using testing_support::refusal;
 
 struct Said {
   std::string model, integrator, dt, more, root = "motion = \"fixed\"\n",
@@ -83,6 +85,17 @@ TEST(Rodas5p, KeepsToItsToleranceWhereTheMassChanges) {
                   "motion = \"rotate\"\nfrequency_hz = 2\nangle_rad = 0.8\n", "2e-5");
   };
   EXPECT_LE(norm(tip("rodas5p", "1e-2") - tip("esdirk43", "1e-5")), 1e-2 * 0.1);
+}
+
+TEST(Rodas5p, RefusesAnApproximateJacobian) {
+  const std::string text =
+      "title = \"rosenbrock\"\nduration_s = 1\n[model]\nid = \"super_helix\"\njacobian "
+      "= \"elastic\"\n[integrator]\nid = \"rodas5p\"\ndt_s = 1e-3\n[material]\nname = "
+      "\"hair.asian\"\n[strand]\nelements = 4\n";
+  EXPECT_EQ(
+      refusal([&] { parse_scene(text, "r.toml"); }),
+      "rodas5p with jacobian = \"elastic\": an approximate Jacobian lowers its order "
+      "or makes it unstable (r.toml:4:6): give [model] jacobian = \"exact\"");
 }
 
 /// Ten Gauss-Seidel sweeps of 20 stiff springs a step of 4.4 ms do not hold them: energy
