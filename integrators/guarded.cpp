@@ -22,9 +22,9 @@ constexpr double rounding = 1e-9;
 ///
 ///     E_{n+1} > E_n + h max(0, P_n, P_i, P_{n+1}) + 0.02 max(T_n, T_{n+1})
 ///
-/// with the energy E, its kinetic part T and the power P of Energetics. i runs over the
-/// stages: a root may move, and a force act, in the middle of a step alone. The order is
-/// that of the method while no step is replaced.
+/// with the energy E, its kinetic part T and the power P of Energetics, where i runs over
+/// the stages. A root may move, and a force act, in the middle of a step alone. The order
+/// is that of the method while no step is replaced.
 class Guarded final : public FixedStep, public Impulsive {
  public:
   Guarded(System& system, const Options& options, const EsdirkTable& table)

@@ -17,9 +17,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rounding of an eigenvalue over the largest one. A double real eigenvalue, such as that
-/// of bending in both planes of a round section, is computed as a pair whose distance
-/// over its size is the root of this rounding over its size.
+/// Rounding of an eigenvalue over the largest one. Double real eigenvalues, as of bending
+/// in both planes of a round section, come out as a pair. Its distance over its size is
+/// the root of this rounding over that size.
 constexpr double eigenvalue_rounding = 64 * std::numeric_limits<double>::epsilon();
 
 /// Indices of the eigenvalues of least size that count as neutral.

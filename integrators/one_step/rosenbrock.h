@@ -68,10 +68,11 @@ class RosenbrockStages {
   In a() const { return a_; }
   /// There are no multipliers.
   In lambda() const { return {}; }
-  /// Writes the estimate of the error of the last step: |method minus its comparison
-  /// solution|, plus the correction of the end that the defect r(t, q, v, a) there
-  /// requires. All derivatives are those of the start: where a stiff mass or stiffness
-  /// changes much within a step, both solutions are wrong alike, and the defect shows it.
+  /// Writes the estimated error of the last step: the distance of the method from its
+  /// comparison solution, plus the correction that the defect r(t, q, v, a) of the end
+  /// requires. All derivatives are those of the start. Where a stiff mass or stiffness
+  /// changes much within a step, both solutions have the same error, which the defect
+  /// shows.
   Status difference(Out dq, Out dv) noexcept;
 
  private:
