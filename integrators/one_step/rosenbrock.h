@@ -68,11 +68,10 @@ class RosenbrockStages {
   In a() const { return a_; }
   /// There are no multipliers.
   In lambda() const { return {}; }
-  /// Writes the estimated error of the last step: the distance of the method from its
-  /// comparison solution, plus the correction that the defect r(t, q, v, a) of the end
-  /// requires. All derivatives are those of the start. Where a stiff mass or stiffness
-  /// changes much within a step, both solutions have the same error, which the defect
-  /// shows.
+  /// Writes the estimated error of the last step. It is the distance from the comparison
+  /// solution, plus the correction by the defect r(t, q, v, a) of the end. All
+  /// derivatives are those of the start. Where a stiff mass or stiffness changes much
+  /// within a step, both solutions have the same error, which the defect shows.
   Status difference(Out dq, Out dv) noexcept;
 
  private:
