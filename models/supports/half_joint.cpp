@@ -35,6 +35,7 @@ void HalfJoint::add_tangent(double t, In q, In v, Weights w, InOut s) {
         t, q, true, w.pos, [&](In x, InOut b) { add_force(t, x, v, b); }, s);
   }
   if (w.vel != 0 && norm(joint_.friction) > 0) {
+    zero_.resize(q.size());
     const auto friction = [&](In x, InOut b) {
       const SectionGap gap = section_.gap(t, q, x, zero_);
       section_.pull(t, q, gap, held(entrywise(joint_.friction, gap.rate)), b);

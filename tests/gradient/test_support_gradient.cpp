@@ -169,7 +169,7 @@ TEST(SupportGradient, ByNumbersOfSupportsIsThatOfDifferencesOfRuns) {
       "[[supports]]\nat = 0.5\nkind = \"ball\"\nstiffness_n_per_m = 1e-4\n"
       "[[supports]]\nat = \"tip\"\nkind = \"clamp\"\nstiffness_n_per_m = "
       "0.01\ndamping_n_s_per_m = 1e-5\nturn_stiffness_n_m_per_rad = 1e-8\n";
-  for (const std::string model : {"super_helix", "der"}) {
+  for (const std::string model : {"super_helix", "der", "articulated_chain"}) {
     SCOPED_TRACE(model);
     const std::string scene =
         with(text(model, supports), "tr_bdf2",
