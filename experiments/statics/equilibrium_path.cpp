@@ -92,7 +92,8 @@ class Follower {
     Station first{measured_point(strand_, at, newton, -1), {}, strand_.memory()};
     first.point.event = Event::start;
     newton_.neutral = first.point.stability.neutral;
-    first.tangent = newton_.tangent(at, {Eigen::VectorXd::Zero(at.q.size()), range()});
+    first.tangent = newton_.tangent(
+        at, {Eigen::VectorXd::Zero(at.q.size()), strand_.varied().direction() * range()});
     return first;
   }
 
@@ -178,9 +179,11 @@ class Follower {
   /// The end of the range that lies between two values; NaN: none.
   double end_between(double before, double after) const {
     const Varied& of = strand_.varied();  // supports rest before their first row
-    const double first = of.from - (of.kind == Varied::Kind::supports ? 0 : range());
-    if (after >= of.to && before < of.to) return of.to;
-    if (after <= first && before > first) return first;
+    const double ahead = of.direction();
+    const double first =
+        of.from - (of.kind == Varied::Kind::supports ? 0 : ahead * range());
+    if (ahead * after >= ahead * of.to && ahead * before < ahead * of.to) return of.to;
+    if (ahead * after <= ahead * first && ahead * before > ahead * first) return first;
     return std::nan("");
   }
 

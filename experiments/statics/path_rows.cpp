@@ -100,6 +100,7 @@ void gauge_supports(StaticStrand& strand, Gauge& gauge) {
       farthest = norm(way);
       gauge.direction = unit_or_zero(way);
       gauge.support = i;
+      gauge.path = support.path;
       gauge.point = static_cast<std::size_t>(support.point);
       gauge.part = 0;
       gauge.place = "the support that moves";
@@ -112,6 +113,9 @@ void gauge_supports(StaticStrand& strand, Gauge& gauge) {
 std::span<const Column> path_columns() { return columns_of_paths; }
 
 double Gauge::displacement(const PathPoint& first, const PathPoint& at) const {
+  if (support) {  // a compliant one moves further than the strand
+    return dot(path.at(at.at.value).x - path.at(first.at.value).x, direction);
+  }
   Vec moved = point_of(at, point) - point_of(first, point);
   if (part > 0) {
     moved = (1 - part) * moved +

@@ -20,6 +20,7 @@ struct Gauge {
   Vec direction{};                          // of length 1; 0: distances count
   double force = 0;                         // of a point force, for 1 of the parameter, N
   std::optional<std::size_t> support = {};  // support that moves
+  models::RootMotion path;                  // its path
   std::string place;                        // name of the place
 
   /// Returns the displacement of the place since the first point of a path, m.

@@ -255,10 +255,11 @@ const std::vector<models::Support>& StaticStrand::supports() {
 }
 
 Vec StaticStrand::support_force(const Balance& state, std::size_t support) {
-  return at(state.value)
-      .rows()
-      .load(time(state.value), values_of(state.q), values_of(state.lambda), support)
-      .force;
+  SupportedSystem& system = at(state.value);
+  std::vector<double> forces(3 * supports().size()), moments = forces;
+  system.loads_of(time(state.value), values_of(state.q), zero_, values_of(state.lambda),
+                  forces, moments);
+  return load3(&forces[3 * support]);
 }
 
 }  // namespace tress::experiments::statics

@@ -88,9 +88,9 @@ void set_range(std::string_view text, const std::string& place, Varied& of) {
             "give FROM..TO, as in --over point_force=0..2");
   of.from = end_of_range(text.substr(0, dots), place);
   of.to = end_of_range(text.substr(dots + 2), place);
-  refuse_if(!(of.from < of.to),
-            fmt::format("the range {} does not increase", std::string(text)), place,
-            "give FROM below TO, as in --over point_force=0..2");
+  refuse_if(of.from == of.to,
+            fmt::format("both ends of the range {} are the same", std::string(text)),
+            place, "give different numbers, as in --over point_force=0..2");
 }
 
 /// True: the name is a load or the supports.
@@ -172,8 +172,10 @@ Varied varied(const Scene& scene, std::string_view text, const std::string& plac
               fmt::format("give --over {}=FROM..TO", of.name));
   }
   if (of.kind == Kind::supports) {
-    refuse_if(of.from != 0, "a path of supports that begins after their start", place,
-              fmt::format("give --over supports=0..{:g}", of.to));
+    refuse_if(of.from != 0 || of.to < 0,
+              "a path of supports that does not begin at their start, or goes back from "
+              "there",
+              place, fmt::format("give --over supports=0..{:g}", last_row(scene)));
   }
   if (of.kind == Kind::number) {
     for (const double end : {of.from, of.to}) {

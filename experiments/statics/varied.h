@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -26,13 +27,15 @@ struct Varied {
   double from = 0, to = 1;
   simulation::SceneParameter number{};  // of kind `number`
 
-  /// Returns to - from, > 0.
-  double range() const { return to - from; }
+  /// Returns |to - from|, > 0.
+  double range() const { return std::abs(to - from); }
+  /// Returns 1 for a range that ascends, -1 for one that descends.
+  double direction() const { return to < from ? -1 : 1; }
 };
 
 /// Reads what varies: KEY or KEY=FROM..TO. Without text it is the supports if they move,
 /// else the only point force, else gravity. Throws InputError naming `place` where the
-/// scene has nothing of that name, or the range does not increase.
+/// scene has nothing of that name, or where both ends of the range are the same.
 Varied varied(const simulation::Scene& scene, std::string_view text,
               const std::string& place);
 

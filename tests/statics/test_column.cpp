@@ -10,6 +10,7 @@
 
 #include "experiments/numerics/small_motions.h"
 #include "experiments/statics/equilibrium_path.h"
+#include "experiments/statics/path_rows.h"
 #include "experiments/statics/path_words.h"
 #include "models/catalogue.h"
 #include "simulation/scene_changes/changes.h"
@@ -65,6 +66,44 @@ TEST(Column, OfEveryModelBucklesAtEulersLoad) {
     EXPECT_EQ(path.front().stability.negative, 0) << model.id;
     EXPECT_EQ(path.back().stability.negative, 2) << model.id;
   }
+}
+
+/// A range that descends: the factor 0..-3 on a force upwards is 0..3 on one downwards.
+TEST(Column, BucklesOverARangeThatDescends) {
+  const std::string down = column(planar_helix, 10);
+  std::string up = down;
+  up.replace(up.find("[0, 0, -"), 8, "[0, 0, ");
+  const auto path = static_path(up, "point_force=0..-3", {.resolution = 0.1});
+  const auto mirrored = static_path(down, "point_force=0..3", {.resolution = 0.1});
+  ASSERT_EQ(path.size(), mirrored.size());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    EXPECT_EQ(path[i].event, mirrored[i].event);
+    EXPECT_EQ(path[i].at.value, -mirrored[i].at.value);
+  }
+  EXPECT_EQ(path.back().event, Event::end);
+  EXPECT_EQ(path.back().at.value, -3);
+}
+
+/// A tip on a spring of stiffness k that a support moves across by d: the spring pulls
+/// with k (d - x), with x the way of the tip. The rod is much stiffer than the spring.
+/// The displacement is that of the support.
+TEST(Supports, OnSpringsHaveTheirForceAndDisplacement) {
+  const double k = 1e-3, way = 1e-2;
+  auto strand = static_strand(
+      static_scene("id = \"super_helix\"", "length_m = 0.1\nelements = 8",
+                   "[[supports]]\nslide = [1, 0, 0]\nstiffness_n_per_m = 1e-3\n"
+                   "keyframes = [[0, 0.1, 0, 0], [1, 0.1, 0, -0.01]]\n"),
+      "supports");
+  const Gauge of = gauge(strand);
+  const auto path = equilibrium_path(strand, {.resolution = 0.1});
+  for (const PathPoint& point : path) {
+    ASSERT_EQ(point.failure, "");
+    const double moved = -of.path.at(point.at.value).x.z;
+    EXPECT_NEAR(of.force_at(point), k * (moved + tip_of(point).z), 1e-9 * k * way);
+    EXPECT_EQ(of.displacement(path.front(), point), moved);
+  }
+  EXPECT_NEAR(of.displacement(path.front(), path.back()), way, 1e-12);
+  EXPECT_GT(of.force_at(path.back()), 0);
 }
 
 /// The signs of the eigenvalues are those of the squares of small motions, which another
