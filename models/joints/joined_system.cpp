@@ -88,6 +88,13 @@ void JoinedSystem::make_joints(const std::vector<Joint>& joints,
           tress::sections(strand.strand())->section_kind(at.point).half_edge;
       if (half && strand.natural().any())
         made.follow(strand.natural().turn(at.point > 0));
+      const bool turns =
+          joints[j].kind == JointKind::weld || joints[j].kind == JointKind::hinge;
+      for (const MomentOnSection& one : strand.moments()) {
+        if (turns && one.moment().point == at.point) {
+          refuse_on_half_edge(strand.strand(), one.moment(), {}, where[j]);
+        }
+      }
       return made;
     };
     for (std::size_t i = 0; i < j; ++i) {

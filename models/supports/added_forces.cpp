@@ -55,8 +55,11 @@ AddedForces::AddedForces(System& strand, const std::vector<Support>& supports,
          HalfJoint(std::move(section), joint_of(support, half_edge), support.begin)});
   }
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    moments_.emplace_back(strand, std::move(moments[i]), matrix,
-                          "moment " + std::to_string(i));
+    const std::string where = "moment " + std::to_string(i);
+    for (const Support& support : supports) {
+      refuse_on_support(strand, moments[i], support, where);
+    }
+    moments_.emplace_back(strand, std::move(moments[i]), matrix, where);
   }
 }
 

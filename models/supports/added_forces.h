@@ -53,6 +53,8 @@ class AddedForces {
   const std::vector<std::pair<std::size_t, PointSpring>>& springs() const {
     return springs_;
   }
+  /// Returns the moments.
+  const std::vector<MomentOnSection>& moments() const { return moments_; }
   /// Returns true if there are moments.
   bool has_moments() const { return !moments_.empty(); }
   /// r -= J^T m of the moments alone.

@@ -9,6 +9,32 @@
 namespace tress::models {
 namespace {
 
+/// The moment at the start for a factor of 1, world components.
+Vec at_start(System& strand, const PointMoment& moment) {
+  if (norm(moment.follower) == 0) return moment.dead;
+  std::vector<double> q(static_cast<std::size_t>(strand.layout().coordinates)), v = q;
+  strand.initial_state(q, v);
+  return moment.dead +
+         sections(strand)->section_frame(0, q, moment.point) * moment.follower;
+}
+
+/// The axis about which a supported section turns freely at all times, world components;
+/// 0: none.
+Vec free_axis(const Sections::Kind& section, const Support& support) {
+  const Frame wall = support.path.at(0).frame;
+  Vec axis;
+  if (norm(support.hinge) > 0) {
+    axis = wall * support.hinge;
+  } else if (support.section == HeldPart::tangent &&
+             section.turning == Sections::Turning::frame) {
+    axis = wall.e0;
+  }
+  for (const RootMotion::Part& turn : support.path.rotations) {
+    if (norm(cross(turn.direction, axis)) > 1e-9 * norm(turn.direction)) return {};
+  }
+  return axis;
+}
+
 /// Refuses components of a moment that can turn nothing in this model.
 void check(System& strand, const PointMoment& moment, const std::string& where) {
   using enum Sections::Turning;
@@ -51,6 +77,31 @@ PointMoment checked(System& strand, PointMoment moment, const std::string& where
 }
 
 }  // namespace
+
+void refuse_on_half_edge(System& strand, const PointMoment& moment, const Vec& free_axis,
+                         const std::string& where) {
+  Sections* const all = sections(strand);
+  if (all == nullptr || !all->section_kind(moment.point).half_edge) return;
+  const Vec whole = at_start(strand, moment);
+  const double length = norm(free_axis);
+  const Vec held = length > 0
+                       ? whole - (dot(whole, free_axis) / (length * length)) * free_axis
+                       : whole;
+  refuse_if(norm(held) > 1e-9 * norm(whole),
+            "the section is held, and the edges of the model do not bend: the moment "
+            "would act on the edge half an element away, not on the held section",
+            where,
+            "leave the moment out, which the support or joint takes if it is rigid, or "
+            "use \"super_helix\", \"super_clothoid\" or \"dynamic_spline\"");
+}
+
+void refuse_on_support(System& strand, const PointMoment& moment, const Support& support,
+                       const std::string& where) {
+  if (support.point != moment.point || support.section == HeldPart::nothing) return;
+  refuse_on_half_edge(strand, moment,
+                      free_axis(sections(strand)->section_kind(moment.point), support),
+                      where);
+}
 
 MomentOnSection::MomentOnSection(System& strand, PointMoment moment, SparseForm* matrix,
                                  const std::string& where)

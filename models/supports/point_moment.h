@@ -2,6 +2,7 @@
 
 #include "models/motion/factor_over_time.h"
 #include "models/supports/held_section.h"
+#include "models/supports/support.h"
 
 namespace tress::models {
 
@@ -19,6 +20,16 @@ struct PointMoment {
   FactorOverTime factor;  // c
 };
 
+/// Refuses a moment at the end of an edge that turns with a half edge (HalfJoint), unless
+/// it acts about `free_axis` alone, about which the end turns freely (world components;
+/// 0: none). The moment would act on the edge, behind the elastic half edge, and not on
+/// the section that is held. Throws InputError naming `where`.
+void refuse_on_half_edge(System& strand, const PointMoment& moment, const Vec& free_axis,
+                         const std::string& where);
+/// Does so if the support holds the section of the moment.
+void refuse_on_support(System& strand, const PointMoment& moment, const Support& support,
+                       const std::string& where);
+
 /// The moment's forces on the coordinates, and their derivatives.
 class MomentOnSection {
  public:
@@ -35,6 +46,8 @@ class MomentOnSection {
   SectionLoad load(double t, In q);
   /// Returns the power of the moment, W, seen from a frame that turns with `turning`.
   double power(double t, In q, In v, const Vec& turning);
+  /// Returns the moment that acts.
+  const PointMoment& moment() const { return moment_; }
   /// Returns the first time after t at which the factor is not smooth, s.
   double next_breakpoint(double t) const { return moment_.factor.next_breakpoint(t); }
 

@@ -83,6 +83,8 @@ class SupportedSystem final : public System,
   System& strand() { return *strand_; }
   /// Returns the constraints.
   SupportRows& rows() { return rows_; }
+  /// Returns the moments on the sections.
+  const std::vector<MomentOnSection>& moments() const { return forces_.moments(); }
   /// Returns the natural strains over time.
   const NaturalMotion& natural() const { return drives_.natural; }
   /// Sets the natural strains of time t.

@@ -262,6 +262,12 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
   }
   models::StrandDrives drives =
       drives_of(tables_->driven, *system, strand, number, *model_, model_options_);
+  for (std::size_t k = 0; k < drives.moments.size(); ++k) {
+    for (const Support& one : supports) {
+      models::refuse_on_support(*system, drives.moments[k], one,
+                                tables_->driven.moments[k].place());
+    }
+  }
   try {
     return std::make_unique<SupportedSystem>(std::move(system), std::move(supports),
                                              std::move(drives));

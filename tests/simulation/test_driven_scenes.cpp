@@ -206,6 +206,46 @@ TEST(PointMoment, RefusesWhatCannotTurnTheStrand) {
   }
 }
 
+/// At a support that holds the section, edges take no moment, which would act on the last
+/// edge: not even a soft support. A free axis and a held place refuse nothing.
+TEST(PointMoment, RefusesHeldEndsOfModelsWhoseEdgesDoNotBend) {
+  const auto why = [](const std::string& model, const std::string& support,
+                      const std::string& moment) {
+    Text text;
+    text.model = "id = \"" + model + "\"";
+    text.drive = "[[supports]]\nat = \"tip\"\n" + support +
+                 "\n[[effects.point_moment]]\n" + moment + "\n";
+    return refusal([&] { scene_of(text); });
+  };
+  const std::string clamp = "kind = \"clamp\"\nslide = [1, 0, 0]",
+                    direction = "kind = \"direction\"",
+                    hinge = "kind = \"hinge\"\naxis = [0, 1, 0]",
+                    across = "moment_n_m = [0, 1e-9, 0]",
+                    along = "moment_n_m = [1e-9, 0, 0]";
+  for (const char* model : {"der", "corde", "xpbd_cosserat", "articulated_chain",
+                            "force_transport", "mass_spring", "lifted_curls"}) {
+    for (const std::string& support :
+         {clamp, direction, direction + "\nturn_stiffness_n_m_per_rad = 1e-9"}) {
+      const std::string said = why(model, support, across);
+      EXPECT_NE(said.find("the section is held"), std::string::npos) << model << said;
+      EXPECT_NE(said.find("driven.toml:"), std::string::npos) << said;
+    }
+    EXPECT_EQ(why(model, "kind = \"ball\"\nslide = [1, 0, 0]", across), "") << model;
+  }
+  for (const char* moment :
+       {"moment_n_m = [0, 0, 1e-9]", "follower_n_m = [1e-9, 0, 0]"}) {
+    EXPECT_NE(why("der", hinge, moment), "") << moment;
+  }
+  EXPECT_EQ(why("der", hinge, across), "");
+  EXPECT_EQ(why("der", direction, along), "");
+  EXPECT_NE(why("der", direction + "\ndirections = [[0, 1, 0, 0], [1, 1, 1, 0]]", along),
+            "");
+  EXPECT_NE(why("der", clamp, along), "");
+  for (const char* model : {"super_helix", "super_clothoid"}) {
+    EXPECT_EQ(why(model, clamp, across), "") << model;
+  }
+}
+
 /// A muscle that bends a straight strand: curvature from 0 to k in 0.2 s. The slowest
 /// mode, at 27 rad/s with a damping ratio of 0.6, leaves 1e-5 of its motion 0.8 s later:
 /// the strand rests as the arc of its natural curvature. Edges err as above.

@@ -47,6 +47,24 @@ Scene scene_of(const Text& text) { return parse_scene(text_of(text), "joined.tom
 
 Vec point(World& world, std::size_t i) { return load3(&world.positions()[3 * i]); }
 
+/// A moment at a weld would act on an edge, half an edge away from the section that the
+/// weld holds. Elements that bend have that section.
+TEST(Joints, RefuseMomentsAtWeldsOfEdges) {
+  const auto why = [](const std::string& model, const std::string& kind) {
+    Text text;
+    text.model = model;
+    text.joints += "kind = \"" + kind + "\"\n";
+    text.rest = "[[effects.point_moment]]\nmoment_n_m = [0, 1e-9, 0]\n";
+    return refusal([&] { World(scene_of(text)); });
+  };
+  const std::string edges = "id = \"der\"\ntwist = \"dynamic\"";
+  const std::string said = why(edges, "weld");
+  EXPECT_NE(said.find("the section is held"), std::string::npos) << said;
+  EXPECT_NE(said.find("joined.toml:"), std::string::npos) << said;
+  EXPECT_EQ(why(edges, "ball"), "");
+  EXPECT_EQ(why("id = \"super_helix\"", "weld"), "");
+}
+
 /// Every method that can drive joined strands keeps their points together: by rounding of
 /// Newton's method under index 3 and projection. Explicit ones take shorter steps. Tips
 /// of the pendulum of 0.2 m differ by the errors of the methods alone, below 2 mm.
