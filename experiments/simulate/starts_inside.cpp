@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/run/message.h"
+#include "simulation/groom/guide_choice.h"
 
 namespace tress::experiments::scene_runs {
 namespace {
@@ -15,7 +16,9 @@ constexpr double rounding = 1e-6;  // m
 }  // namespace
 
 StartsInside::StartsInside(const Scene& scene)
-    : first_point_(!scene.strands.empty() && scene.strands.front().free_root ? 0 : 1) {
+    : scene_(scene),
+      supports_(scene),
+      first_point_(!scene.strands.empty() && scene.strands.front().free_root ? 0 : 1) {
   if (scene.strands.empty() || scene.rest == RestStrains::inverse) return;
   const std::vector<std::string> names = effect_names(scene);
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
@@ -28,8 +31,21 @@ StartsInside::StartsInside(const Scene& scene)
   }
 }
 
+/// A strand whose points are not where its geometry has them was led to its supports: it
+/// begins in an equilibrium.
+bool StartsInside::led_onto_supports(std::size_t strand, In x) const {
+  if (!supports_.hold(strand)) return false;
+  const std::vector<Vec> own = initial_points(scene_.strands.at(strand));
+  double moved = 0;
+  for (std::size_t i = 0; i < own.size() && 3 * i < x.size(); ++i) {
+    moved = std::max(moved, norm(load3(&x[3 * i]) - own[i]));
+  }
+  return moved > rounding;
+}
+
 void StartsInside::look(In x) {
   const std::size_t strand = strands_++;
+  if (led_onto_supports(strand, x)) return;
   for (InBody& body : bodies_) {
     const auto depth = [&](std::size_t first, std::size_t numbers) {
       return *body.effect->penetration(0, x.subspan(first, numbers)) - body.radius;

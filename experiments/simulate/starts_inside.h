@@ -5,17 +5,19 @@
 #include <vector>
 
 #include "simulation/scene/scene.h"
+#include "simulation/scene/support_table.h"
 
 namespace tress::experiments::scene_runs {
 
 using namespace simulation;
 
 /// Finds the strands whose axes begin inside bodies. Contact prevents that a strand
-/// enters a body and assumes a start outside. A clamped root may be inside. With
-/// rest = "inverse" the surface supports strands where they begin, so none counts.
+/// enters a body and assumes a start outside. A clamped root may be inside. A strand that
+/// begins in an equilibrium does not count, because the surface supports it there. With
+/// rest = "inverse" all do so.
 class StartsInside {
  public:
-  /// Makes the bodies of a scene.
+  /// Makes the bodies of a scene, which must outlive it.
   explicit StartsInside(const Scene& scene);
 
   /// Returns true if the scene has bodies.
@@ -35,6 +37,10 @@ class StartsInside {
     double depth = 0;  // m, of the deepest point of an axis
   };
 
+  bool led_onto_supports(std::size_t strand, In x) const;
+
+  const Scene& scene_;
+  SceneSupports supports_;
   std::vector<InBody> bodies_;
   std::size_t first_point_;  // that is looked at
   std::size_t strands_ = 0;  // looked at

@@ -316,4 +316,26 @@ TEST(StartsInside, SaysNothingOfRootsAndOfTheSurface) {
   EXPECT_FALSE(on(0.02).empty());  // so is point 1, by 1.7 mm
 }
 
+/// A mooring that finds its equilibrium on the floor z = 0 lies in its elastic layer,
+/// deeper than rounding: its weight per length over the stiffness of the layer of 1
+/// N/m^2.
+TEST(StartsInside, SaysNothingOfAMooringInEquilibriumOnTheFloor) {
+  const Scene scene = parse_scene(
+      "title = \"t\"\nduration_s = 0.1\n[integrator]\nid = \"backward_euler\"\n"
+      "dt_s = 0.02\n[material]\nname = \"custom\"\nradius_m = 4e-5\n"
+      "youngs_modulus_pa = 3e5\npoisson_ratio = 0.45\ndensity_kg_m3 = 1300\n"
+      "[strand]\nlength_m = 1\nelements = 20\n[root]\nmotion = \"free\"\n"
+      "[[supports]]\nat = \"root\"\n[[supports]]\nat = \"tip\"\n"
+      "keyframes = [[0, 0.8, 0, 0.45]]\n[effects.gravity]\n[effects.body]\n"
+      "friction = 0\nstrand_radius_m = 0\nstiffness_n_m2 = 1\n",
+      "mooring.toml");
+  World world(scene);
+  double lowest = 0;
+  for (std::size_t i = 2; i < world.positions().size(); i += 3) {
+    lowest = std::min(lowest, world.positions()[i]);
+  }
+  EXPECT_LE(lowest, -1e-5);
+  EXPECT_TRUE(said_of_start(scene).empty());
+}
+
 }  // namespace tress::test_run_warnings
