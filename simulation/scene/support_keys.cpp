@@ -90,7 +90,8 @@ constexpr Parameter support_parameters[] = {
      .min = 0,
      .max = most_stiffness},
     {.name = "turn_stiffness_n_m_per_rad",
-     .help = "stiffness of a compliant support against rotations (N m/rad). 0: rigid",
+     .help = "stiffness of a compliant support against rotations (N m/rad), at small "
+             "angles. 0: rigid",
      .number = 0,
      .min = 0,
      .max = most_stiffness},
