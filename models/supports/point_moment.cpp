@@ -89,7 +89,7 @@ void refuse_on_half_edge(System& strand, const PointMoment& moment, const Vec& f
                        : whole;
   refuse_if(norm(held) > 1e-9 * norm(whole),
             "the section is held, and the edges of the model do not bend: the moment "
-            "would act on the edge half an element away, not on the held section",
+            "would act on an edge, half an element away",
             where,
             "leave the moment out, which the support or joint takes if it is rigid, or "
             "use \"super_helix\", \"super_clothoid\" or \"dynamic_spline\"");

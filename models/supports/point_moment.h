@@ -20,10 +20,10 @@ struct PointMoment {
   FactorOverTime factor;  // c
 };
 
-/// Refuses a moment at the end of an edge that turns with a half edge (HalfJoint), unless
-/// it acts about `free_axis` alone, about which the end turns freely (world components;
-/// 0: none). The moment would act on the edge, behind the elastic half edge, and not on
-/// the section that is held. Throws InputError naming `where`.
+/// Refuses a moment at the end of an edge that turns with a half edge (HalfJoint). The
+/// moment would act on the edge, behind the elastic half edge, and not on the held
+/// section. Accepts a moment about `free_axis` alone, about which the end turns freely
+/// (world components; 0: none). Throws InputError naming `where`.
 void refuse_on_half_edge(System& strand, const PointMoment& moment, const Vec& free_axis,
                          const std::string& where);
 /// Does so if the support holds the section of the moment.
