@@ -24,7 +24,7 @@ const figures = {
   family: ['gravito-bending number', 'not true'],
   drift_cost: ['wall time (s)', 'largest violation max |g| (m)'],
   drift_heatmap: ['alpha (1/s²)', 'beta (1/s)'],
-  drift_recovery: ['beta² / (4 alpha)', 'recovery time (s)'],
+  drift_recovery: ['beta / (2 sqrt(alpha))', 'recovery time (s)'],
   work_precision: ['time per simulated second (ms)', 'relative error', 'explicit, fixed step'],
   tolerance: ['error / tolerance', 'esdirk43'],
   bdf_order: ['relative error', 'steps', 'wall time (s)'],

@@ -15,7 +15,7 @@ import {
 } from './common.mjs';
 import { series_style } from './palette.mjs';
 
-export const damping_ratio = (row) => row.beta ** 2 / (4 * row.alpha);
+export const damping_ratio = (row) => row.beta / (2 * Math.sqrt(row.alpha));
 
 export const drift_recovery = {
   id: 'drift_recovery',
@@ -33,7 +33,7 @@ export const drift_recovery = {
   reading: `Runs that start off the constraint. Left of critical damping the violation oscillates, right of it it decays
     slowly. Crosses at the top edge did not recover within the run.`,
   caption: `Runs that start off the constraint on purpose: time until the violation has
-    decayed, against beta²/(4 alpha). The vertical line at 1 is critical damping; left of
+    decayed, against beta / (2 sqrt(alpha)). The vertical line at 1 is critical damping; left of
     it the violation oscillates, right of it it decays slowly. Crosses at the top edge did
     not recover within the run. Made from the rows of constraint_drift.csv whose study is
     "recovery".`,
@@ -72,14 +72,14 @@ export const drift_recovery = {
     const list = groups.map((members) => {
       const x = log_channel(
         'ratio',
-        'beta² / (4 alpha)',
+        'beta / (2 sqrt(alpha))',
         log_extent([...members.map((row) => row.ratio), 1]),
       );
       const recovered = members.filter((row) => row.recovered);
       const rule = [{ ratio: 1, text: 'critical damping' }];
       const tooltip = tooltips([
         ['integrator', 'integrator'],
-        ['ratio', 'beta²/(4 alpha)', '.3f'],
+        ['ratio', 'beta / (2 sqrt(alpha))', '.3f'],
         ['recovery_time_s', 'recovery time (s)', '.3e'],
         ['overshoot', 'overshoot', '.3e'],
         ['alpha', 'alpha (1/s²)'],

@@ -54,7 +54,7 @@ _PATTERNS = [
     (r"\b90 % of the calibration runs\b", "the coverage of bounds of errors"),
     (r"\b95 %", "the percentile of error_p95_rel"),
     (r"\bdouble and single precision\b", "numbers of 64 and 32 bits"),
-    (r"beta²/\(4 alpha\)", "the definition of a damping ratio"),
+    (r"beta / \(2 sqrt\(alpha\)\)", "the definition of a damping ratio"),
     (r"\b(tip error of 1e-[23]|[Ff]or 1e-[34])\b", "target errors of the family"),
     (r"\bat most 1\.2 times that of\b", "the statements of the family about sweeps"),
     (r"\bless than 0\.001 %", "the least change that is printed"),

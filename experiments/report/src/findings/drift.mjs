@@ -70,7 +70,7 @@ function feedback_sentence({ system, integrator, without, best, gain, cost }) {
     `${spaced(system)}, ${code(integrator)}: of the Baumgarte gains tried, ${pair} leave the smallest drift, ` +
     `${metres(best.g_max)}. That is ${change} at acceleration level (${metres(without.g_max)}), for ` +
     `${format_ratio(cost)} the time${gain < 1 && !same ? ': feedback hurts here' : ''}. ` +
-    `Their damping ratio beta²/(4 alpha) is ${format_number(damping_ratio(best), 2)}.`
+    `Their damping ratio beta / (2 sqrt(alpha)) is ${format_number(damping_ratio(best), 2)}.`
   );
 }
 
@@ -146,7 +146,7 @@ export function recovery_sentences(rows) {
       (best) =>
         `${spaced(best.system)}, ${code(best.integrator)}, ` +
         `alpha = ${format_number(best.alpha)} 1/s²: fastest recovery at ` +
-        `beta²/(4 alpha) = ${format_number(damping_ratio(best))}, in ` +
+        `beta / (2 sqrt(alpha)) = ${format_number(damping_ratio(best))}, in ` +
         `${format_number(best.recovery_time_s)} s.`,
     );
 }
