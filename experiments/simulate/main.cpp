@@ -287,7 +287,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
          : simulation::SceneSupports(scene).any()
              ? "supports on their strands and joints on their ends b"
              : "joints on their ends b",
-         run.simulated_s, supports_in_words(run));
+         scene.time_of(run.frames - 1), supports_in_words(run));
   }
   for (const std::string& warning : warnings(scene, run)) {
     tell("simulate: warning: {}: {}\n", scene.name, warning);

@@ -136,6 +136,20 @@ TEST(Guard, NamesNoStepThatIsNotKnownToHelp) {
   }
 }
 
+/// Below some rtol, multipliers of index 3 and 2 meet no tolerance of a variable step.
+TEST(Guard, AdvisesLargerTolerancesWhereNoSmallerOneHelps) {
+  Options options;
+  options.rtol = 1e-6;
+  EXPECT_TRUE(says(remedy("ida", options), "try a smaller tolerance than rtol = 1e-06"));
+  options.formulation = Formulation::index3;
+  EXPECT_TRUE(says(remedy("ida", options), "try a larger tolerance than rtol = 1e-06"));
+  EXPECT_TRUE(says(remedy("ida", options), "index2_ggl"));
+  options.formulation = Formulation::index2_ggl;
+  EXPECT_TRUE(says(remedy("ida", options), "try a larger tolerance than rtol = 1e-06"));
+  options.atol = 0;
+  EXPECT_TRUE(says(remedy("ida", options), "try atol > 0"));
+}
+
 /// Axes 0.5 mm apart of strands 20 mm thick: no step resolves their contact.
 TEST(Guard, NamesAnOverlapAtTheStart) {
   const auto strand = [](const std::string& place, const std::string& along) {
