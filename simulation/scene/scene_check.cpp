@@ -105,12 +105,15 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
   const std::string reason = refusal(entry, system, options.formulation);
   if (reason.empty()) {
     const Parameters& model = scene.model_options;
-    refuse_if(entry.exact_jacobian && model.knows("jacobian") &&
-                  model.word("jacobian") != "exact",
-              fmt::format("{} with jacobian = \"{}\": an approximate Jacobian lowers its "
-                          "order or makes it unstable",
-                          entry.id, model.word("jacobian")),
-              places.model, "give [model] jacobian = \"exact\"");
+    if (entry.exact_jacobian && model.knows("jacobian")) {
+      const std::string_view jacobian = model.word("jacobian");
+      refuse_if(
+          jacobian != "exact",
+          fmt::format("{} with jacobian = \"{}\": an approximate Jacobian lowers its "
+                      "order or makes it unstable",
+                      entry.id, jacobian),
+          places.model, "give [model] jacobian = \"exact\"");
+    }
     at_place(places.integrator, [&] { return entry.make(system, options); });
     return;
   }
