@@ -227,8 +227,8 @@ TEST(RootMotion, RefusesWhatIsNoMotion) {
   refuses([](RootMotion& m) { m.frame.e1 = {0, nan, 0}; });
   refuses([](RootMotion& m) { m.frame.e1 = {0, -1, 0}; });  // left-handed
   refuses([](RootMotion& m) { m.rotations[0].direction = {}; });
-  refuses([](RootMotion& m) { m.rotations[1].signal = nullptr; });
-  refuses([](RootMotion& m) { m.translations[1].signal = nullptr; });
+  refuses([](RootMotion& m) { m.rotations[1].signal = Signal{}; });
+  refuses([](RootMotion& m) { m.translations[1].signal = Signal{}; });
   refuses([](RootMotion& m) { m.translations[0].direction.x = nan; });
   EXPECT_THROW(smooth_step(1, 0, 0), InputError);
   EXPECT_THROW(smooth_step(1, 0, nan), InputError);
