@@ -97,8 +97,8 @@ MatrixXd pulls(const std::vector<Touch>& all, GivenForces& points,
 
 }  // namespace
 
-BodySupport body_support(const Scene& scene, const Strand& strand,
-                         const Effects& effects) {
+HoldingBodies body_support(const Scene& scene, const Strand& strand,
+                           const Effects& effects) {
   const auto points = std::make_shared<GivenForces>();
   Effects others{points};
   for (const auto& effect : effects) {
@@ -121,7 +121,7 @@ BodySupport body_support(const Scene& scene, const Strand& strand,
   const VectorXd force =
       nonnegative(energy * pulls(all, *points, statics), -energy * load, ridge);
 
-  BodySupport support;
+  HoldingBodies support;
   for (std::size_t c = 0; c < all.size(); ++c) {
     if (support.offsets.empty() || support.offsets.back().first != all[c].body) {
       support.offsets.push_back(

@@ -9,8 +9,8 @@
 
 namespace tress::simulation {
 
-/// Support of a strand at rest by bodies (held_shape.h).
-struct BodySupport {
+/// Bodies that hold a strand at rest by contact (held_shape.h).
+struct HoldingBodies {
   int contacts = 0;  // points with a force
   /// Offsets for with_offsets() of each body, by its index among the effects.
   std::vector<std::pair<std::size_t, std::vector<double>>> offsets;
@@ -18,8 +18,8 @@ struct BodySupport {
 
 /// For a strand of a scene without motion, under these effects. Throws InputError if it
 /// is inside a body whose forces are not a function of the state.
-BodySupport body_support(const Scene& scene, const Strand& strand,
-                         const models::Effects& effects);
+HoldingBodies body_support(const Scene& scene, const Strand& strand,
+                           const models::Effects& effects);
 
 /// A body of body_support() with its offsets.
 std::shared_ptr<const models::Effect> with_offsets(const models::Effect& body,

@@ -116,7 +116,7 @@ HeldShape held_shape(const Scene& scene, std::size_t k, const Effects& between) 
     all.insert(all.end(), between.begin(), between.end());
     return all;
   };
-  const BodySupport support = body_support(scene, strand, acting());
+  const HoldingBodies support = body_support(scene, strand, acting());
   held.contacts = support.contacts;
   held.offsets = support.offsets;
   invert(scene, strand, acting(), held);
