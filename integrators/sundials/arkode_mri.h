@@ -29,8 +29,9 @@ class FastRows {
   /// Upper bound of the rates |lambda| of the fast part (1/s), at the start of the
   /// motion.
   double fastest() const { return fastest_; }
-  /// Number of fast rows, and of all.
+  /// Returns the number of fast rows.
   int fast_rows() const { return fast_rows_; }
+  /// Returns the number of rows.
   int rows() const { return rows_; }
 
  private:

@@ -112,7 +112,7 @@ class DrivenBody final : public Effect {
       std::vector<double> load;       // of s . f by the motion of points
       std::vector<double> rate;       // w.pos times that by velocities
     };
-    std::vector<Of> of;
+    std::vector<Of> of;       // by the coordinates
     std::vector<double> own;  // of s . f by the coordinates at fixed s, by columns
   };
   /// Computes the derivatives.

@@ -13,7 +13,10 @@ namespace tress::simulation {
 /// A head, or a body that strands do not drive.
 struct Carrier {
   /// Kinds of motion: prescribed or none.
-  enum Motion { moves, still };
+  enum Motion {
+    moves,  // prescribed
+    still   // none
+  };
   std::string name;           // "head", or that of a body
   models::RootMotion motion;  // if it moves
   Motion is = moves;          // supports are on those that move

@@ -203,7 +203,7 @@ TEST(APulley, RefusesWhatItsEquationsLeaveOut) {
        }),
        "failed_strands = \"stay\" for strands that drive a body");
   says(refused("inertia_kg_m2 = 6.6e-3", "inertia_kg_m2 = 0"), "inertia_kg_m2");
-  says(refused("axis = [0, 1, 0]", "axis = [0, 0, 0]"), "its axis has no direction");
+  says(refused("axis = [0, 1, 0]", "axis = [0, 0, 0]"), "axis has no direction");
   says(refused("moves = \"turns\"", "moves = \"fixed\""),
        "does nothing with moves = \"fixed\"");
 }
