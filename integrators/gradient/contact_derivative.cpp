@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/largest_size.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
@@ -12,12 +13,6 @@ namespace {
 constexpr double distance = 1e-5;
 /// A point slides where its force of friction is that of the cone up to rounding.
 constexpr double cone_rounding = 1e-12;
-
-double largest(In x) {
-  double most = 0;
-  for (const double entry : x) most = std::max(most, std::abs(entry));
-  return most;
-}
 
 }  // namespace
 
@@ -73,7 +68,7 @@ bool ContactDerivative::find_cases() {
     cases_.push_back({own_[k].id, slides, own_[k].rebounds});
     rows_ += at_.mu[k] > 0 ? 3 : 1;
   }
-  return std::isfinite(largest(at_.u));
+  return std::isfinite(largest_size(at_.u));
 }
 
 void ContactDerivative::combine(const Values& change, Out g) const {
@@ -109,8 +104,8 @@ double ContactDerivative::distance_along(const Direction& d) const {
   for (const In x : {d.v, d.v0}) {
     if (!x.empty()) length = std::max(length, scaled_norm(x, dynamics_.v_typ()));
   }
-  if (!d.x0.empty() && largest(d.x0) > 0) {
-    length = std::max(length, largest(d.x0) / largest(end_->contact.x0));
+  if (!d.x0.empty() && largest_size(d.x0) > 0) {
+    length = std::max(length, largest_size(d.x0) / largest_size(end_->contact.x0));
   }
   return length > 0 ? distance / length : 0;
 }

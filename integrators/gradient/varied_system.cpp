@@ -5,6 +5,7 @@
 
 #include "contract/forms/natural_strains.h"
 #include "integrators/gradient/probe.h"
+#include "linear/largest_size.h"
 #include "linear/vector_ops.h"
 
 namespace tress::integrators {
@@ -30,21 +31,15 @@ bool same(const std::vector<double>& x, const std::vector<double>& y) {
   return apart <= rounding * size;
 }
 
-double largest_entry(const std::vector<double>& x) {
-  double most = 0;
-  for (const double entry : x) most = std::max(most, std::abs(entry));
-  return most;
-}
-
 /// dr/ds from systems at s = 0 and s = affine_at[0], and the largest |r|.
 struct Slope {
   Slope(System& at_0, System& far, double t, In q, In v, In a) : by(q.size()) {
     std::vector<double> r(q.size());
     ok = at_0.residual(t, q, v, a, r) == Status::ok;
-    size = largest_entry(r);
+    size = largest_size(r);
     add(by, affine_stencil.base, r);
     ok = far.residual(t, q, v, a, r) == Status::ok && ok;
-    size = std::max(size, largest_entry(r));
+    size = std::max(size, largest_size(r));
     add(by, affine_stencil.weight[0], r);
   }
   std::vector<double> by;
@@ -83,7 +78,7 @@ std::optional<SimpleDerivative> simple_derivative(System& at_0, System& far,
   const double size = std::max(tried.size, unseen / rounding);
   // A parameter that does not act here may act elsewhere, as that of a contact.
   bool holds = here.ok && moved.ok && faster.ok && tried.ok &&
-               largest_entry(tried.by) > 100 * rounding * size;
+               largest_size(tried.by) > 100 * rounding * size;
   for (std::size_t i = 0; i < n; ++i) {
     const double expected =
         simple.constant[i] + simple.by_q[i] * q[i] + simple.by_v[i] * v[i];

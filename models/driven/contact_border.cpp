@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/largest_size.h"
 #include "models/driven/driven_system.h"
 
 namespace tress::models {
@@ -11,19 +12,13 @@ namespace {
 /// rounding.
 constexpr double motion_step = 6e-6;
 
-double largest_load(In x) {
-  double most = 0;
-  for (const double one : x) most = std::max(most, std::abs(one));
-  return most;
-}
-
 }  // namespace
 
 /// Residuals are affine in the loads. Small loads next to large elastic forces would lose
 /// their digits in a difference: this factor lifts them above all forces.
 double DrivenSystem::lift(In loads) const {
-  const double size = largest_load(loads);
-  return size > 0 ? 1e3 * std::max(1.0, largest_load(base_) / size) : 1;
+  const double size = largest_size(loads);
+  return size > 0 ? 1e3 * std::max(1.0, largest_size(base_) / size) : 1;
 }
 
 /// to += J^T loads, which replace those of body k. base_ has the residual without any.
