@@ -10,6 +10,7 @@
 #include "integrators/catalogue.h"
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
+#include "tests/support/columns.h"
 #include "tests/support/refusal.h"
 
 namespace tress::test_body_supports {
@@ -235,11 +236,7 @@ TEST(ABob, HasColumnsOfItsMotion) {
   const Frame3d frame = readout.read(world);
   ASSERT_EQ(frame.series.size(), readout.series().size());
   const auto column = [&](const std::string& name) {
-    for (std::size_t i = 0; i < frame.series.size(); ++i) {
-      if (readout.series()[i].name == name) return frame.series[i];
-    }
-    ADD_FAILURE() << name;
-    return 0.0;
+    return testing_support::column(readout, frame, name);
   };
   const auto motion = world.body_motions().front();
   EXPECT_EQ(column("position_body_z_m"), motion.x.z);

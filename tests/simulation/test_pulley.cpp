@@ -8,6 +8,7 @@
 #include "contract/read_file.h"
 #include "simulation/run/readout.h"
 #include "simulation/run/world.h"
+#include "tests/support/columns.h"
 #include "tests/support/refusal.h"
 
 namespace tress::test_pulley {
@@ -177,11 +178,7 @@ TEST(APulley, WritesItsAngleAndSpeed) {
   const Frame3d frame = readout.read(world);
   ASSERT_EQ(frame.series.size(), readout.series().size());
   const auto column = [&](const std::string& name) {
-    for (std::size_t i = 0; i < frame.series.size(); ++i) {
-      if (readout.series()[i].name == name) return frame.series[i];
-    }
-    ADD_FAILURE() << name;
-    return 0.0;
+    return testing_support::column(readout, frame, name);
   };
   EXPECT_EQ(column("angle_body_rad"), world.body_motions().front().angle);
   EXPECT_EQ(column("speed_body_rad_per_s"), world.body_motions().front().speed);
