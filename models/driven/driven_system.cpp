@@ -101,16 +101,7 @@ Status DrivenSystem::residual(double t, In q, In v, In a, Out r) noexcept {
 
 Status DrivenSystem::linearize_bordered(double t, In q, In v, In a, In lambda,
                                         Weights w) noexcept {
-  if (rows_) {
-    last_.t = t;
-    last_.w = w;
-    for (const auto& [to, from] :
-         {std::pair{&last_.q, q}, std::pair{&last_.v, v}, std::pair{&last_.a, a},
-          std::pair{&last_.lambda, lambda}}) {
-      to->assign(from.begin(), from.end());
-    }
-    disturbed_ = false;
-  }
+  if (rows_) last_.take(t, q, v, a, lambda, w);
   return factor(t, q, v, a, lambda, w);
 }
 
@@ -140,11 +131,10 @@ Status DrivenSystem::solve_parts(InOut x) noexcept {
 }
 
 Status DrivenSystem::solve(In b, Out x) noexcept {
-  if (disturbed_) {
-    disturbed_ = false;
-    const Status s = factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w);
-    if (s != Status::ok) return s;
-  }
+  const Status restored = last_.restore([this](const LastMatrix::Arguments& of) {
+    return factor(of.t, of.q, of.v, of.a, of.lambda, of.w);
+  });
+  if (restored != Status::ok) return restored;
   if (x.data() != b.data()) std::ranges::copy(b, x.begin());
   const Status s = solve_parts(x);
   if (s != Status::ok || !coupled_) return s;
@@ -162,11 +152,7 @@ SparseForm* DrivenSystem::sparse_form() {
 }
 
 Status DrivenSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
-  Linearized before = last_;
-  const Status status = full_->values(t, q, v, a, w, s);
-  last_ = std::move(before);
-  disturbed_ = !last_.q.empty();
-  return status;
+  return last_.replaced_by([&] { return full_->values(t, q, v, a, w, s); });
 }
 
 Status DrivenSystem::acceleration(double t, In q, In v, Out a) noexcept {

@@ -21,6 +21,7 @@
 #include "models/groom/strand_block.h"
 #include "models/joints/joined_system.h"
 #include "models/supports/dense_tangent.h"
+#include "models/supports/last_matrix.h"
 
 namespace tress::models {
 
@@ -118,12 +119,6 @@ class DrivenSystem final : public System,
   Status joint_forces(double t, In q, In v, Out forces, Out moments) override;
 
  private:
-  /// Arguments of the last linearize_bordered().
-  struct Linearized {
-    double t = 0;
-    std::vector<double> q, v, a, lambda;
-    Weights w;
-  };
   /// A body.
   struct Driven {
     const DrivenBody* effect;
@@ -221,8 +216,7 @@ class DrivenSystem final : public System,
   std::size_t strand_size_, all_;
   bool linear_points_;  // points are means of coordinates
   std::vector<double> q_typ_, zero_;
-  Linearized last_;         // of systems with constraints
-  bool disturbed_ = false;  // values() has factored another matrix since
+  LastMatrix last_;  // of systems with constraints, which values() replaces
   // Of the last linearize(), where strand and bodies touch: column k of u_ has the
   // derivatives of the strand's residual by a coordinate of a body, that of v_ a 1 there;
   // of the second half, the opposite.

@@ -17,7 +17,7 @@ Energy JoinedSystem::energy(double t, In q, In v) {
 /// Accelerations and multipliers of g'' = 0 at a state, and the accelerations of the
 /// strands without supports and joints.
 Status JoinedSystem::hold(double t, In q, In v) noexcept {
-  disturbed_ = !last_.q.empty();
+  last_.replace();
   Status s = factor(t, q, v, zero_, {}, {1, 0, 0});
   for (std::size_t k = 0; k < strands() && s == Status::ok; ++k) {
     s = held_[k]->strand().residual(t, part(q, k), part(v, k), part(In(zero_), k),

@@ -231,23 +231,15 @@ Status JoinedSystem::solve_factored(InOut x) noexcept {
 
 Status JoinedSystem::linearize_bordered(double t, In q, In v, In a, In lambda,
                                         Weights w) noexcept {
-  last_.t = t;
-  last_.w = w;
-  for (const auto& [to, from] :
-       {std::pair{&last_.q, q}, std::pair{&last_.v, v}, std::pair{&last_.a, a},
-        std::pair{&last_.lambda, lambda}}) {
-    to->assign(from.begin(), from.end());
-  }
-  disturbed_ = false;
+  last_.take(t, q, v, a, lambda, w);
   return factor(t, q, v, a, lambda, w);
 }
 
 Status JoinedSystem::solve(In b, Out x) noexcept {
-  if (disturbed_) {
-    disturbed_ = false;
-    const Status s = factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w);
-    if (s != Status::ok) return s;
-  }
+  const Status restored = last_.restore([this](const LastMatrix::Arguments& of) {
+    return factor(of.t, of.q, of.v, of.a, of.lambda, of.w);
+  });
+  if (restored != Status::ok) return restored;
   if (x.data() != b.data()) std::ranges::copy(b, x.begin());
   return solve_factored(x);
 }
@@ -259,11 +251,7 @@ SparseForm* JoinedSystem::sparse_form() {
 }
 
 Status JoinedSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
-  const Linearized before = last_;
-  const Status status = full_->values(t, q, v, a, w, s);
-  last_ = before;
-  disturbed_ = !last_.q.empty();
-  return status;
+  return last_.replaced_by([&] { return full_->values(t, q, v, a, w, s); });
 }
 
 void JoinedSystem::take_stresses(double t, In q, Stresses stresses) noexcept {

@@ -17,6 +17,7 @@
 #include "models/bodies/body_system.h"
 #include "models/groom/strand_block.h"
 #include "models/joints/joined_rows.h"
+#include "models/supports/last_matrix.h"
 
 namespace tress::models {
 
@@ -97,12 +98,6 @@ class JoinedSystem final : public StrandBlock,
     std::unique_ptr<LinearSolver> solver{};
     std::vector<double> values{};
   };
-  /// Arguments of the last linearize_bordered().
-  struct Linearized {
-    double t = 0;
-    std::vector<double> q, v, a, lambda;
-    Weights w;
-  };
 
   const Pattern& pattern() const override { return full_->pattern(); }
   Status values(double t, In q, In v, In a, Weights w, Out s) noexcept override;
@@ -140,9 +135,8 @@ class JoinedSystem final : public StrandBlock,
   std::vector<Assembled> assembled_;             // of each strand
   std::vector<std::vector<SectionLoad>> loads_;  // on each strand, by its joints
   std::vector<std::size_t> stressed_;            // strands with a StressForm
-  Linearized last_;
-  bool disturbed_ = false;  // hold() or values() has factored another matrix since
-  std::optional<DenseTangent> full_;  // made when it is needed
+  LastMatrix last_;                              // which hold() and values() replace
+  std::optional<DenseTangent> full_;             // made when it is needed
   // U, V, S^-1 U over the blocks, and 1 + V^T S^-1 U.
   Eigen::MatrixXd u_, v_, responses_, inner_;
   Eigen::VectorXd inner_x_;

@@ -118,30 +118,19 @@ Status SupportedSystem::factor(double t, In q, In v, In a, In lambda, Weights w,
 Status SupportedSystem::linearize_with_springs(
     double t, In q, In v, In a, In lambda, Weights w, In springs,
     std::span<const SectionLoad> loads) noexcept {
-  last_.t = t;
-  last_.w = w;
-  last_.loads.assign(loads.begin(), loads.end());
-  for (const auto& [to, from] :
-       {std::pair{&last_.q, q}, std::pair{&last_.v, v}, std::pair{&last_.a, a},
-        std::pair{&last_.lambda, lambda}, std::pair{&last_.springs, springs}}) {
-    to->assign(from.begin(), from.end());
-  }
-  disturbed_ = false;
-  return factor(t, q, v, a, lambda, w, springs, last_.loads);
+  return factor(t, q, v, a, lambda, w, springs,
+                last_.take(t, q, v, a, lambda, w, springs, loads).loads);
 }
 
 Status SupportedSystem::solve(In b, Out x) noexcept {
-  if (disturbed_) {
-    disturbed_ = false;
-    const Status s = factor(last_.t, last_.q, last_.v, last_.a, last_.lambda, last_.w,
-                            last_.springs, last_.loads);
-    if (s != Status::ok) return s;
-  }
-  return solve_factored(b, x);
+  const Status restored = last_.restore([this](const LastMatrix::Arguments& of) {
+    return factor(of.t, of.q, of.v, of.a, of.lambda, of.w, of.springs, of.loads);
+  });
+  return restored == Status::ok ? solve_factored(b, x) : restored;
 }
 
 Status SupportedSystem::values(double t, In q, In v, In a, Weights w, Out s) noexcept {
-  if (dense_) disturbed_ = !last_.q.empty();
+  if (dense_) last_.replace();
   prepare(t);
   const Status status = of_strand().values(t, q, v, a, w, s);
   if (status == Status::ok) forces_.add_tangent(t, q, v, w, s);
@@ -173,7 +162,7 @@ Status SupportedSystem::hold(double t, In q, In v) {
   const auto n = static_cast<Eigen::Index>(q.size());
   const Eigen::Index m = rows_.rows();
   const Weights w{1, short_time_, short_time_ * short_time_};
-  disturbed_ = !last_.q.empty();
+  last_.replace();
   for (const Status s :
        {rows_.gradient(t, q, gradient_), rows_.bias(t, q, v, bias_),
         residual(t, q, v, zero_, acceleration_), factor(t, q, v, zero_, {}, w, {}, {})}) {

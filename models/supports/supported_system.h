@@ -16,6 +16,7 @@
 #include "models/supports/added_forces.h"
 #include "models/supports/assembled_solver.h"
 #include "models/supports/dense_tangent.h"
+#include "models/supports/last_matrix.h"
 #include "models/supports/natural_motion.h"
 #include "models/supports/support_rows.h"
 #include "models/supports/supported_compliance.h"
@@ -163,14 +164,6 @@ class SupportedSystem final : public System,
   void lead_joints(In by) { forces_.lead_joints(by); }
 
  private:
-  /// Arguments of the last linearize_with_springs().
-  struct Linearized {
-    double t = 0;
-    std::vector<double> q, v, a, lambda, springs;
-    std::vector<SectionLoad> loads;
-    Weights w;
-  };
-
   SparseForm& of_strand();
   const Pattern& pattern() const override {
     return dense_ ? dense_->pattern() : strand_->sparse_form()->pattern();
@@ -220,8 +213,7 @@ class SupportedSystem final : public System,
   std::optional<AssembledSolver> assembled_;  // of forces on a strand that takes no loads
   bool in_assembled_ = false;                 // whether it has the last matrix
   std::vector<SectionLoad> loads_;            // scratch of factor()
-  Linearized last_;
-  bool disturbed_ = false;  // hold() has factored another matrix since
+  LastMatrix last_;                           // which hold() and values() replace
   std::vector<double> begin_q_, begin_v_, begin_memory_;
   // Of hold(), at its state.
   std::vector<double> gradient_, acceleration_, bias_, zero_, v_typ_;
