@@ -206,7 +206,9 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
     std::ranges::copy(stage_.v(), v_[i].begin());
     const double now = t + h * table_.c(i);
     stage_.slides(now, stage_.q(), stage_.v(), slides_[i]);
-    if (energetics_ != nullptr) {
+    // The last stage is the end of the step, unless an impact follows.
+    if (energetics_ != nullptr &&
+        (i < last() || dynamics_.system().contact_form() != nullptr)) {
       power_ = std::max(power_, energetics_->power(now, stage_.q(), stage_.v()));
     }
     // A later stage may open the contact again, thrown back by this one's impulse.

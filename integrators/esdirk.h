@@ -83,7 +83,8 @@ class EsdirkStages {
   /// Returns the multipliers at the end of the last step.
   In lambda() const { return lambda_; }
 
-  /// Largest power (W) in a stage of the last step, where measure() was called.
+  /// Largest power (W) in a stage of the last step, where measure() was called. Without
+  /// exact contact, the last stage is left out: it is the end of the step.
   double power() const { return power_; }
   /// Whether the last step was that of an impact.
   bool impact() const { return impact_; }
