@@ -9,7 +9,9 @@
 #include "tests/support/refusal.h"
 #include "tests/teleport/teleport_scenes.h"
 
-namespace tress::test_teleport {
+namespace tress::test_teleport_methods {
+
+using namespace test_teleport;
 
 using testing_support::refusal;
 
@@ -111,4 +113,4 @@ TEST_P(Methods, CarryTheStrandWithItsRoot) {
   EXPECT_GE(driven, 10);
 }
 
-}  // namespace tress::test_teleport
+}  // namespace tress::test_teleport_methods
