@@ -134,7 +134,7 @@ std::string refusal(const IntegratorEntry& entry, System& system,
     return "the model has constraints: choose a formulation of them";
   }
   if (!constrained && formulation != Formulation::parametric) {
-    return "the model has no constraints: the formulation is parametric";
+    return "the model has no constraints and needs the formulation parametric";
   }
   if (!entry.order(formulation)) return std::string(entry.gap(formulation));
   if (constrained && bordered_form(system) == nullptr &&

@@ -97,7 +97,8 @@ const Field fields[] = {
      number<&Options::max_step>},
     {{.name = "position_tol_rel",
       .help = "tolerance of error control: estimated error of a point in a "
-              "step, over the length. 0: fixed step. In a scene it excludes dt_s, "
+              "step, over the length, at least 1e-15. 0: fixed step. In a scene it "
+              "excludes dt_s, "
               "newton_tolerance and refresh. "
               "Methods with rtol take it as rtol, and a hundredth as atol",
       .number = defaults.tolerance,
@@ -112,7 +113,8 @@ const Field fields[] = {
       .max = largest},
      number<&Options::min_step>},
     {{.name = "max_steps",
-      .help = "steps until a run counts as failed",
+      .help = "steps, or exchanges of strands that touch, from one frame to the next "
+              "until a run counts as failed",
       .number = static_cast<double>(defaults.max_steps),
       .min = 1,
       .max = most_counted,

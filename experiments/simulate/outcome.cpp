@@ -12,7 +12,7 @@ namespace {
 constexpr Column columns_of_outcome[] = {
     {"scene", "name of the scene"},
     {"frames", "frames written"},
-    {"simulated_s", "simulated time"},
+    {"simulated_s", "simulated time, of a failed run until the failure"},
     {"rejected_steps", "steps tried again with shorter ones"},
     {"steps",
      "accepted steps; this and the following columns: since the run began or was "

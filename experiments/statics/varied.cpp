@@ -133,12 +133,29 @@ bool set_load(const Scene& scene, const std::string& name, const std::string& pl
                                    fmt::join(known, ", "))));
 }
 
+/// Refuses an effect that is no load of its own, and names its numbers.
+void refuse_effect(const Scene& scene, const std::string& name,
+                   const std::string& place) {
+  const std::vector<std::string> effects = simulation::effect_names(scene);
+  const auto found = std::ranges::find(effects, name);
+  if (found == effects.end()) return;
+  const auto i = static_cast<std::size_t>(found - effects.begin());
+  std::vector<std::string> numbers;
+  for (const Parameter& p : scene.effects[i].entry->parameters) {
+    if (p.text || p.rows || !p.choices.empty() || p.components > 1) continue;
+    numbers.push_back(fmt::format("{}.{}", name, p.name));
+  }
+  throw InputError(fmt::format("{} is an effect, not a number", name), place,
+                   fmt::format("give a number of it: {}", fmt::join(numbers, ", ")));
+}
+
 void set_number(const Scene& scene, const std::string& name, const std::string& place,
                 Varied& of) {
   const std::vector<std::string> known = names_in(scene);
   const std::vector<std::string_view> views(known.begin(), known.end());
   const bool load = name.starts_with("point_force") || name == "gravity";
   const bool near = !nearest(name, views).empty();
+  refuse_effect(scene, name, place);
   if (name.find('.') == name.npos && (load || near)) refuse_name(scene, name, place);
   of.kind = Kind::number;
   const std::string names[] = {name};

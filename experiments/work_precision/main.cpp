@@ -32,7 +32,8 @@ constexpr Column columns[] = {
     {"dt_s", "fixed step"},
     {"rtol", "relative tolerance, adaptive methods"},
     {"position_tol_rel",
-     "requested time error of a point over the length; steps follow from it"},
+     "tolerance of the estimated error of a point in a step, over the length; steps "
+     "follow from it"},
     {"elements", "coordinates of the problem; for a strand, its elements"},
     {"grading", "last element's length over the first's, for a strand"},
     {"solver", "linear solver in use; for a strand, the model's own"},

@@ -22,6 +22,21 @@ struct Point {
   double size, error;  // of a step or an element
 };
 
+/// Errors below it that do not fall by half with the step are at the floor of rounding,
+/// which differs between methods. Four times the floor change a slope of two halvings by
+/// log2(5/4) / 2 = 0.16 at most.
+constexpr double looked_at = 1e-10, clear_of_floor = 4;
+
+/// Leaves out the finest points of a series, sorted by size, at the floor of rounding.
+void drop_floor(std::vector<Point>& points) {
+  double floor = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    if (points[i].error > looked_at || points[i].error < points[i + 1].error / 2) break;
+    floor = std::max({floor, points[i].error, points[i + 1].error});
+  }
+  std::erase_if(points, [&](const Point& p) { return p.error < clear_of_floor * floor; });
+}
+
 double slope(const std::vector<Point>& points) {
   std::vector<double> sizes, errors;
   for (const Point& p : points) {
@@ -75,6 +90,7 @@ void add_orders(std::vector<Row>& rows) {
   }
   for (auto& [key, points] : series) {
     std::ranges::sort(points, {}, &Point::size);
+    drop_floor(points);
     if (points.size() > fitted_points) points.resize(fitted_points);
   }
   for (Row& row : rows) {

@@ -17,9 +17,7 @@ Sections::Kind section_to_hold(System& strand, int point, const std::string& whe
       at_end ? "the model has no section at this end whose direction could be held"
              : "the direction of the model jumps at this point and cannot be held",
       where,
-      at_end ? "use kind = \"ball\", another model, or, at a clamped root, a free root "
-               "with a "
-               "clamp of [[supports]]"
+      at_end ? "use kind = \"ball\", or another model such as super_helix"
              : "hold an end, or use [model] id = \"super_helix\" or \"super_clothoid\"");
 }
 

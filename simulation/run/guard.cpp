@@ -258,7 +258,8 @@ bool Guard::gained(double t, const EnergyMeasure& now) {
   broken(Breach::Kind::energy,
          fmt::format(
              "unstable: {:.3g} J more energy than at the start, at most {:.3g} J are "
-             "allowed (m g L, a tenth of the initial energy, work done)",
+             "allowed (the sum of m g L, a tenth of the initial energy, and 1.1 times "
+             "the work done)",
              gain, allowed),
          fastest(), t);
   return true;

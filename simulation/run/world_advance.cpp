@@ -67,6 +67,11 @@ Status World::advance_between_teleports(double t_end) {
       couplings_.empty() ? 1.0
                          : std::max(1.0, std::ceil(span / maker_.options().step - 1e-9));
   const double begin = t_;
+  if (count > static_cast<double>(maker_.options().max_steps)) {
+    failure_ = fmt::format("more than max_steps exchanges needed at t = {:.9g} s: {}", t_,
+                           remedy_of(Limit::steps));
+    return Status::fatal;
+  }
   for (long i = 1; i <= static_cast<long>(count); ++i) {
     const double t = i == static_cast<long>(count)
                          ? t_end
@@ -103,6 +108,7 @@ Status World::failed() {
       continue;
     }
     failure_ = failure_of(body);
+    t_ = body.t;
     return body.status;
   }
   return Status::ok;

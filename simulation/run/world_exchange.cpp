@@ -96,6 +96,7 @@ Status World::next_interval(double t_end) {
       return Status::ok;
     }
     if (const Status s = reject(now, solved ? &found : nullptr); s != Status::ok) {
+      t_ = begin;
       return s;
     }
   }

@@ -141,6 +141,7 @@ class Reader {
     places_.integrator = read.place("id");
     for (const Parameter& p : read.declared()) {
       if (p.name == "id" || !read.given(p.name)) continue;
+      places_.options.emplace(p.name, read.place(p.name));
       apply(scene_.options, option_of(p.name), read.text(p.name), read.place(p.name));
     }
     check_tolerance(read);
@@ -149,10 +150,18 @@ class Reader {
   /// Either the step is given, or an error and with it all that follows from it.
   void check_tolerance(const Table& read) {
     const IntegratorEntry& entry = find_integrator(scene_.integrator);
-    const auto refuse = [&](std::string_view key, const std::string& why) {
+    const auto refuse = [&](std::string_view key, const std::string& why,
+                            const std::string& remedy = "leave it out") {
       if (!read.given(key)) return;
-      throw InputError(fmt::format("{} {}", key, why), read.place(key), "leave it out");
+      throw InputError(fmt::format("{} {}", key, why), read.place(key), remedy);
     };
+    const double floor =
+        std::ranges::find(read.declared(), "rtol", &Parameter::name)->min;
+    if (scene_.options.tolerance > 0 && scene_.options.tolerance < floor) {
+      refuse("position_tol_rel",
+             fmt::format("= {:g} is below rounding", scene_.options.tolerance),
+             fmt::format("give at least {:g}, or 0 for fixed steps", floor));
+    }
     const bool least = scene_.options.min_step > 0;
     if (scene_.options.tolerance == 0) {
       if (least) refuse("min_step_s", "has no effect without tolerance");
@@ -160,7 +169,8 @@ class Reader {
     }
     if (scene_.options.max_step > 0 &&
         scene_.options.min_step > scene_.options.max_step) {
-      refuse("min_step_s", "is more than max_step_s");
+      refuse("min_step_s", "is more than max_step_s",
+             "give a smaller min_step_s, or a larger max_step_s");
     }
     if (!entry.adaptive && !entry.error_controlled) {
       refuse("position_tol_rel",
@@ -174,7 +184,7 @@ class Reader {
             ? std::array<std::string_view, 3>{"dt_s", "rtol", "atol"}
             : std::array<std::string_view, 3>{"dt_s", "newton_tolerance", "refresh"};
     for (const std::string_view key : decided) {
-      refuse(key, "is not for a run with tolerance, from which it follows");
+      refuse(key, "is not for a run with position_tol_rel, which decides it");
     }
     scene_.options = with_tolerance(entry, scene_.options);
     places_.tolerance = read.place("position_tol_rel");
@@ -225,6 +235,12 @@ class Reader {
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
     if ((SceneSupports(scene_).constrain() || SceneJoints(scene_).any()) &&
         scene_.options.formulation == Formulation::parametric) {
+      const auto given = places_.options.find("formulation");
+      refuse_if(given != places_.options.end(),
+                "formulation = \"parametric\" does not hold supports or joints",
+                given == places_.options.end() ? "" : given->second,
+                fmt::format("leave it out, or give \"{}\"",
+                            name(formulation_of_supports(scene_))));
       scene_.options.formulation = formulation_of_supports(scene_);
     }
     series_ = std::make_shared<const StrandSeries>(

@@ -9,11 +9,13 @@
 #include "contract/forms/teleports.h"
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
+#include "integrators/idle_option.h"
 #include "models/effects/body.h"
 #include "models/effects/control_mesh.h"
 #include "models/effects/strand_interaction.h"
 #include "simulation/scene/driven_bodies.h"
 #include "simulation/scene/joint_table.h"
+#include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_table.h"
 
@@ -26,7 +28,7 @@ auto at_place(const std::string& place, const F& make) {
   try {
     return make();
   } catch (const InputError& error) {
-    throw InputError(error.what(), place, "change the scene there");
+    refuse_at(place, error);
   } catch (const std::bad_alloc&) {
     throw InputError("not enough memory", place, "make the scene smaller");
   }
@@ -97,6 +99,26 @@ void check_friction(const Scene& scene, const ScenePlaces& places) {
       places.integrator, "use " + able);
 }
 
+/// Place of the key that an error names, or that of the method.
+const std::string& place_named(const InputError& error, const ScenePlaces& places) {
+  const std::string_view line = error.what();
+  for (const auto& [key, place] : places.options) {
+    if (line.find(key + ")") != line.npos) return place;
+  }
+  return places.integrator;
+}
+
+void make_once(const IntegratorEntry& entry, System& system, const Options& options,
+               const ScenePlaces& places) {
+  try {
+    entry.make(system, options);
+  } catch (const InputError& error) {
+    refuse_at(place_named(error, places), error);
+  } catch (const std::bad_alloc&) {
+    throw InputError("not enough memory", places.integrator, "make the scene smaller");
+  }
+}
+
 void check_integrator(const Scene& scene, System& system, const ScenePlaces& places) {
   const IntegratorEntry& entry = find_integrator(scene.integrator);
   const bool tied = SceneSupports(scene).any() || SceneJoints(scene).any();
@@ -114,7 +136,7 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
                       entry.id, jacobian),
           places.model, "give [model] jacobian = \"exact\"");
     }
-    at_place(places.integrator, [&] { return entry.make(system, options); });
+    make_once(entry, system, options, places);
     return;
   }
   const auto joined = [](std::string& list, std::string_view id) {
@@ -128,16 +150,27 @@ void check_integrator(const Scene& scene, System& system, const ScenePlaces& pla
     if (refusal(entry, system, form).empty()) joined(forms, name(form));
   }
   throw InputError(
-      fmt::format("{} cannot drive {}{} as {}: {}", scene.integrator, scene.model->id,
+      fmt::format("{} cannot drive {}{} as {}{}{}", scene.integrator, scene.model->id,
                   SceneSupports(scene).any()
                       ? " with " + SceneSupports(scene).table_name()
                   : SceneJoints(scene).any() ? std::string(" with [joints]")
                                              : std::string(),
-                  name(options.formulation), reason),
+                  name(options.formulation),
+                  reason.starts_with("the ") ? ", because " : ": ", reason),
       places.integrator,
       !forms.empty()  ? "give [integrator] formulation = one of: " + forms
       : !able.empty() ? "use one of: " + able
                       : "take another method: ./tress list shows what can drive what");
+}
+
+void check_options(const Scene& scene, const ScenePlaces& places) {
+  for (const auto& [key, place] : places.options) {
+    const std::string_view lacks = idle_option(scene, option_of(key));
+    refuse_if(!lacks.empty(),
+              fmt::format("{} does nothing with id = \"{}\", formulation = \"{}\"", key,
+                          scene.integrator, name(scene.options.formulation)),
+              place, fmt::format("leave it out, or use {}", lacks));
+  }
 }
 
 /// Whether a strand of the scene can fail alone.
@@ -258,6 +291,27 @@ void check_teleports(const Scene& scene, const ScenePlaces& places) {
 
 }  // namespace
 
+/// Strands that touch exchange forces once in dt_s. Gradients, supports and joints solve
+/// with [integrator] linear.
+std::string_view idle_option(const Scene& scene, std::string_view option) {
+  const bool exchanges = scene.interaction() != nullptr || scene.friction() != nullptr ||
+                         scene.mesh() != nullptr;
+  const StrandTables* const tables = scene.tables.get();
+  const bool solves =
+      tables != nullptr &&
+      (tables->gradient || !tables->supports.empty() || !tables->joints.empty());
+  if ((exchanges && option == "step") || (solves && option == "linear")) return {};
+  return integrators::idle_option(find_integrator(scene.integrator), scene.options,
+                                  option);
+}
+
+void refuse_at(const std::string& place, const InputError& error) {
+  const std::string_view line = error.what(), before_remedy = "): ";
+  const std::size_t end = line.find(before_remedy);
+  throw InputError(std::string(line.substr(0, end + 1)), place,
+                   std::string(line.substr(end + before_remedy.size())));
+}
+
 NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System& system,
                                 const std::string& where) {
   if (strand.free_root) {
@@ -275,6 +329,7 @@ NaturalStrains& strains_to_hold(const Scene& scene, const Strand& strand, System
 }
 
 void check(const Scene& scene, const ScenePlaces& places, std::size_t strands) {
+  check_options(scene, places);
   check_failed_strands(scene, places);
   if (scene.model->on_strand == nullptr && scene.rest == RestStrains::inverse) {
     throw InputError(fmt::format("rest = \"inverse\" for {}, which brings its own shape",

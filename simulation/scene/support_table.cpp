@@ -15,6 +15,7 @@
 #include "models/supports/supported_system.h"
 #include "simulation/driven/strand_drives.h"
 #include "simulation/scene/driven_bodies.h"
+#include "simulation/scene/scene_check.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene/support_keys.h"
 #include "simulation/scene/support_path.h"
@@ -272,7 +273,7 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
     return std::make_unique<SupportedSystem>(std::move(system), std::move(supports),
                                              std::move(drives));
   } catch (const InputError& error) {
-    throw InputError(error.what(), place, "change the scene there");
+    refuse_at(place, error);
   }
 }
 
@@ -282,9 +283,9 @@ Formulation formulation_of_supports(const Scene& scene) {
   const bool projected =
       scene.options.tolerance > 0 || entry.order(index3).value_or(0) < entry.order();
   const std::array preferred =
-      entry.adaptive ? std::array{index2_ggl, projection, index3, baumgarte}
-      : projected    ? std::array{projection, index3, index2_ggl, baumgarte}
-                     : std::array{index3, projection, index2_ggl, baumgarte};
+      entry.adaptive ? std::array{index2_ggl, projection, index3, baumgarte, rattle}
+      : projected    ? std::array{projection, index3, index2_ggl, baumgarte, rattle}
+                     : std::array{index3, projection, index2_ggl, baumgarte, rattle};
   for (const Formulation one : preferred) {
     if (entry.order(one)) return one;
   }

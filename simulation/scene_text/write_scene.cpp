@@ -8,6 +8,7 @@
 
 #include "integrators/integrator_options.h"
 #include "simulation/scene/gradient_table.h"
+#include "simulation/scene/scene_check.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -124,7 +125,9 @@ void add_integrator(std::string& text, const Scene& scene) {
     }
     const std::string_view option = option_of(p.name);
     const std::string value = text_of(scene.options, option);
-    if (value != text_of(defaults, option)) add_key(text, p, value);
+    if (value == text_of(defaults, option) || !idle_option(scene, option).empty())
+      continue;
+    add_key(text, p, value);
   }
 }
 

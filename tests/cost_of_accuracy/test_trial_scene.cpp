@@ -26,7 +26,6 @@ torsion = "altitude"
 [integrator]
 id = "backward_euler"
 dt_s = 0.004
-linear = "banded"
 [material]
 name = "hair.african"
 [strand]

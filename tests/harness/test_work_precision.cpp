@@ -53,6 +53,19 @@ TEST(SeriesColumns, AnOrderNeedsThreePointsAndMoreThanFiveDigits) {
   EXPECT_FALSE(fits({1e-2, 2e-2, 4e-2}, 5e-6));
 }
 
+/// rodas5p on the pendulum: the three finest errors are those of rounding.
+TEST(SeriesColumns, AnOrderLeavesOutTheFloorOfRounding) {
+  const std::vector<double> errors{1.485e-12, 2.143e-12, 1.598e-12,
+                                   2.066e-11, 6.519e-10, 2.146e-8};
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double dt = 6.25e-4 * static_cast<double>(1 << i);
+    rows.push_back(run("time", "recursive", 10, dt, errors[i]));
+  }
+  add_series_columns(rows);
+  EXPECT_NEAR(rows.front().number("order_fit"), 5, 0.1);
+}
+
 TEST(SeriesColumns, TotalErrorsFallWithTheElementAtTheFinestStep) {
   std::vector<Row> rows;
   for (const int elements : {5, 10, 20, 40, 80}) {

@@ -118,7 +118,6 @@ id = "generalized_alpha"
 dt_s = 1e-5
 refresh = "when_slow"
 max_steps = 123456789
-linear = "banded"
 [material]
 name = "hair.african"
 [[strand]]

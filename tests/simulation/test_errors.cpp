@@ -5,6 +5,8 @@
 #include <string>
 
 #include "contract/input_error.h"
+#include "integrators/catalogue.h"
+#include "integrators/idle_option.h"
 #include "simulation/scene/scene.h"
 #include "tests/harness/toy_process.h"
 
@@ -83,7 +85,7 @@ const Wrong wrong_scenes[] = {
      "did you mean 'rk4'?"},
     {"StepAndTolerance",
      strand + "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\ndt_s = 1e-3\n",
-     "6:8", "dt_s is not for a run with tolerance"},
+     "6:8", "dt_s is not for a run with position_tol_rel, which decides it"},
     {"NewtonAndTolerance",
      strand + "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\n"
               "newton_tolerance = 1e-3\n",
@@ -105,7 +107,43 @@ const Wrong wrong_scenes[] = {
      strand +
          "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-3\nmin_step_s = 1e-2\n"
          "max_step_s = 1e-3\n",
-     "6:14", "min_step_s is more than max_step_s"},
+     "6:14", "give a smaller min_step_s, or a larger max_step_s"},
+    {"ToleranceBelowRounding",
+     strand + "[integrator]\nid = \"tr_bdf2\"\nposition_tol_rel = 1e-300\n", "5:20",
+     "give at least 1e-15, or 0 for fixed steps"},
+    {"ToleranceOfIndex3",
+     "[model]\nid = \"inextensible_strand\"\n" + strand +
+         "[integrator]\nid = \"tr_bdf2\"\nformulation = \"index3\"\n"
+         "position_tol_rel = 1e-3\n",
+     "8:20", ": use projection, or a fixed step"},
+    {"OrderOutOfRange", strand + "[integrator]\nid = \"cvode_bdf\"\nmax_order = 6\n",
+     "5:13", ": choose 1 to 5"},
+    {"UnknownButcherTable",
+     strand + "[integrator]\nid = \"arkode_dirk\"\ntable = \"NONE\"\n", "5:9",
+     "ARKODE_CASH_5_3_4"},
+    {"GainWithoutBaumgarte",
+     "[model]\nid = \"inextensible_strand\"\n" + strand +
+         "[integrator]\nid = \"tr_bdf2\"\nformulation = \"projection\"\nalpha = 1\n",
+     "8:9", "or use formulation = \"baumgarte\""},
+    {"OrderOfAMethodWithOne",
+     strand + "[integrator]\nid = \"gsl_rkf45\"\nmax_order = 3\n", "5:13",
+     "or use a method of several orders"},
+    {"RtolOfAFixedStep", strand + "[integrator]\nid = \"radau5\"\nrtol = 1e-4\n", "5:8",
+     "or use a method that takes rtol"},
+    {"StepOfAnAdaptiveMethod", strand + "[integrator]\nid = \"ida\"\ndt_s = 1e-3\n",
+     "5:8", "or use a method that takes dt_s"},
+    {"LargestStepOfAFixedStep",
+     strand + "[integrator]\nid = \"tr_bdf2\"\nmax_step_s = 1e-3\n", "5:14",
+     "or use position_tol_rel"},
+    {"SolverOfConstraintsWithoutThem",
+     strand + "[integrator]\nid = \"tr_bdf2\"\nlinear = \"klu\"\n", "5:10",
+     "or use ida, or a model with constraints"},
+    {"ParametricWithSupports",
+     strand + "[integrator]\nid = \"tr_bdf2\"\nformulation = \"parametric\"\n"
+              "[[supports]]\nat = \"tip\"\n",
+     "5:15", "leave it out, or give \"index3\""},
+    {"NaturalShapeWithoutRows", strand + "[[effects.natural_shape]]\n", "3:1",
+     "give rows of scale_over_time"},
     {"KeyOfAnotherTable", strand + "[model]\nlength_m = 1\n", "4:1", "unknown key"},
     {"OutOfRange", "[strand]\nlength_m = -1\n", "3:12",
      "give a number between 1e-09 and 1e+06: length of the strand (m)"},
@@ -187,7 +225,7 @@ const Wrong wrong_scenes[] = {
      "5:6", "choose a formulation"},
     {"EffectRefuses",
      strand + "[effects.wind]\nlaw = \"force\"\nvelocity_m_s = [0, 0, 0]\n", "3:1",
-     "change the scene there"},
+     ": give"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scenes, WrongSceneTest, testing::ValuesIn(wrong_scenes),
@@ -195,6 +233,26 @@ INSTANTIATE_TEST_SUITE_P(Scenes, WrongSceneTest, testing::ValuesIn(wrong_scenes)
 
 TEST(SceneErrors, TitleMustBeGiven) {
   EXPECT_THAT(refusal_of("[strand]\n"), HasSubstr("(s.toml:1:1): begin it with title"));
+}
+
+/// A method without several orders ignores max_order, others refuse 13.
+TEST(SceneErrors, MaxOrderIsIdleWhereNoMethodReadsIt) {
+  const Scene scene =
+      parse_scene("title = \"t\"\n[model]\nid = \"mass_spring\"\n[strand]\n", "s.toml");
+  const auto system =
+      scene.model->on_strand(scene.strands.front(), scene.model_options, {});
+  Options options;
+  options.max_order = 13;
+  for (const IntegratorEntry& entry : integrators::integrator_catalogue()) {
+    if (!integrators::refusal(entry, *system, options.formulation).empty()) continue;
+    bool reads = false;
+    try {
+      entry.make(*system, options);
+    } catch (const InputError&) {
+      reads = true;
+    }
+    EXPECT_EQ(idle_option(entry, options, "max_order").empty(), reads) << entry.id;
+  }
 }
 
 std::string refusal_of_file(const std::string& file) {

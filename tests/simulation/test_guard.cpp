@@ -24,12 +24,14 @@ struct Said {
   std::string top = {};
 };
 
+/// Adaptive methods take no `dt`, but the lines behind it.
 Scene scene(const Said& said) {
+  const bool adaptive = integrators::find_integrator(said.integrator).adaptive;
   return parse_scene("title = \"guarded\"\nduration_s = 0.3\n" + said.top +
                          "[model]\nid = \"" + said.model + "\"\n[integrator]\nid = \"" +
-                         said.integrator + "\"\ndt_s = " + said.dt +
-                         "\n[material]\nname = \"hair.asian\"\n[strand]\n" + said.more +
-                         "[root]\n" + said.root + said.effects,
+                         said.integrator + (adaptive ? "\"\n# " : "\"\ndt_s = ") +
+                         said.dt + "\n[material]\nname = \"hair.asian\"\n[strand]\n" +
+                         said.more + "[root]\n" + said.root + said.effects,
                      "guarded.toml");
 }
 
@@ -115,6 +117,25 @@ TEST(Guard, AdvisesMoreWorkWhereThatIsUsedUp) {
   options.max_work = 5e4;
   EXPECT_EQ(remedy("implicit_midpoint", options, Limit::work),
             "try more than max_work = 50000");
+}
+
+TEST(Guard, NamesEsdirk43WhereTheStagesOfRadau5HaveNoSolution) {
+  const std::string words = remedy("radau5", Options{});
+  EXPECT_TRUE(says(words, "try a shorter step than 0.001 s, or esdirk43")) << words;
+}
+
+/// SUNDIALS refuses weights of 0, and finds no solution on index 3 at a small rtol.
+TEST(Guard, AdvisesTolerancesThatAMethodCanMeet) {
+  Options options;
+  EXPECT_EQ(remedy("ida", options), "try a smaller tolerance than rtol = 1e-06");
+  options.formulation = Formulation::index2_ggl;
+  EXPECT_EQ(remedy("ida", options), "try a larger tolerance than rtol = 1e-06");
+  options.formulation = Formulation::index3;
+  const std::string index3 = remedy("ida", options);
+  EXPECT_TRUE(says(index3, "try a larger tolerance than rtol = 1e-06")) << index3;
+  EXPECT_TRUE(says(index3, "formulation = \"index2_ggl\"")) << index3;
+  options.atol = 0;
+  EXPECT_TRUE(says(remedy("ida", options), "try atol > 0"));
 }
 
 /// What ends after a number of sweeps gains energy at shorter steps as well, and
@@ -232,6 +253,19 @@ TEST(Guard, AdvisesAgainstTooManySteps) {
   EXPECT_TRUE(says(adaptive, "or more than max_steps = 5")) << adaptive;
   const std::string fixed = ending(scene({"der", "backward_euler", tight, ""}));
   EXPECT_TRUE(says(fixed, "try a longer step than 0.001 s")) << fixed;
+}
+
+/// Frames are 20 ms apart: 20 steps, or exchanges of strands that touch.
+TEST(Guard, CountsStepsFromFrameToFrame) {
+  const std::string touch = "[effects.gravity]\n[effects.strand_interaction]\n";
+  for (const std::string& effects : {std::string("[effects.gravity]\n"), touch}) {
+    const auto ends = [&](const std::string& most) {
+      return ending(scene({"super_helix", "backward_euler", "1e-3\nmax_steps = " + most,
+                           "", "motion = \"fixed\"\n", effects}));
+    };
+    EXPECT_EQ(ends("20"), "") << effects;
+    EXPECT_TRUE(says(ends("19"), "more than max_steps")) << effects << ends("19");
+  }
 }
 
 TEST(Guard, KnowsByTheRunThatItsWorkIsUsedUp) {

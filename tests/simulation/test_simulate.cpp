@@ -368,6 +368,23 @@ TEST(Simulate, ASceneThatBlowsUpIsSaidSo) {
   EXPECT_NE(toy.read("out/scene.meta.json").find("diverged"), std::string::npos);
 }
 
+/// On index 3, ida finds no first step at a small rtol. The last frame is that of t = 0.
+TEST(Simulate, TellsTheTimeThatAFailedRunReached) {
+  Toy toy;
+  toy.write("scene.toml",
+            "title = \"t\"\nduration_s = 0.2\nframes_per_s = 10\n[model]\n"
+            "id = \"inextensible_strand\"\n[integrator]\nid = \"ida\"\n"
+            "formulation = \"index3\"\nrtol = 1e-8\n[strand]\nlength_m = 0.1\n"
+            "elements = 3\n[root]\n[effects.gravity]\n[[supports]]\nat = \"tip\"\n"
+            "kind = \"ball\"\nstiffness_n_per_m = 1e-3\n");
+  const Toy::Result run = toy.run("scene.toml --out out --progress none");
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.err.find("1 frame, 0 s simulated"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("on their strands at 0 s: "), std::string::npos) << run.err;
+  const auto meta = nlohmann::json::parse(toy.read("out/scene.meta.json"));
+  EXPECT_NE(meta.dump().find("\"simulated_s\":0"), std::string::npos) << meta;
+}
+
 struct Wrong {
   std::string name, arguments, message;
 };
