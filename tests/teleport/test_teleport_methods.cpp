@@ -12,7 +12,8 @@
 namespace tress::test_teleport_methods {
 
 using namespace test_teleport;
-
+using test_teleport::Points;
+using test_teleport::strand;
 using testing_support::refusal;
 
 constexpr double jump = 0.002, end_at = 0.004;  // s
