@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/finite.h"
 #include "linear/largest_size.h"
 #include "linear/vector_ops.h"
 
@@ -68,7 +69,7 @@ bool ContactDerivative::find_cases() {
     cases_.push_back({own_[k].id, slides, own_[k].rebounds});
     rows_ += at_.mu[k] > 0 ? 3 : 1;
   }
-  return std::isfinite(largest_size(at_.u));
+  return all_finite(at_.u);
 }
 
 void ContactDerivative::combine(const Values& change, Out g) const {

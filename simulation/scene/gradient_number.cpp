@@ -19,28 +19,6 @@ constexpr double reach = 0.2501, central_reach = 1e-5;
 // room.
 constexpr double least_room = 1e-3;
 
-constexpr Use wind_profiles[] = {{"sine", "frequency_hz"},
-                                 {"gusts", "gust_speed_m_s|gust_length_m|gust_time_s"}};
-constexpr Use air_laws[] = {
-    {"linear", "drag_kg_m_s"},
-    {"quadratic",
-     "strand_radius_m|air_density_kg_m3|air_viscosity_pa_s|c_normal|c_tangential"},
-    {"force", "force_n_m"}};
-constexpr Use drag_coefficients[] = {{"constant", "c_normal"},
-                                     {"reynolds", "air_viscosity_pa_s"}};
-
-/// The numbers of an effect that apply to one word of a choice.
-struct EffectUse {
-  std::string_view effect, choice;
-  std::span<const Use> uses;
-};
-constexpr EffectUse effect_uses[] = {
-    {"wind", "profile", wind_profiles},
-    {"wind", "law", air_laws},
-    {"wind", "coefficients", drag_coefficients},
-    {"quadratic_drag", "coefficients", drag_coefficients},
-};
-
 /// Tables of [[supports]] and of drives, which are no effects of the catalogue.
 struct ListedTables {
   std::string_view name;                    // of the first one; the second is name_2
@@ -119,13 +97,17 @@ std::string unit_of(const Parameter& p) {
 
 }  // namespace
 
-std::string unused_number(std::string_view effect, std::string_view key,
+std::string unused_number(const models::EffectEntry& effect, std::string_view key,
                           const Parameters& values) {
-  for (const EffectUse& one : effect_uses) {
-    if (one.effect != effect) continue;
+  for (const models::EffectUse& one : effect.uses) {
+    std::vector<Use> of_choice;
+    for (const auto& [choice, word, keys] : effect.uses) {
+      if (choice == one.choice) of_choice.push_back({word, keys});
+    }
     const std::string_view word = values.word(one.choice);
-    if (used(one.uses, word, key)) continue;
-    return fmt::format("{} = \"{}\" does not use it", one.choice, word);
+    if (!used(of_choice, word, key)) {
+      return fmt::format("{} = \"{}\" does not use it", one.choice, word);
+    }
   }
   return {};
 }

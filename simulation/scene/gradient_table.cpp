@@ -289,7 +289,7 @@ class Finder {
     const EffectChoice& effect = scene_.effects[i];
     const GradientNumber of = gradient_number(
         name, name.substr(dot + 1), effect.entry->parameters, effect.parameters, place_);
-    const std::string unused = unused_number(effect.entry->id, of.key, effect.parameters);
+    const std::string unused = unused_number(*effect.entry, of.key, effect.parameters);
     if (!unused.empty()) refuse(name, unused, "leave it out");
     to.push_back({std::string(name), of.unit, of.value, of.measure, false,
                   [of, i](Scene& scene, double s) {
@@ -318,7 +318,7 @@ class Finder {
     for (std::size_t i = 0; i < effects.size(); ++i) {
       const EffectChoice& effect = scene_.effects[i];
       for (const Parameter& p : effect.entry->parameters) {
-        if (unused_number(effect.entry->id, p.name, effect.parameters).empty()) {
+        if (unused_number(*effect.entry, p.name, effect.parameters).empty()) {
           add(effects[i], p);
         }
       }

@@ -38,7 +38,7 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
 
 /// Returns why a number of an effect does nothing: `profile = "constant" does not use
 /// it`. Empty: it acts.
-std::string unused_number(std::string_view effect, std::string_view key,
+std::string unused_number(const models::EffectEntry& effect, std::string_view key,
                           const Parameters& values);
 
 /// "name.x" becomes "name", 0; empty without such an end.
