@@ -20,6 +20,9 @@ constexpr double least_cosine = 0.9;  // between tangents of successive points
 constexpr double located = 1e-7;      // of the step, of a limit point or bifurcation
 constexpr double apart = 1e-3;        // of the step, between different bifurcations
 constexpr int most_probes = 40, most_crossings = 4;
+/// Of a step, between a point and the chord that passes it. A chord is off the path by an
+/// eighth of a step times the angle between tangents, acos(least_cosine) at most: 0.056.
+constexpr double passed_by = 0.06;
 constexpr double first_branch_step = 0.02, usual_iterations = 6;
 
 /// A point with all that its neighbours need.
@@ -38,6 +41,7 @@ class Follower {
     try {
       Station station = start();
       add(station.point);
+      begin_branch(station);
       step_ = longest_step(station);
       shortest_ = least_step * step_;
       while (!over_) station = next(std::move(station));
@@ -67,7 +71,8 @@ class Follower {
   /// A row with the reason, where a path ends before what was asked for.
   void say_what_is_missing() {
     const PathPoint& last = all_.back();
-    if (!last.failure.empty() || last.event == Event::end) {
+    if (!last.failure.empty() || last.event == Event::end ||
+        last.event == Event::closed) {
       if (bifurcations_ >= std::abs(options_.branch) || !last.failure.empty()) return;
       fail("the path has " + std::to_string(bifurcations_) +
            " bifurcations, and branch asks for number " +
@@ -105,6 +110,28 @@ class Follower {
     }
     return options_.resolution /
            std::max(fastest / strand_.length(), std::abs(from.tangent.value) / range());
+  }
+
+  /// Points from here on belong to one branch.
+  void begin_branch(const Station& first) {
+    branch_first_ = {first.point.at, first.tangent};
+    may_close_ = false;
+  }
+  /// Whether the path passes the first point of its branch between two points.
+  bool closes(const Balance& from, const Balance& to) {
+    const Direction chord{to.q - from.q, to.value - from.value};
+    const Balance& first = branch_first_->first;
+    Direction off{first.q - from.q, first.value - from.value};
+    const double square = newton_.product(chord, chord);
+    const double part = newton_.product(off, chord) / square;
+    off.q -= part * chord.q;
+    off.value -= part * chord.value;
+    const bool passes = part >= 0 && part < 1 &&
+                        newton_.product(chord, branch_first_->second) > 0 &&
+                        newton_.product(off, off) <= passed_by * passed_by * square;
+    // The first step begins at that point.
+    const bool may = std::exchange(may_close_, true);
+    return passes && may;
   }
 
   /// The point at a step s from a station; none: it is no equilibrium.
@@ -164,6 +191,10 @@ class Follower {
       if (bifurcations_ == std::abs(options_.branch)) return leave(from, event);
     }
     if (std::isfinite(end)) return finish(from, raw, end);
+    if (closes(from.point.at, raw)) {
+      to.point.event = Event::closed;
+      over_ = true;
+    }
     strand_.recall(from.memory);
     static_cast<void>(strand_.residual(raw));
     strand_.accept(to.point.at);
@@ -231,6 +262,7 @@ class Follower {
       on.point.arclength = event.point.arclength + s;
       on.tangent = newton_.tangent(at, mode);
       add(on.point);
+      begin_branch(on);
       step_ = s;
       return on;
     }
@@ -323,6 +355,8 @@ class Follower {
   PathNewton newton_;
   std::vector<PathPoint> all_;
   double step_ = 0, shortest_ = 0;
+  std::optional<std::pair<Balance, Direction>> branch_first_;
+  bool may_close_ = false;
   int bifurcations_ = 0, limit_points_ = 0;
   std::string why_;  // the last step failed
   bool over_ = false;

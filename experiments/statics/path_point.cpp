@@ -26,6 +26,8 @@ std::string_view name(Event event) {
       return "bifurcation";
     case Event::branch:
       return "branch";
+    case Event::closed:
+      return "closed";
     case Event::end:
       return "end";
     default:

@@ -17,6 +17,7 @@ enum class Event {
   limit_point,  // the parameter turns back: no equilibrium near by beyond it
   bifurcation,  // another path crosses, or a second eigenvalue crosses 0
   branch,       // the path leaves a bifurcation along the other branch
+  closed,       // the path has come back to its first point on this branch
   end           // the last value of the parameter, or the end of the search
 };
 

@@ -145,8 +145,10 @@ void describe(const Rows& rows, std::vector<std::string>& lines) {
   if (!last.ok()) {
     lines.push_back(fmt::format("  ends at {}: {}", value_of(last), last.text("reason")));
   } else {
-    lines.push_back(fmt::format("  ends at {}, displacement {:.6g} m, {}", value_of(last),
-                                last.number("displacement_m"), last.text("stability")));
+    lines.push_back(fmt::format("  {} at {}, displacement {:.6g} m, {}",
+                                is_event(last, "closed") ? "closes" : "ends",
+                                value_of(last), last.number("displacement_m"),
+                                last.text("stability")));
   }
   lines.push_back(validity(rows));
 }

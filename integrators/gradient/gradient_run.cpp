@@ -91,13 +91,20 @@ std::optional<NoGradient> no_gradient(std::string_view method, System& system,
         "the mass matrix is singular, so that accelerations have no derivative",
         "use rotary_inertia = \"on\", or another model"};
   }
-  if (bordered_form(system) != nullptr && starts_from_accelerations(method)) {
+  const bool bordered = bordered_form(system) != nullptr;
+  const auto fits = [&](std::string_view id) {
+    return find_integrator(id).order(Formulation::index3).has_value() &&
+           !(bordered && starts_from_accelerations(id));
+  };
+  if (!fits(method)) {
     return NoGradient{
         std::string(method) +
-            " starts from accelerations, whose derivatives lose their digits in reduced "
-            "coordinates with constraints",
-        "use " + methods_that(
-                     [](std::string_view id) { return !starts_from_accelerations(id); })};
+            (find_integrator(method).order(Formulation::index3)
+                 ? " starts from accelerations, whose derivatives lose their digits in "
+                   "reduced coordinates with constraints"
+                 : " does not take constraints as index3, of which derivatives are "
+                   "exact"),
+        "use " + methods_that(fits)};
   }
   if (options.formulation == Formulation::index3) return {};
   return NoGradient{"constraints as " + std::string(name(options.formulation)) +

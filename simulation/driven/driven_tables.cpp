@@ -224,7 +224,12 @@ DrivenTables read_driven(const toml::table& effects, const std::string& file) {
           read_table(*one, kinds[i].parameters, fmt::format("[{}]", name), file));
     }
   }
-  for (const Table& shape : all.shapes) ShapeChange{shape};
+  for (const Table& shape : all.shapes) {
+    refuse_if(ShapeChange(shape).times().empty(),
+              "[[effects.natural_shape]] without rows does nothing", shape.place(),
+              "give rows of scale_over_time, curvature_per_m, curvature2_per_m or "
+              "twist_per_m, or leave it out");
+  }
   return all;
 }
 

@@ -177,4 +177,34 @@ TEST(Arch, OfEdgesSnapsThereWhenExtrapolated) {
   EXPECT_NEAR((4 * fine - coarse) / 3 / expected, 1, 0.005);
 }
 
+/// The arch that tilts joins two bifurcations of the symmetric one, to the left and to
+/// the right: a closed path, on which the parameter turns back at each of them. Events
+/// are located to 1e-7 of a step, and where branches cross to its square root.
+TEST(Arch, ThatTiltsBetweenTwoBifurcationsClosesItsPath) {
+  const std::string scene = static_scene(
+      "id = \"super_clothoid\"\nmodes = \"bend_planar\"",
+      "length_m = 0.1\nelements = 12\nposition_m = [-0.0479425538604203, 0, 0]\n"
+      "root_tangent = [0.8775825618903728, 0, 0.479425538604203]\nshape = \"along\"\n"
+      "darboux_along = [[0, 0, 10, 0]]\n",
+      "[[supports]]\nat = \"tip\"\nkind = \"clamp\"\n[[supports]]\nat = 0.5\n"
+      "slide = [1, 0, 0]\n"
+      "keyframes = [[0, 0, 0, 0.012241743810962725], [1, 0, 0, -0.0115]]\n");
+  const auto whole = static_path(scene, "supports=0..1");
+  const std::vector<double> bifurcations = values_at(whole, Event::bifurcation);
+  ASSERT_EQ(bifurcations.size(), 2U);
+  EXPECT_EQ(whole.back().event, Event::end);
+  for (const int side : {1, -1}) {
+    const auto branch = static_path(scene, "supports=0..1", {.branch = side});
+    ASSERT_EQ(branch.back().event, Event::closed) << branch.back().failure;
+    const std::vector<double> turns = values_at(branch, Event::limit_point);
+    ASSERT_EQ(turns.size(), 2U);
+    EXPECT_NEAR(turns[0], bifurcations[1], 1e-4);
+    EXPECT_NEAR(turns[1], bifurcations[0], 1e-4);
+    const auto first = std::ranges::find(branch, Event::branch, &PathPoint::event);
+    ASSERT_NE(first, branch.end());
+    EXPECT_LT(norm(tip_of(*first) - tip_of(branch.back())), 1e-9);
+    EXPECT_NEAR(first->at.value, branch.back().at.value, 0.04);
+  }
+}
+
 }  // namespace tress::test_arch

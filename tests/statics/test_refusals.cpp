@@ -76,7 +76,7 @@ const Refused refusals[] = {
      "depends on how the strand came there", "give friction = 0"},
     {"Nodal", "id = \"kirchhoff_nodal\"",
      "[[supports]]\nkeyframes = [[0, 0.09, 0, 0]]\n" + gravity, "",
-     "does not compute the accelerations", "change the scene"},
+     "does not compute the accelerations", "use another model"},
     {"OtherIntegrator", helix, gravity, "--integrators bdf2", "nothing moves in it",
      "leave it out"},
     {"OtherGeometry", helix, gravity, "--models tinkertoys",
