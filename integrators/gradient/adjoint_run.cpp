@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "contract/forms/material_points.h"
 #include "contract/input_error.h"
@@ -207,27 +208,40 @@ void AdjointRun::recall(In memory) {
   parameters_.recall(memory);
 }
 
-/// Of the stops after this number of events: q_hat += J^T x_hat. Column k of J is the
-/// velocity of the points at v = e_k less that at rest.
+/// Of the stops after this number of events.
 void AdjointRun::add_seeds(std::size_t events, const Seed& seed) {
-  MaterialPoints& points = *exact_->material_points();
-  const std::size_t length = 3 * size(points.count());
+  const std::size_t length = 3 * size(exact_->material_points()->count());
   for (; next_stop_ > 0 && stops_[next_stop_ - 1].events == events; --next_stop_) {
     const Stop& stop = stops_[next_stop_ - 1];
     Vectors x_hat(hat_.size(), std::vector<double>(length));
     for (std::size_t s = 0; s < hat_.size(); ++s) seed(s, next_stop_ - 1, x_hat[s]);
     if (std::ranges::all_of(x_hat, all_zero)) continue;
     parameters_.pull_points(*exact_, stop.t, stop.q, x_hat);
-    std::vector<double> unit(n_), rest(length), u(length);
-    points.velocities(stop.t, stop.q, unit, rest);
-    for (std::size_t k = 0; k < n_; ++k) {
-      unit[k] = 1;
-      points.velocities(stop.t, stop.q, unit, u);
-      unit[k] = 0;
-      add(u, -1, rest);
-      for (std::size_t s = 0; s < hat_.size(); ++s) {
-        hat_[s][0][k] += scalar_product(u, x_hat[s]);
-      }
+    pull_back_points(stop, x_hat);
+  }
+}
+
+/// q_hat += J^T x_hat. Without MaterialPoints::pull_back(), column k of J is the velocity
+/// of the points at v = e_k less that at rest.
+void AdjointRun::pull_back_points(const Stop& at, const Vectors& x_hat) {
+  MaterialPoints& points = *exact_->material_points();
+  std::vector<int> all(size(points.count()));
+  std::iota(all.begin(), all.end(), 0);
+  bool closed_form = true;
+  for (std::size_t s = 0; s < hat_.size() && closed_form; ++s) {
+    if (all_zero(x_hat[s])) continue;
+    closed_form = points.pull_back(at.t, at.q, all, x_hat[s], hat_[s][0]);
+  }
+  if (closed_form) return;
+  std::vector<double> unit(n_), rest(x_hat.front().size()), u(rest);
+  points.velocities(at.t, at.q, unit, rest);
+  for (std::size_t k = 0; k < n_; ++k) {
+    unit[k] = 1;
+    points.velocities(at.t, at.q, unit, u);
+    unit[k] = 0;
+    add(u, -1, rest);
+    for (std::size_t s = 0; s < hat_.size(); ++s) {
+      hat_[s][0][k] += scalar_product(u, x_hat[s]);
     }
   }
 }

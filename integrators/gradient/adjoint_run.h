@@ -95,6 +95,7 @@ class AdjointRun {
   Status repeat(std::size_t part);
   Status sweep_part(std::size_t part, const Seed& seed);
   void add_seeds(std::size_t events, const Seed& seed);
+  void pull_back_points(const Stop& at, const Vectors& x_hat);
   void recall(In memory);
   Status step_back(const Tape::Step& step);
   Status back(const Operation& operation);
