@@ -46,7 +46,7 @@ AdjointRun::AdjointRun(System& system, std::unique_ptr<System> exact,
       n_(size(system.layout().coordinates)),
       run_(system, method),
       again_(*exact_, method),
-      parameters_(*exact_, parameters, method.options),
+      parameters_(*exact_, parameters, method.options, method.forces),
       stages_(*exact_, method.options, method.forces),
       q_hat_(n_),
       v_hat_(n_) {

@@ -99,7 +99,8 @@ double slope_of(const std::vector<std::unique_ptr<System>>& near, Power power) {
 }  // namespace
 
 std::optional<ConstantsDerivative> constants_derivative(System& system,
-                                                        const RunParameter& parameter) {
+                                                        const RunParameter& parameter,
+                                                        KnownForces forces) {
   TransposedForm* const form = transposed_form(system);
   if (form == nullptr || system.layout().constraints > 0) return {};
   const std::vector<double> here = form->constants();
@@ -141,7 +142,7 @@ std::optional<ConstantsDerivative> constants_derivative(System& system,
   }
   if (here == far && !loaded && !clamped) return {};  // here: it may act elsewhere
   if (found.moves_points && !clamped) return {};
-  if (parameter.places || clamped) {
+  if ((parameter.places || clamped) && (loaded || !forces.quadratic)) {
     found.loads.stencil = placed_stencil(parameter);
     for (const double s : found.loads.stencil.at) {
       found.loads.systems.push_back(parameter(s));

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "contract/forms/material_points.h"
-#include "contract/forms/moved_clamp.h"
-#include "contract/forms/transposed_form.h"
 #include "integrators/gradient/run_phases.h"
 #include "linear/vector_ops.h"
 
@@ -14,11 +12,11 @@ namespace {
 
 using Constants = std::vector<std::optional<ConstantsDerivative>>;
 
-Constants constants_derivatives(System& system,
-                                std::span<const RunParameter> parameters) {
+Constants constants_derivatives(System& system, std::span<const RunParameter> parameters,
+                                KnownForces forces) {
   Constants all;
   for (const RunParameter& parameter : parameters) {
-    all.push_back(constants_derivative(system, parameter));
+    all.push_back(constants_derivative(system, parameter, forces));
   }
   return all;
 }
@@ -139,9 +137,11 @@ Status PulledNatural::pull(const WatchedSystem::Motion& at,
 
 PulledParameters::PulledParameters(System& system,
                                    std::span<const RunParameter> parameters,
-                                   const Options& options)
+                                   const Options& options, KnownForces forces)
     : system_(system),
-      constants_by_(constants_derivatives(system, parameters)),
+      transposed_(transposed_form(system)),
+      clamp_(moved_clamp(system)),
+      constants_by_(constants_derivatives(system, parameters, forces)),
       natural_by_(natural_directions(system, parameters, constants_by_)),
       varied_(others(system, parameters, constants_by_, natural_by_)),
       stages_(system, varied_, options, KnownForces{.sparse = false}, nullptr),
@@ -177,8 +177,7 @@ PulledParameters::PulledParameters(System& system,
 void PulledParameters::begin(std::size_t numbers) {
   by_.assign(numbers, std::vector<double>(varied_.size()));
   n_hat_.assign(numbers, std::vector<double>(natural_ ? natural_->count() : 0));
-  const std::size_t constants =
-      any_constants_ ? transposed_form(system_)->constants().size() : 0;
+  const std::size_t constants = any_constants_ ? transposed_->constants().size() : 0;
   c_hat_.assign(numbers, std::vector<double>(constants));
   by_loads_.assign(numbers, std::vector<double>(count()));
 }
@@ -186,7 +185,7 @@ void PulledParameters::begin(std::size_t numbers) {
 void PulledParameters::pull_constants(const WatchedSystem::Motion& at, bool placed,
                                       std::size_t number, In x) noexcept {
   if (!any_constants_) return;
-  TransposedForm& form = *transposed_form(system_);
+  TransposedForm& form = *transposed_;
   if (!placed) form.place_transposed(at.t, at.q, at.v, at.a, x);
   form.add_by_constants(c_hat_[number]);
   std::optional<double> own;
@@ -194,8 +193,8 @@ void PulledParameters::pull_constants(const WatchedSystem::Motion& at, bool plac
     if (!constants_by_[k]) continue;
     const VariedSystem &loads = constants_by_[k]->loads, &clamp = constants_by_[k]->clamp;
     for (std::size_t i = 0; i < clamp.systems.size(); ++i) {
-      by_loads_[number][k] -= clamp.stencil.weight[i] *
-                              moved_clamp(system_)->power_of_clamp(*clamp.systems[i]);
+      by_loads_[number][k] -=
+          clamp.stencil.weight[i] * clamp_->power_of_clamp(*clamp.systems[i]);
     }
     for (std::size_t i = 0; i < loads.systems.size(); ++i) {
       by_loads_[number][k] +=

@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "contract/forms/moved_clamp.h"
 #include "contract/forms/natural_strains.h"
+#include "contract/forms/transposed_form.h"
 #include "integrators/gradient/linearized.h"
 
 namespace tress::integrators {
@@ -45,9 +47,9 @@ class PulledNatural {
 /// as a few residuals. Any other parameter costs the residuals of its stencil.
 class PulledParameters {
  public:
-  /// `system` must outlive it.
+  /// `forces`: as constants_derivative(). `system` must outlive it.
   PulledParameters(System& system, std::span<const RunParameter> parameters,
-                   const Options& options);
+                   const Options& options, KnownForces forces);
 
   /// Returns the number of parameters.
   std::size_t count() const { return natural_by_.size(); }
@@ -74,6 +76,8 @@ class PulledParameters {
 
  private:
   System& system_;
+  TransposedForm* transposed_;  // null: the system has none
+  MovedClamp* clamp_;           // likewise
   std::vector<std::optional<ConstantsDerivative>> constants_by_;  // where it is all
   std::vector<std::vector<double>> natural_by_;  // empty: by constants or a stencil
   std::vector<VariedSystem> varied_;             // of start and points, and of residuals

@@ -3,20 +3,10 @@
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
+#include "integrators/gradient/known_forces.h"
 #include "integrators/gradient/varied_system.h"
 
 namespace tress::integrators {
-
-/// Properties of the forces in a system.
-struct KnownForces {
-  /// Whether the SparseForm is all of dr/dv, which it is not where effects couple distant
-  /// points.
-  bool sparse = true;
-  /// Whether they are inertia, elasticity and viscous drag alone, which are at most
-  /// quadratic in velocities at fixed q. Others, such as contact, may turn within short
-  /// distances.
-  bool quadratic = false;
-};
 
 /// Derivatives of (r - G^T lambda, c), the equations of Dynamics, along directions at one
 /// state. Those at fixed q come from the matrices of SparseForm where the system has one,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contract/system.h"
+#include "integrators/gradient/known_forces.h"
 
 namespace tress::integrators {
 
@@ -98,9 +99,11 @@ struct ConstantsDerivative {
 /// The derivative of the constants by a parameter that changes nothing else in the
 /// residual but loads and the clamp: measured at three states, for random velocities. A
 /// parameter that places or moves the clamp always has loads, which may begin to act
-/// later. Empty: it changes other things, or the system has no constants.
+/// later, unless `forces` are quadratic: viscous drag always acts. Empty: it changes
+/// other things, or the system has no constants.
 std::optional<ConstantsDerivative> constants_derivative(System& system,
-                                                        const RunParameter& parameter);
+                                                        const RunParameter& parameter,
+                                                        KnownForces forces = {});
 
 /// The derivative of the natural strains by a parameter that changes nothing else,
 /// measured as above. Empty: it changes other things, or the system has no

@@ -128,6 +128,18 @@ TEST_P(TransposedFormOf, KnowsWhatActsThroughConstantsAndLoads) {
   EXPECT_EQ(largest_of(amplitude->by), 0);
   EXPECT_EQ(amplitude->clamp.systems.size(), central_stencil.at.size());
   EXPECT_TRUE(amplitude->moves_points);
+  EXPECT_FALSE(amplitude->loads.systems.empty());
+}
+
+// Contact may begin later. Viscous drag always acts, and the clamp's motion is known.
+TEST_P(TransposedFormOf, ViscousForcesGiveAClampNoLoads) {
+  if (GetParam() == "der") GTEST_SKIP() << "its clamp is not known in closed form";
+  const StrandRun run = hair(GetParam());
+  const auto found = constants_derivative(
+      *run.make(), run.parameter({"amplitude_m", 0.005, 0.005}), {.quadratic = true});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_FALSE(found->clamp.systems.empty());
+  EXPECT_TRUE(found->loads.systems.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, TransposedFormOf,
