@@ -238,7 +238,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
   search.go_on(work.until(sweep_share));
   search.sweep();
   const bool whole = !search.cut() && search.tried() == study.methods.size();
-  std::string how = fmt::format("{}: {} of {} methods climbed", whole ? "whole" : "cut",
+  std::string how = fmt::format("{}: {} of {} methods searched", whole ? "whole" : "cut",
                                 search.tried(), study.methods.size());
   search.go_on(work.until(last_share));
   bounded = false;  // what replaces a winner's choice may take longer
@@ -270,7 +270,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
     }
   }
   add_given(study, plan.advise ? deadline.remaining_s() : never, rows);
-  if (search.cut()) how += ", cut while settling";
+  if (search.cut()) how += ", cut while the best runs were compared";
   if (work.cut_by_clock()) how += ", by the clock";
   for (Row& row : rows) {
     row.set("runs", search.runs().size()).set("passed_over", search.passed_over());

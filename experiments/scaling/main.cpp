@@ -191,8 +191,9 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
   std::vector<std::string> lines;
   for (const auto& [series, row] : largest) {
     lines.push_back(fmt::format(
-        "{}: a step of {} strands of {} elements takes {:.3g} us{}", series,
-        row->text("strands"), row->text("elements"), 1e6 * row->number("cost_per_step_s"),
+        "{}: a step of {} strand{} of {} elements takes {:.3g} us{}", series,
+        row->text("strands"), row->number("strands") == 1 ? "" : "s",
+        row->text("elements"), 1e6 * row->number("cost_per_step_s"),
         row->has("exponent")
             ? fmt::format(", and grows with the power {:.2f}", row->number("exponent"))
             : ""));

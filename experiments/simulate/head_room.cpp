@@ -63,9 +63,10 @@ void check_room(const SceneOutline& outline, const SceneRunOptions& options) {
               : fmt::format("{} bits, {} SIMD lanes", bits_of(options.pack),
                             options.pack.lanes);
   tell(
-      "simulate: {}: a batch of {} strands of {} elements: about {:.0f} MB of memory, "
+      "simulate: {}: a batch of {} strand{} of {} element{}: about {:.0f} MB of memory, "
       "{:.0f} frames of {:.3g} MB before compression; {}\n",
-      scene.name, strands, elements, memory / 1e6, frames, frame / 1e6, engine);
+      scene.name, strands, strands == 1 ? "" : "s", elements, elements == 1 ? "" : "s",
+      memory / 1e6, frames, frame / 1e6, engine);
 }
 
 }  // namespace tress::experiments::scene_runs

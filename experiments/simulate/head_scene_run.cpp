@@ -124,10 +124,11 @@ class HeadSceneRun {
     const FailedStrand& first = lost.front();
     const bool unsolved = first.reason.starts_with("no solution");
     return fmt::format(
-        "{}{} of {} strands failed, the first at t = {:.9g} s, strand {}: {} "
+        "{}{} of {} strand{} failed, the first at t = {:.9g} s, strand {}: {} "
         "({}.failed.csv): {}{}",
-        unsolved ? "" : "unstable: ", lost.size(), run_->strands(), first.t, first.strand,
-        first.reason, options_.stem,
+        unsolved ? "" : "unstable: ", lost.size(), run_->strands(),
+        run_->strands() == 1 ? "" : "s", first.t, first.strand, first.reason,
+        options_.stem,
         remedy(scene_.integrator, scene_.options, Limit::none, scene_.model->id),
         unsolved && run_->lanes()
             ? ", or --as strands, which has more ways to solve a step"

@@ -326,8 +326,9 @@ std::string pictures_in_words(const SceneRun& run) {
   if (!run.head) return {};
   const HeadOutcome& head = *run.head;
   if (head.shown_strands == head.strands && head.shown_frames == run.frames) return {};
-  return fmt::format("; pictures show {} of {} strands and {} of {} frames",
-                     head.shown_strands, head.strands, head.shown_frames, run.frames);
+  return fmt::format("; pictures show {} of {} strand{} and {} of {} frames",
+                     head.shown_strands, head.strands, head.strands == 1 ? "" : "s",
+                     head.shown_frames, run.frames);
 }
 
 std::string in_words(std::string_view part, const ErrorBar& bar, const Scene& scene) {

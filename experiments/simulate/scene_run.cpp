@@ -140,9 +140,10 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     const FailedStrand& first = world->lost().front();
     run.end = SceneRun::End::failed;
     run.reason = fmt::format(
-        "{} of {} strands failed, the first at t = {:.9g} s, strand {}: {} "
+        "{} of {} strand{} failed, the first at t = {:.9g} s, strand {}: {} "
         "({}.failed.csv): {}",
-        run.lost, world->strands(), first.t, first.strand, first.reason, options.stem,
+        run.lost, world->strands(), world->strands() == 1 ? "" : "s", first.t,
+        first.strand, first.reason, options.stem,
         remedy(scene.integrator, scene.options, Limit::none, scene.model->id));
   }
   run.simulated_s = world->time();

@@ -66,9 +66,9 @@ std::string in_words(const std::vector<FittedStrand>& strands, const GroomFit& f
     beyond += one.error.largest > fit.tolerance(one.length()) * one.length() ? 1 : 0;
   }
   std::string text = fmt::format(
-      "{} strands fitted by {:g} to {:g} elements ({:.3g} on average); distance over the "
-      "length: rms {:.2g} %, largest {:.2g} % for half of them, at most {:.2g} %",
-      strands.size(), *std::ranges::min_element(elements),
+      "{} strand{} fitted by {:g} to {:g} elements ({:.3g} on average); distance over "
+      "the length: rms {:.2g} %, largest {:.2g} % for half of them, at most {:.2g} %",
+      strands.size(), strands.size() == 1 ? "" : "s", *std::ranges::min_element(elements),
       *std::ranges::max_element(elements),
       static_cast<double>(whole) / static_cast<double>(strands.size()),
       quantile(rms, 0.5), quantile(largest, 0.5), *std::ranges::max_element(largest));

@@ -56,11 +56,12 @@ void check_hair_size(const ByteStream& from, std::uint32_t strands, std::uint32_
                 "the file is damaged: write it again");
   }
   if (size == from.size()) return;
-  from.refuse(fmt::format("{} bytes where {} strands of {} points with array bits {} "
-                          "have {}",
-                          from.size(), strands, points, bits, size),
-              "the file is cut short, damaged or has more than its strands: write it "
-              "again");
+  from.refuse(
+      fmt::format("{} bytes where {} strand{} of {} points with array bits {} "
+                  "have {}",
+                  from.size(), strands, strands == 1 ? "" : "s", points, bits, size),
+      "the file is cut short, damaged or has more than its strands: write it "
+      "again");
 }
 
 /// Strands of these points each, three floats a point.

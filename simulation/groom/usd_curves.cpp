@@ -190,8 +190,9 @@ void UsdCurves::judge_counts(GroomFile& made) const {
         "such out");
   }
   if (unfit == 0) return;
-  made.notes.push_back(fmt::format(
-      "{} strands whose number of points does not suit their basis are left out", unfit));
+  made.notes.push_back(
+      fmt::format("{} strand{} left out: the number of points does not suit the basis",
+                  unfit, unfit == 1 ? "" : "s"));
 }
 
 void UsdCurves::note_lost_ends(GroomFile& made) const {

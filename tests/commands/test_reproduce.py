@@ -38,7 +38,7 @@ class Everything(Reproduce):
         self.table("wide", ["damping", "--full", "--out", "wide.csv"])
         self.ends(0, "^damping: 4 of 4", self.reproduce("damping"))
         self.assertEqual(self.log(), ["damping --quick", "damping --full --out results/wide.csv"])
-        self.ends(0, "1 tables: 4 of 4", self.reproduce("wide"))
+        self.ends(0, "1 table: 4 of 4", self.reproduce("wide"))
 
     def test_a_second_call_goes_on_after_an_interrupt(self):
         self.ends(0, "damping", self.reproduce("damping"))
@@ -92,7 +92,7 @@ class Differences(Reproduce):
         self.found(lines=[*changed[:3], ["new", 1, 1, 1, "ok", "", "f" * 16]])
         out = self.ends(3, "damping: 1 of 4 rows agree, 1 changed outcome, 1 changed value, "
                         "1 missing, 1 new\n", self.reproduce("damping"))
-        self.assertRegex(out, "1 tables: 1 of 4 rows agree, 1 changed outcome")
+        self.assertRegex(out, "1 table: 1 of 4 rows agree, 1 changed outcome")
         self.assertEqual([(row["run_id"], row["column"], row["verdict"], row["before"],
                            row["after"]) for row in self.differences()], [
             (IDS[1], "error_rel", "changed value", "0.5", "0.500001"),

@@ -608,7 +608,7 @@ TEST(HeadOfHair, IsTakenFromAThousandStrandsOnWhereTheSceneCanBeOne) {
   Toy toy;
   toy.write("head.toml", text({.count = 1000, .elements = 1}));
   const std::string automatic = "head.toml --out out --progress none";
-  EXPECT_THAT(toy.run(automatic).err, HasSubstr("a batch of 1000 strands of 1 elements"));
+  EXPECT_THAT(toy.run(automatic).err, HasSubstr("a batch of 1000 strands of 1 element:"));
   EXPECT_TRUE(toy.exists("out/head.h5"));
   toy.write("head.toml", text({.count = 999, .elements = 1}));
   EXPECT_THAT(toy.run(automatic).err, testing::Not(HasSubstr("a head of")));

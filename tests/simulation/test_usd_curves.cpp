@@ -225,7 +225,7 @@ TEST(UsdBasis, SaysWhichNumberOfPointsItNeeds) {
   const GroomFile left = read(cubic("bezier", 6) + cubic("bezier", 7), drop);
   EXPECT_EQ(left.lines.size(), 1u);
   EXPECT_EQ(left.lines.numbers[0], 1u);
-  EXPECT_THAT(left.notes.at(0), HasSubstr("1 strands whose number of points"));
+  EXPECT_THAT(left.notes.at(0), HasSubstr("1 strand left out: the number of points"));
   for (const char* wrap : {"periodic", "knotted"}) {
     EXPECT_THAT(refusal([&] { read(cubic("catmullRom", 6, wrap)); }), HasSubstr(wrap));
   }

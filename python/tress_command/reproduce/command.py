@@ -188,7 +188,7 @@ def compare(recipes, runs, release, results, commit, without, folder):
     if others:
         say(f"NOT OF THIS COMMIT: {' '.join(others)}; build their programs again")
     rows, agree = (sum(getattr(table, of) for table in judged) for of in ("rows", "agree"))
-    print(f"{len(judged)} tables: {agree} of {rows} rows agree"
+    print(f"{len(judged)} table{'' if len(judged) == 1 else 's'}: {agree} of {rows} rows agree"
           f"{', ' if counts(judged) else ''}{counts(judged)} -> {folder}/report.md")
     return not others and not any(table.bad() for table in judged)
 
