@@ -163,7 +163,7 @@ function refusal(file, text) {
   remove(other);
   assert.equal(status, 0, stderr);
   const [warning, summary, ...rest] = stderr.trim().split('\n');
-  assert.match(summary, /1 tables, 0 figures, 0 scenes, 1 warnings$/);
+  assert.match(summary, /1 table, 0 figures, 0 scenes, 1 warning$/);
   assert.deepEqual(rest, []);
   assert.match(warning, /^report: warning: .*; run the experiment again or remove the file$/);
   assert.match(page, /Not everything could be used/);

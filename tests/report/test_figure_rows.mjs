@@ -9,7 +9,10 @@ import {
   limit_spec,
   stability_limit,
 } from '../../experiments/report/figures/stability_limit.mjs';
-import { validation_cells } from '../../experiments/report/figures/validation.mjs';
+import {
+  validation_cells,
+  validation_findings,
+} from '../../experiments/report/figures/validation.mjs';
 import {
   orders_of,
   validation_orders,
@@ -140,6 +143,24 @@ test('FreeFlight_IsNoTestOfAModel', () => {
     cells.map(({ test: name }) => name),
     ['cantilever'],
   );
+});
+
+test('TestLeftOut_IsNeitherMetNorRefused', () => {
+  const row = { model: 'der', elements: 10, status: 'ok' };
+  const refused = { model: 'der', status: 'refused' };
+  const met = { error_rel: 0.001, accepted_error_rel: 0.01, judged: 'true', passed: 'true' };
+  const tables = {
+    validation: [
+      { ...row, ...met, test: 'cantilever' },
+      { ...refused, test: 'plectoneme', reason: 'takes minutes: left out by --quick' },
+      { ...refused, test: 'ring', reason: 'without twist' },
+    ],
+  };
+  assert.deepEqual(
+    validation_cells(tables).map(({ outcome }) => outcome),
+    ['within', 'left out', 'does not apply'],
+  );
+  assert.deepEqual(validation_findings(tables), ['`der` meets 1 of 1 tests (1 left out).']);
 });
 
 test('LowerBounds_AreNoLimits', () => {

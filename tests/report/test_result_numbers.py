@@ -258,6 +258,11 @@ class Queries(Made):
         self.assertRegex(self.say("validation.matrix", validation=[cell, {**cell, "status": "refused", "error_rel": ""}]),
                          r"2e-14 \(in part\)")
         self.assertRegex(self.say("validation.scores_table"), r"\| `der` \| 1 \| 1 \| `impact` \|")
+        left = {"test": "knot", "model": "der", "status": "refused", "reason": "takes minutes: left out by --quick"}
+        both = [{**cell, "model": "corde"}, {**cell, "model": "corde", "test": "knot"}, cell, left]
+        self.assertRegex(self.say("validation.matrix", validation=both), r"`knot` \| 1e-4 \| 2e-14 \| left out \|")
+        self.assertIn("`corde` meets the most: 2 of 2. `der` meets 1 of 1 (1 slow test left out).", self.say("validation.scores"))
+        self.assertIn("1 pair of model and test, of `knot`", self.say("validation.left_out"))
         self.assertRegex(self.say("friction.fits_table", calibrate=[
             {"data": "a_b", "signal": "s", "fit": "gamma", "integrator": "bdf2", "status": "ok",
              "internal_friction_kg_m3_s": 1e-10, "internal_friction_low_kg_m3_s": 9e-11,

@@ -8,6 +8,16 @@ import { cell_fills } from './palette.mjs';
 
 export const answered = (row) => is_number(row.error_rel);
 
+// --quick leaves out tests that take minutes on some models; alone, a model runs them.
+const left_out = (row) => String(row.reason ?? '').startsWith('takes minutes');
+
+// Why a cell has no error, and what it shows.
+function without_error(members, missing) {
+  if (missing.length > 0) return { outcome: 'no solution', label: '–' };
+  if (members.some(left_out)) return { outcome: 'left out', label: '…' };
+  return { outcome: 'does not apply', label: '' };
+}
+
 // One cell of the matrix: the worst error over the parameters that were judged, or why
 // there is none.
 function cell(members) {
@@ -25,12 +35,7 @@ function cell(members) {
     variant: variant ? String(variant).split('=').at(-1) : '',
     reason,
   };
-  if (counted.length === 0)
-    return {
-      ...shared,
-      outcome: missing.length > 0 ? 'no solution' : 'does not apply',
-      label: missing.length > 0 ? '–' : '',
-    };
+  if (counted.length === 0) return { ...shared, ...without_error(members, missing) };
   const worst = counted.reduce((a, b) => (b.error_rel > a.error_rel ? b : a));
   const within = counted.every((row) => is_set(row.passed));
   const failed = missing.some((row) => is_set(row.judged) || row.elements === finest);
@@ -65,19 +70,33 @@ const outcomes = {
   outside: ['outside the accepted error', cell_fills.strong],
   'not judged': ['outside, with fewer elements than it is judged at', cell_fills.light],
   'no solution': ['\u2013: no solution, or a run that failed', cell_fills.middle],
+  'left out': ['\u2026: left out by --quick, takes minutes', undefined],
   'does not apply': ['empty: does not apply to this model', undefined],
 };
 
-// By model: its tests that count, and those within the accepted error.
+// Cells without a judgement: white where a run is missing, grey where none is possible.
+const empty_fill = (id, theme) => (id === 'left out' ? theme.background : theme.grid);
+
+// By model: its tests that were judged, those within the accepted error, and the number left out.
 const scores_of = (tables) =>
   [...group_by(validation_cells(tables), (row) => row.name)]
     .map(([name, members]) => {
       const told = members.filter(
-        (row) => !['does not apply', 'not judged'].includes(row.outcome),
+        (row) => !['does not apply', 'left out', 'not judged'].includes(row.outcome),
       );
-      return { name, told, within: told.filter((row) => row.outcome === 'within') };
+      return {
+        name,
+        told,
+        within: told.filter((row) => row.outcome === 'within'),
+        left: members.filter((row) => row.outcome === 'left out').length,
+      };
     })
     .filter(({ told }) => told.length > 0);
+
+// A test that was left out is not met.
+const part = ({ told, within, left }) => within.length / (told.length + left);
+
+const left_out_text = ({ left }) => (left > 0 ? ` (${left} left out)` : '');
 
 // Cells as they are drawn: a failed run among others within the error is no error.
 export const drawn_cells = (tables) =>
@@ -87,17 +106,13 @@ const coded_name = ({ model, variant }) => code(model) + (variant ? `, ${variant
 
 // "456 of 499 pairs of model and test are within the accepted error; best: ..., worst: ..."
 function headline(tables) {
-  const scores = scores_of(tables).map(({ name, told, within }) => ({
-    name,
-    told: told.length,
-    within: within.length,
-  }));
+  const scores = scores_of(tables);
   if (scores.length === 0) return 'No test has a result';
-  const total = (field) => scores.reduce((sum, score) => sum + score[field], 0);
-  const part = (score) => score.within / score.told;
+  const total = (field) => scores.reduce((sum, score) => sum + score[field].length, 0);
   const best = minimum_by(scores, (score) => -part(score));
   const worst = minimum_by(scores, part);
-  const text = ({ name, told, within }) => `${name} meets ${within} of ${told}`;
+  const text = (score) =>
+    `${score.name} meets ${score.within.length} of ${score.told.length}${left_out_text(score)}`;
   return (
     `${total('within')} of ${total('told')} pairs of model and test are within the accepted error; ` +
     `${text(best)}${worst === best ? '' : `, ${text(worst)}`}`
@@ -106,7 +121,7 @@ function headline(tables) {
 
 export function validation_findings(tables) {
   const by_model = scores_of(tables);
-  const sentence = ({ told, within }) => {
+  const sentence = ({ told, within, left }) => {
     const wrong = told.filter((row) => row.outcome !== 'within');
     const list = wrong
       .map((row) =>
@@ -116,12 +131,12 @@ export function validation_findings(tables) {
       )
       .join(', ');
     return (
-      `${coded_name(told[0])} meets ${within.length} of ${told.length} tests` +
+      `${coded_name(told[0])} meets ${within.length} of ${told.length} tests${left_out_text({ left })}` +
       `${wrong.length > 0 ? `. Not met: ${list}` : ''}.`
     );
   };
   return by_model
-    .sort((a, b) => b.within.length - a.within.length)
+    .sort((a, b) => part(b) - part(a))
     .map(sentence);
 }
 
@@ -136,6 +151,7 @@ export const validation = {
     is the largest error in per cent of the measured quantity, over the parameters of the test, at
     the numbers of elements at which it is judged. Grey: the model's kinematics do not have the
     degrees of freedom of the test (a planar model has no twist); the table gives the reason.
+    White with dots: a test that takes minutes on this model, which --quick leaves out.
     Made from validation.csv.`,
 
   rows: drawn_cells,
@@ -173,7 +189,7 @@ export const validation = {
               title: null,
               scale: {
                 domain: known.map(([id]) => id),
-                range: known.map(([, [, look]]) => look?.fill ?? theme.grid),
+                range: known.map(([id, [, look]]) => look?.fill ?? empty_fill(id, theme)),
               },
               legend: {
                 orient: 'bottom',
@@ -219,6 +235,6 @@ export const validation = {
     return `Matrix of ${distinct(rows.map((row) => row.name)).length} models and
       ${distinct(rows.map((row) => row.test)).length} tests: ${count('within')} within the accepted
       error, ${count('outside')} outside, ${count('no solution')} without a solution,
-      ${count('does not apply')} that do not apply.`;
+      ${count('left out')} left out, ${count('does not apply')} that do not apply.`;
   },
 };

@@ -1,6 +1,6 @@
 """Cost of full sweeps over every row."""
 from .tables import records
-from .words import number, table
+from .words import counted, number, table
 
 
 def full_table(tables):
@@ -12,4 +12,9 @@ def full_table(tables):
 
 
 def full_hours(tables):
+    """Returns the core hours of the experiments of the table together."""
     return number(sum(tables["full_sweeps"]["core_hours"]))
+
+
+def full_count(tables):
+    return counted(len(tables["full_sweeps"]), "experiment")

@@ -172,6 +172,11 @@ def _found(tables, file, before):
     return found
 
 
+def _vector(name, unit):
+    """Returns the names of the columns of a vector."""
+    return ", ".join(f"{name}_{part}_{unit}" for part in "xyz")
+
+
 def series(tables):
     """Returns the columns of time series, as the sources that write them describe them."""
     strands = [
@@ -180,12 +185,15 @@ def series(tables):
         ("<effect>_j", "potential energy of the effect"),
         ("angle_<body>_rad", "angle by which strands have turned a body, about its axis"),
         ("speed_<body>_rad_per_s", "angular velocity of a body that strands turn"),
-        ("position_<body>_x_m, position_<body>_y_m, position_<body>_z_m", "centre of mass of a free body"),
+        (_vector("position_<body>", "m"), "centre of mass of a free body"),
         (", ".join(f"orientation_<body>_{part}" for part in "wxyz"),
          "quaternion that turns the world's axes to those of a free body"),
-        (", ".join(f"velocity_<body>_{part}_m_per_s" for part in "xyz"), "velocity of the centre of mass"),
-        (", ".join(f"spin_<body>_{part}_rad_per_s" for part in "xyz"), "angular velocity of a free body"),
-        ("force_<support>_x_n, force_<support>_y_n, force_<support>_z_n", "force of a support on the strand"),
+        (_vector("velocity_<body>", "m_per_s"), "velocity of the centre of mass"),
+        (_vector("spin_<body>", "rad_per_s"), "angular velocity of a free body"),
+        (_vector("force_<support>", "n"), "force of a support on the strand"),
+        (_vector("moment_<support>", "n_m"), "moment on the strand of a support that holds a direction, about the held point"),
+        (_vector("force_joint_<number>", "n"), "force of a joint on its end `b`"),
+        (_vector("moment_joint_<number>", "n_m"), "moment of a weld or hinge on its end `b`, about the point"),
     ]
     there = {column for columns, _ in strands for column in columns.split(", ")}
     heads = _found(tables, "experiments/simulate/head_series.cpp", r"\{")

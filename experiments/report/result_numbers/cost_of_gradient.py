@@ -2,7 +2,7 @@
 import numpy as np
 
 from .tables import first, groups, known, records
-from .words import must, number, percent, span, table
+from .words import must, number, percent, plain, span, table
 
 _COARSE = 10  # elements of the runs in time
 _OTHER_STEPS = 40  # of runs without the damped start, and with the elastic Jacobian
@@ -82,7 +82,7 @@ def backward_euler(tables):
     rows = _smooth(tables)
     rows = _finest(rows[rows["integrator"] == "backward_euler"])
     tip = rows["tip_error_rel"]
-    return (f"with {rows['steps'].iloc[0]} steps, the error of its gradient is {span(rows['gradient_error_rel'], percent)} on these "
+    return (f"with {plain(rows['steps'].iloc[0])} steps, the error of its gradient is {span(rows['gradient_error_rel'], percent)} on these "
             f"{rows['model'].nunique()} models. The error of its tip is {span(tip, percent)} of the length")
 
 
@@ -121,7 +121,7 @@ def kinked(tables):
     rows = _measured(tables, _DEFAULT)
     rows = _finest(rows[rows["model"].isin(_KINKED)])
     must(rows["linearizations_1_percent"].isna().all(), "kinked models do not reach 1 %")
-    return (f"{_kinked_names()} reach neither target: with {rows['steps'].iloc[0]} steps, the smallest error of their gradients is "
+    return (f"{_kinked_names()} reach neither target: with {plain(rows['steps'].iloc[0])} steps, the smallest error of their gradients is "
             f"{percent(rows['gradient_error_rel'].min())}. Every statement about errors in time leaves them out, unless it names them.")
 
 
@@ -139,7 +139,7 @@ def _by_method_and_steps(rows):
     for method, members in groups(rows, "integrator"):
         cells = {row["steps"]: f"{percent(row['tip_error_rel'])}, {percent(row['gradient_error_rel'])}" for row in records(members)}
         lines.append([f"`{method}`", *(cells.get(one, "") for one in steps)])
-    return table(["method", *(f"{one} steps" for one in steps)], lines)
+    return table(["method", *(f"{plain(one)} steps" for one in steps)], lines)
 
 
 def by_steps(tables):
@@ -153,7 +153,7 @@ def in_space(tables):
     counts = sorted(rows["elements"].unique())
     lines = [[model, *(percent(row["gradient_error_rel"]) for row in records(members.sort_values("elements")))]
              for model, members in groups(rows, "model")]
-    return table(["model", *(f"{count} elements" for count in counts)], lines)
+    return table(["model", *(f"{plain(count)} elements" for count in counts)], lines)
 
 
 def not_converging(tables):
@@ -209,7 +209,7 @@ def contact(tables):
     for (law, method), members in groups(rows, ["law", "integrator"]):
         cells = {row["steps"]: percent(row["gradient_error_rel"]) for row in records(members)}
         lines.append([law, f"`{method}`", *(cells.get(one, "") for one in steps), percent(_finest(members)["tip_error_rel"].iloc[0])])
-    return table(["law", "method", *(f"{one} steps" for one in steps), f"tip, {steps[-1]} steps"], lines)
+    return table(["law", "method", *(f"{plain(one)} steps" for one in steps), f"tip, {plain(steps[-1])} steps"], lines)
 
 
 def _exact(rows):
@@ -226,7 +226,7 @@ def contact_verdict(tables):
     fine = rows[(rows["integrator"] != "backward_euler") & rows["law"].str.startswith("regularised")]
     ratio = fine["gradient_error_rel"] / fine["tip_error_rel"]
     return (f"The gradient through regularised contact is exact for its run. But in a finer run, contacts open and close at other steps. "
-            f"With {rows['steps'].iloc[0]} steps and methods of higher order, its relative error is {span(ratio, lambda x: number(x, 2))} times "
+            f"With {plain(rows['steps'].iloc[0])} steps and methods of higher order, its relative error is {span(ratio, lambda x: number(x, 2))} times "
             f"that of the tip. The error depends irregularly on the step: compare runs with different steps.{_exact(rows)}")
 
 
@@ -247,7 +247,7 @@ def fit_by_backward_euler(tables):
     rows = _fits(tables)
     row = first(rows[(rows["integrator"] == "backward_euler") & (rows["steps"] == 2 * _OTHER_STEPS)])
     worst = max(_FITTED, key=lambda column: row[column])
-    return (f"With `backward_euler` and {row['steps']} steps, the fitted {_FITTED[worst]} is {percent(row[worst])} off, although the tip of the "
+    return (f"With `backward_euler` and {plain(row['steps'])} steps, the fitted {_FITTED[worst]} is {percent(row[worst])} off, although the tip of the "
             f"fitted run is within {percent(row['tip_error_rel'])} of the length of the record")
 
 

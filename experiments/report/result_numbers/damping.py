@@ -31,6 +31,22 @@ def not_monotone(tables):
     return f"A smaller loss at a longer step is no merit: {'; '.join(found)}"
 
 
+def order_two_loss(tables):
+    """Returns the losses of the other methods at the longest step, the least first, and the runs that ended early."""
+    rows = tables["damping"]
+    longest = rows["dt_s"].max()
+    rows = rows[(rows["dt_s"] == longest) & ~rows["integrator"].str.endswith("_euler")]
+    early = rows[rows["status"] != "ok"]
+    losses = {integrator: members["energy_lost_rel"]
+              for integrator, members in groups(rows[~rows["integrator"].isin(early["integrator"])], "integrator")}
+    (least, loss), *others = sorted(losses.items(), key=lambda one: one[1].abs().max())
+    must(least == "tr_bdf2", "the advised method loses least at the longest step")
+    ended = [f"`{row['integrator']}` on `{row['model']}` ({row['status']})" for row in records(early)]
+    return (f"At steps of {step(longest)}, `{least}` removes {span(loss, percent)} of the energy"
+            + "".join(f", `{integrator}` {span(one, percent)}" for integrator, one in others)
+            + (f". Runs that ended early: {', '.join(ended)}" if ended else ""))
+
+
 def euler_loss(tables):
     """Returns the range of losses of the Euler methods over all their steps."""
     rows = tables.ok_rows("damping", {})

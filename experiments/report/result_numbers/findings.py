@@ -82,7 +82,7 @@ def fields(tables):
 
 def cheapest(tables):
     levels = (f"error {number(level)}" for level in told(tables, "work_levels"))
-    return table(["problem", "integrators tried", *levels], told(tables, "cheapest"))
+    return table(["problem", "integrators with a finished run", *levels], told(tables, "cheapest"))
 
 
 def bdf_steps(tables):
@@ -90,4 +90,5 @@ def bdf_steps(tables):
 
 
 def orders(tables):
-    return table(["integrator", "problems", "median order", "lowest", "highest"], told(tables, "orders"))
+    return table(["integrator", "problems", "median order", "lowest", "highest"],
+                 [[f"`{integrator}`", *rest] for integrator, *rest in told(tables, "orders")])

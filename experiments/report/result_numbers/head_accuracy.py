@@ -65,7 +65,8 @@ def answers_table(tables):
 
 
 def by_hair(tables):
-    """Returns the settings that keep each target error for every motion of a kind of hair."""
+    """Returns, for each kind of hair and target error, the stricter part of the answers for every motion: the
+    larger number of elements and the shorter step."""
     rows = answers(tables)
     named = rows["scene"].str.extract(r"^(?P<shape>\w+)_(?P<variation>alike|varied)_\w+$")
     lines = []

@@ -74,6 +74,12 @@ def other_simulators_confirm(tables):
             f"links: a target below {percent(_FLOOR)} compares meshes, not methods.")
 
 
+def _times(ratio):
+    """Returns "1.2 times the time", or "the same time" where two digits do not differ."""
+    text = number(ratio)
+    return "the same time" if text == "1" else f"{text} times the time"
+
+
 def order_two(tables):
     """Returns how order 2 compares with order 1 of position-based steps with few sweeps."""
     found = tables.ok_rows("block_descent", {"part": "order"})
@@ -83,8 +89,8 @@ def order_two(tables):
         return "The table does not compare `xpbd_bdf2` with `xpbd` yet"
     must((pairs["error_rel_2"] < pairs["error_rel"]).all(), "order 2 is the less wrong at every step and number of sweeps")
     words = (f"With steps of {duration(row['dt_s'])} and {row['sweeps']} sweeps, the tip error is {percent(row['error_rel'])} with `xpbd` "
-             f"and {percent(row['error_rel_2'])} with `xpbd_bdf2`, in {number(row['wall_s_per_sim_s_2'] / row['wall_s_per_sim_s'])} times "
-             "the time" for row in records(pairs))
+             f"and {percent(row['error_rel_2'])} with `xpbd_bdf2`, in {_times(row['wall_s_per_sim_s_2'] / row['wall_s_per_sim_s'])}"
+             for row in records(pairs))
     return ("Position-based dynamics with steps of second order (`xpbd_bdf2`) are more accurate than those of first order (`xpbd`) at "
             "every step and number of sweeps tested. " + ". ".join(words))
 

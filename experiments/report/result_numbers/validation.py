@@ -20,6 +20,8 @@ def tests(tables):
 def _shown(cell):
     if cell is None or cell["outcome"] == "does not apply":
         return ""
+    if cell["outcome"] == "left out":
+        return "left out"
     if cell["outcome"] == "no solution":
         return "**no solution**"
     error, accepted = cell["error_pct"], cell["tolerance_pct"]
@@ -34,6 +36,11 @@ def _shown(cell):
 def _coded(cell):
     """Returns a model and its variant: "`der`" or "`der`, inextensible"."""
     return f"`{cell['model']}`" + (f", {cell['variant']}" if cell["variant"] else "")
+
+
+def _in_words(cell):
+    """Returns a model and its variant in a sentence: "`der`" or "inextensible `der`"."""
+    return " ".join(part for part in (cell["variant"], f"`{cell['model']}`") if part)
 
 
 def _id(cell):
@@ -68,33 +75,60 @@ def _missed(cell):
     return f"{_id(cell)} ({why})"
 
 
+def _part(scored):
+    """Returns the share of its tests that a model meets. A test that was left out is not met."""
+    return scored["met"] / (scored["ran"] + len(scored["left"]))
+
+
 def _scored(tables):
-    """Returns, for each model, the tests that it can run and how many of these it meets, the best model
-    first."""
-    all_cells = cells(tables)
-    judged = all_cells[~all_cells["outcome"].isin(["does not apply", "not judged"])]
+    """Returns, for each model, the tests that ran, how many of these it meets and those left out, the best
+    model first."""
     scored = []
-    for _, members in groups(judged, "name"):
-        met = members[members["outcome"] == "within"]
-        partly = [_id(cell) for cell in records(met) if cell["partly"] is True]
-        missed = [_missed(cell) for cell in records(members[members["outcome"] != "within"])]
-        scored.append({"name": _coded(members.iloc[0]), "all": len(members), "met": len(met), "partly": partly, "missed": missed})
-    return sorted(scored, key=lambda one: -one["met"] / one["all"])
+    for _, members in groups(cells(tables), "name"):
+        ran = members[~members["outcome"].isin(["does not apply", "left out", "not judged"])]
+        met = ran[ran["outcome"] == "within"]
+        scored.append({"name": _coded(members.iloc[0]), "in_words": _in_words(members.iloc[0]), "ran": len(ran), "met": len(met),
+                       "partly": [_id(cell) for cell in records(met) if cell["partly"] is True],
+                       "left": [_id(cell) for cell in records(members[members["outcome"] == "left out"])],
+                       "missed": [_missed(cell) for cell in records(ran[ran["outcome"] != "within"])]})
+    return sorted((one for one in scored if one["ran"] > 0), key=lambda one: -_part(one))
 
 
 def scores_table(tables):
-    return table(["model", "tests that it can run", "met", "of these, with some parameters refused", "not met, with the error"],
-                 [[one["name"], one["all"], one["met"], "<br>".join(one["partly"]), "<br>".join(one["missed"])]
+    return table(["model", "tests that ran", "met", "of these, with some parameters refused", "not met, with the error",
+                  "left out by `--quick`"],
+                 [[one["name"], one["ran"], one["met"], "<br>".join(one["partly"]), "<br>".join(one["missed"]), "<br>".join(one["left"])]
                   for one in _scored(tables)])
 
 
+def _joined(names):
+    return " and ".join(part for part in (", ".join(names[:-1]), names[-1]) if part)
+
+
+def _tests(one):
+    """Returns "38 of 38 (3 slow tests left out)"."""
+    return f"{one['met']} of {one['ran']}" + (f" ({counted(len(one['left']), 'slow test')} left out)" if one["left"] else "")
+
+
 def scores(tables):
-    """Returns the best and the last of all models."""
+    """Returns the best models, those that meet every test that ran although some were left out, and the last."""
     scored = _scored(tables)
-    best, last = scored[0], scored[-1]
+    last = scored[-1]
+    best = [one for one in scored if (one["met"], one["ran"], len(one["left"])) == (scored[0]["met"], scored[0]["ran"], len(scored[0]["left"]))]
+    whole = [one for one in scored if one not in best and one["met"] == one["ran"]]
     models = tables["validation"]["model"].nunique()
-    return (f"Of the {counted(models, 'model')} and {counted(len(scored) - models, 'variant')}, {best['name']} is the best: it meets "
-            f"{best['met']} of the {best['all']} tests that it can run. {last['name']} is last and meets {last['met']} of {last['all']}")
+    return " ".join([
+        f"Of the {counted(models, 'model')} and {counted(len(scored) - models, 'variant')}, {_joined([one['in_words'] for one in best])} "
+        f"{'meets' if len(best) == 1 else 'meet'} the most: {_tests(best[0])}.",
+        *(f"{one['in_words']} meets {_tests(one)}." for one in whole),
+        f"{last['in_words']} is last and meets {_tests(last)}"])
+
+
+def left_out(tables):
+    """Returns how many pairs of model and test `--quick` leaves out, and of which tests."""
+    left = [cell for cell in records(cells(tables)) if cell["outcome"] == "left out"]
+    names = list(dict.fromkeys(_id(cell) for cell in left))
+    return f"{counted(len(left), 'pair')} of model and test" + (f", of {_joined(names)}" if names else "")
 
 
 def order_points(tables):

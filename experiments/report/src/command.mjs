@@ -113,6 +113,8 @@ function write_figures(directory, drawn, warn) {
   return drawn.length - failed.length;
 }
 
+const counted = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
+
 async function report({ directory, out, figures, levels }, { template, render, say }) {
   const warnings = new Warnings(directory, say);
   const warn = (text, table) => warnings.add(text, table);
@@ -129,8 +131,8 @@ async function report({ directory, out, figures, levels }, { template, render, s
   const drawn = figures ? await render(objects, warnings) : [];
   const written = write_figures(directory, drawn, warn);
   say(
-    `${out}: ${count} tables, ${written} figures, ${scenes.length} scenes` +
-      (warnings.list.length > 0 ? `, ${warnings.list.length} warnings` : ''),
+    `${out}: ${counted(count, 'table')}, ${counted(written, 'figure')}, ${counted(scenes.length, 'scene')}` +
+      (warnings.list.length > 0 ? `, ${counted(warnings.list.length, 'warning')}` : ''),
   );
 }
 

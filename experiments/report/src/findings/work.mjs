@@ -52,7 +52,7 @@ function cheapest_sentences(rows) {
   });
 }
 
-// Rows of problem, integrators tried, and the cheapest of these at each level of error.
+// Rows of problem, integrators with a finished run above the reference's error, and the cheapest of these at each level of error.
 export const cheapest_table = (tables) =>
   [...group_by(usable(problem_rows(tables)), problem_name)].map(([problem, members]) => [
     problem,
@@ -115,7 +115,7 @@ function digits_sentences(rows) {
   const scored = rows.filter((row) => succeeded(row) && is_positive(row.scd));
   const parts = [...group_by(scored, (row) => row.scene)].map(([scene, members]) => {
     const best = minimum_by(members, (row) => -row.scd);
-    return `${spaced(scene)} ${best.scd.toFixed(1)} (${code(best.integrator)})`;
+    return `${code(scene)} ${best.scd.toFixed(1)} (${code(best.integrator)})`;
   });
   return parts.length > 0 ? [`Most correct digits: ${parts.join(', ')}.`] : [];
 }
