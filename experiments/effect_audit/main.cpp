@@ -17,6 +17,7 @@
 #include "simulation/files/parse.h"
 #include "simulation/run/numbers.h"
 #include "simulation/run/tip_paths.h"
+#include "simulation/scene/strand_tables.h"
 #include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::effect_audit {
@@ -168,6 +169,20 @@ void run(const Work& work, Row& row) {
   }
 }
 
+/// Effects are judged by the paths of tips: a support must not prescribe one.
+void refuse_held_tips(const Scene& scene) {
+  if (scene.tables == nullptr) return;
+  for (const simulation::Table& support : scene.tables->supports) {
+    const Parameters& p = support.values();
+    const std::string_view at = p.word("at");
+    const bool held = p.word("kind") != "direction" &&
+                      p.number("stiffness_n_per_m") == 0 && norm(p.vec("slide")) == 0;
+    refuse_if(held && (at == "tip" || at == "1" || at == "1.0"),
+              "effects are judged by the paths of tips, and a support holds one",
+              support.place("at"), "leave that support out, or hold another point");
+  }
+}
+
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
   const double accuracy = settings.experiment().number("accuracy");
@@ -175,6 +190,7 @@ std::vector<Case> cases(const CommandLine& line) {
   const auto strands = static_cast<std::size_t>(settings.experiment().whole("strands"));
   const auto files = listed_files(settings.experiment().word("scenes"), "scenes");
   for (const Scene& given : read_scenes(files)) {
+    refuse_held_tips(given);
     const Scene scene = thinned(given, strands);
     if (scene.strands.empty()) {
       throw InputError("nothing to leave out: the model brings its own effects",

@@ -138,18 +138,19 @@ class HeadSceneRun {
   /// Steps of the head, or with a tolerance those of its strands.
   Stats work() {
     Stats all;
-    all.steps = steps_;
-    if (run_->lanes() && scene_.options.tolerance == 0) return all;
+    const bool together = run_->lanes() && scene_.options.tolerance == 0;
+    if (together) all.steps = steps_;
     done_ += run_->work();
-    all.steps = 0;
     for (const models::HeadWork& done : ranks_.of_each(done_)) {
-      all.steps += done.steps;
+      if (!together) all.steps += done.steps;
       all.rejected_by_error += done.rejected_by_error;
       all.rejected_by_newton += done.rejected_by_newton;
       all.replaced += done.replaced;
       all.newton_iterations += done.iterations + done.again_iterations;
-      all.rejected += run_->lanes() ? done.rejected_by_error + done.rejected_by_newton
-                                    : done.shortened;
+      all.rejected += done.shortened;  // of systems, all
+      if (run_->lanes()) {
+        all.rejected += done.rejected_by_error + done.rejected_by_newton;
+      }
     }
     return all;
   }
@@ -323,7 +324,8 @@ class HeadSceneRun {
   /// What the run has lost in steps of h, all at t, or each at the end of its step.
   void lose(std::optional<double> t, double h) {
     for (const auto& loss : run_->lost()) {
-      lost_.lose({loss.strand, t.value_or(loss.time + h), std::string(loss.reason)});
+      lost_.lose({outline_.series->number(loss.strand), t.value_or(loss.time + h),
+                  std::string(loss.reason)});
     }
   }
 

@@ -227,13 +227,16 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   options.ranks = &ranks;
   options.heartbeat = &heartbeat;
   heartbeat.doing(scene.name + ": preparing its run");
-  std::error_code ignored;  // what a run before has left would only mislead
+  std::error_code ignored;
+  const bool goes_on =
+      a.resume && std::filesystem::exists(options.stem + ".state", ignored);
+  // What a run before has left would only mislead; a saved one is checked first.
   for (const char* ending :
        {".errors.csv", ".gradient.csv", ".h5", ".xdmf", ".failed.csv", ".rest.csv"}) {
     const std::string_view what = ending;
     const bool of_strands = what == ".errors.csv" || what == ".gradient.csv";
     if (job.head && !of_strands && what != ".rest.csv") continue;
-    if (!ranks.first()) continue;
+    if (!ranks.first() || goes_on) continue;
     std::filesystem::remove(options.stem + ending, ignored);
   }
   std::optional<Pilot> tried;
@@ -254,6 +257,7 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   }
   RunKey key;
   key.add("scene", contents_checksum({file}));
+  key.add("way to run", job.head ? "batch" : "strands");
   key.add("guard", scene.guard ? "on" : "off");
   key.add("plug-ins", plugins_text());
   if (job.elements > 0) key.add("elements", std::to_string(job.elements));

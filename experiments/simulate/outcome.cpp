@@ -184,8 +184,11 @@ Row outcome(const Scene& scene, const SceneRun& run) {
     row.set("exchanges", run.exchanges.accepted);
     row.set("rejected_exchanges", run.exchanges.rejected);
   }
-  row.set("residuals", work.residuals).set("linearizations", work.linearizations);
-  row.set("solves", work.solves).set("newton_iterations", work.newton_iterations);
+  if (!run.head) {  // strands of a batch count their iterations alone
+    row.set("residuals", work.residuals).set("linearizations", work.linearizations);
+    row.set("solves", work.solves);
+  }
+  row.set("newton_iterations", work.newton_iterations);
   if (run.dissipation) {
     row.set("method_dissipated_j", run.dissipation->dissipated);
     row.set("method_dissipated_bound_j", run.dissipation->uncertain);

@@ -137,7 +137,9 @@ SceneRun run_scene(const Scene& scene, const RunKey& key, const SceneRunOptions&
     }
   }
   if (run.lost > 0 && run.end != SceneRun::End::failed) {
-    const FailedStrand& first = world->lost().front();
+    const FailedStrand& first = *std::ranges::min_element(
+        world->lost(), {},
+        [](const FailedStrand& one) { return std::pair(one.t, one.strand); });
     run.end = SceneRun::End::failed;
     run.reason = fmt::format(
         "{} of {} strand{} failed, the first at t = {:.9g} s, strand {}: {} "

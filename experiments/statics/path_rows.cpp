@@ -22,8 +22,8 @@ constexpr Column columns_of_paths[] = {
     {"point", "number of the point along the path, from 0"},
     {"event",
      "start; limit_point: the parameter turns back; bifurcation: another eigenvalue "
-     "crosses 0; branch: the path leaves a bifurcation; closed: the path is back at the "
-     "first point of its branch; end. Empty: none"},
+     "crosses 0; branch: the path leaves a bifurcation; end. closed: the path is back at "
+     "the first point of its branch. Empty: none"},
     {"parameter", "value of the parameter"},
     {"unit",
      "unit of the parameter. 1: a factor on the load of the scene; s: time of the "

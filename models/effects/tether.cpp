@@ -146,12 +146,16 @@ double Tether::next_breakpoint(double t) const noexcept {
   return next;
 }
 
+/// Lengths are sums whose order differs: where a place lies between two points, rounding
+/// does not choose between them.
 std::size_t Tether::held(const Points& p) const {
+  constexpr double rounding = 1e-12;
   double total = 0;
   for (const double length : p.length) total += length;
   double sum = 0;
   std::size_t i = 0;
-  while (i + 1 < p.length.size() && (sum += p.length[i]) < s_.at * total) ++i;
+  while (i + 1 < p.length.size() && (sum += p.length[i]) < (s_.at - rounding) * total)
+    ++i;
   return i;
 }
 

@@ -8,6 +8,7 @@
 #include "contract/input_error.h"
 #include "math/gauss_legendre.h"
 #include "models/reduced/pitfalls.h"
+#include "models/reduced/winding.h"
 #include "models/strand/geometry.h"
 #include "models/strand/rod_joint.h"
 
@@ -32,8 +33,8 @@ constexpr Parameter own_parameters[] = {
      .help = "rotational inertia of the section about the tangent",
      .choices = "on|off"},
     {.name = "quadrature",
-     .help = "Gauss-Legendre points per element; 0: chosen by the angle that the element "
-             "winds",
+     .help = "Gauss-Legendre points per element; 0: chosen by the largest angle that an "
+             "element winds, of all strands with the same number of elements",
      .number = 0,
      .min = 0,
      .max = 64,
@@ -213,6 +214,25 @@ int clothoid_points(double angle) {
                        : 4 * static_cast<int>(std::ceil((angle + 8) / 4));
 }
 
+double largest_winding(const Strand& strand, bool linear) {
+  double winding = 0;
+  for (const Segment& segment : strand.segments) {
+    for (const auto& [mean, half] :
+         {LinearStrain{segment.natural, segment.natural_half},
+          LinearStrain{segment.initial, segment.initial_half}}) {
+      winding =
+          std::max(winding, segment.length * (norm(mean) + (linear ? norm(half) : 0)));
+    }
+  }
+  return winding;
+}
+
+int points_of_segment(Unknown unknown, double angle) {
+  if (unknown == Unknown::joint_angle) return Pack::lanes;
+  return unknown == Unknown::linear_curvature ? clothoid_points(angle)
+                                              : quadrature_points(angle);
+}
+
 double reduced_scale(const Strand& strand, bool joints) {
   return joints ? 1 / static_cast<double>(strand.segments.size()) : 1 / strand.length();
 }
@@ -243,19 +263,9 @@ ReducedStrand reduced_strand(const Strand& strand, Unknown unknown,
   reduced.method = options.jacobian == ReducedJacobian::elastic_local
                        ? TreeMethod::elastic_local
                        : options.method;
-  double winding = 0;
-  for (const Segment& segment : strand.segments) {
-    for (const auto& [mean, half] :
-         {LinearStrain{segment.natural, segment.natural_half},
-          LinearStrain{segment.initial, segment.initial_half}}) {
-      winding =
-          std::max(winding, segment.length * (norm(mean) + (linear ? norm(half) : 0)));
-    }
-  }
-  const int points = options.quadrature > 0 ? options.quadrature
-                     : joints               ? Pack::lanes
-                     : linear               ? clothoid_points(winding)
-                                            : quadrature_points(winding);
+  const int points = options.quadrature > 0
+                         ? options.quadrature
+                         : points_of_segment(unknown, largest_winding(strand, linear));
   for (std::size_t i = 0; i < strand.segments.size(); ++i) {
     const Segment& from = strand.segments[i];
     ReducedSegment segment;

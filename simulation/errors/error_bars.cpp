@@ -12,6 +12,7 @@
 #include "simulation/run/remedy.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
+#include "simulation/scene/strand_tables.h"
 #include "simulation/scene_changes/changes.h"
 
 namespace tress::simulation {
@@ -282,7 +283,7 @@ ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int thr
 }
 
 ErrorBar space_error(const Scene& scene, int threads) try {
-  if (scene.tables == nullptr) {
+  if (!describe_strands(scene.tables.get())) {
     return missing("the model brings its own elements, which cannot be doubled");
   }
   const double falls = std::pow(2, scene.model->order);  // the error, by doubling

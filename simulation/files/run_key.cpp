@@ -81,7 +81,7 @@ void RunKey::check(std::string_view found, const std::string& file) const {
     if (!other.is_object() || !other.contains(name) || !other[name].is_string()) break;
     const auto was = other[name].get<std::string>();
     if (was == value) continue;
-    problem = "it had other " + name;
+    problem = "it had another " + name;
     if (was.size() + value.size() <= longest_shown) {
       problem += fmt::format(" ('{}', now '{}')", was, value);
     }

@@ -10,15 +10,21 @@
 #include "models/strand_copies.h"
 #include "simulation/rest/supported_start.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene_changes/strand_options.h"
 
 namespace tress::simulation {
 namespace {
 
 using integrators::RunParameter;
 
-/// The model's options with the exact Jacobian.
-Parameters exact_options(const Scene& scene) {
-  Parameters options = scene.model_options;
+/// The model's options of a strand.
+Parameters options_of(const Scene& scene, std::size_t strand) {
+  return StrandOptions(scene).of(scene.strands[strand]);
+}
+
+/// The same with the exact Jacobian.
+Parameters exact_options(const Scene& scene, std::size_t strand) {
+  Parameters options = options_of(scene, strand);
   for (const Parameter& p : scene.model->parameters) {
     if (p.name == jacobian_parameter.name) {
       options.set(p.name, words_of(jacobian_parameter.choices).front());
@@ -67,11 +73,11 @@ std::vector<double> gap_at_start(System& system) {
 }  // namespace
 
 std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
-  return on_supports(scene, strand, scene.model_options);
+  return on_supports(scene, strand, options_of(scene, strand));
 }
 
 std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand) {
-  return on_supports(scene, strand, exact_options(scene));
+  return on_supports(scene, strand, exact_options(scene, strand));
 }
 
 integrators::KnownForces known_forces(const Scene& scene) {
@@ -81,8 +87,8 @@ integrators::KnownForces known_forces(const Scene& scene) {
 
 std::unique_ptr<System> copies_of(const Scene& scene, std::size_t strand) {
   if (SceneSupports(scene).change(strand)) return nullptr;
-  return models::strand_copies(*scene.model, scene.strands[strand], scene.model_options,
-                               make_effects(scene));
+  return models::strand_copies(*scene.model, scene.strands[strand],
+                               options_of(scene, strand), make_effects(scene));
 }
 
 std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,

@@ -18,6 +18,7 @@
 #include "simulation/head/replicated_head.h"
 #include "simulation/rest/held_shape.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_changes/strand_options.h"
 #include "simulation/threads/crew.h"
 
 namespace tress::simulation {
@@ -66,15 +67,10 @@ std::unique_ptr<Head> empty_head(const Scene& scene, const HeadOptions& options,
   return steps_chains(scene) ? chain_head(options, pack) : helix_head(options, pack);
 }
 
-/// Points of an element that winds by so much, as reduced_strand() takes them.
-int points_of(const Scene& scene, double winding) {
-  if (steps_clothoids(scene)) return models::clothoid_points(winding);
-  return steps_chains(scene) ? 4 : models::quadrature_points(winding);
-}
 /// Whether the points of an element that winds by so much are too many for lanes.
 bool too_curved(const Scene& scene, double winding) {
-  return steps_clothoids(scene) && scene.model_options.whole("quadrature") == 0 &&
-         points_of(scene, winding) > models::most_points_of_element;
+  return steps_clothoids(scene) &&
+         chosen_points(scene, winding) > models::most_points_of_element;
 }
 
 /// Strands of a scene as a series.
@@ -93,24 +89,16 @@ struct Extent {
     length = std::max(length, other.length);
     winding = std::max(winding, other.winding);
   }
-  /// `linear`: curvature is linear in an element.
-  void include(const Strand& strand, bool linear) {
+  void include(const Scene& scene, const Strand& strand) {
     length = std::max(length, strand.length());
-    for (const Segment& segment : strand.segments) {
-      for (const auto& [mean, half] :
-           {models::LinearStrain{segment.natural, segment.natural_half},
-            models::LinearStrain{segment.initial, segment.initial_half}}) {
-        winding =
-            std::max(winding, segment.length * (norm(mean) + (linear ? norm(half) : 0)));
-      }
-    }
+    winding = std::max(winding, largest_winding(scene, strand));
   }
 };
 
 /// What has to be known of all strands of a scene before any is made into a head's; each
 /// rank looks at its share of them.
 template <class Strands>
-Extent extent_of(const Strands& series, bool linear, Crew& crew, Ranks& ranks,
+Extent extent_of(const Scene& scene, const Strands& series, Crew& crew, Ranks& ranks,
                  std::span<Vec> roots) {
   const auto rank = static_cast<std::size_t>(ranks.rank()),
              size = static_cast<std::size_t>(ranks.size());
@@ -119,7 +107,7 @@ Extent extent_of(const Strands& series, bool linear, Crew& crew, Ranks& ranks,
   in_parts(crew, first(rank), first(rank + 1), parts,
            [&](std::size_t k, std::size_t part) {
              const Strand& strand = series.strand(k);
-             extents[part].include(strand, linear);
+             extents[part].include(scene, strand);
              if (!roots.empty()) roots[k] = strand.root.position;
            });
   Extent all;
@@ -152,7 +140,6 @@ void add_in_lanes(const Scene& scene, const Strands& series, const HeadPack& pac
                   const Extent& all, Crew& crew, Ranks& ranks, SceneHead& to) {
   HeadOptions options = options_of(scene);
   options.longest = all.length;
-  if (options.points == 0) options.points = points_of(scene, all.winding);
   const Strand strand_0 = series.strand(0);
   options.line_density =
       strand_0.material.density * strand_0.segments.front().section.area();
@@ -250,19 +237,22 @@ void watch_bodies(const Scene& scene, SceneHead& to) {
 
 /// make_head() for a StrandSeries, or for Held strands.
 template <class Strands>
-SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pack,
+SceneHead head_of(const Scene& given, const Strands& series, const HeadPack& pack,
                   int threads, Ranks& ranks, std::span<const double> cost) {
   Crew crew(threads);
   const bool divided = ranks.size() > 1;
   if (divided && series.size() < static_cast<std::size_t>(ranks.size())) {
     throw InputError(fmt::format("{} strands for {} ranks", series.size(), ranks.size()),
-                     scene.name, "give fewer ranks");
+                     given.name, "give fewer ranks");
   }
   // Strands that may touch each other lie beside each other in memory, too.
-  const bool by_roots = divided || scene.interaction() != nullptr;
+  const bool by_roots = divided || given.interaction() != nullptr;
   std::vector<Vec> roots(by_roots ? series.size() : 0);
-  const Extent all =
-      extent_of(series, steps_clothoids(scene), crew, ranks, std::span(roots));
+  const Extent all = extent_of(given, series, crew, ranks, std::span(roots));
+  Scene scene = given;
+  if (const int points = chosen_points(given, all.winding); points > 0) {
+    scene.model_options.set("quadrature", std::to_string(points));
+  }
   const std::vector<double> equal(cost.empty() ? roots.size() : 0, 1);
   SceneHead made;
   made.division = by_roots ? std::make_shared<HeadDivision>(
@@ -271,7 +261,7 @@ SceneHead head_of(const Scene& scene, const Strands& series, const HeadPack& pac
                            : std::make_shared<HeadDivision>(series.size());
   made.guarded = scene.guard;
   const bool narrow = pack.number == models::HeadNumber::float32;
-  if (no_lanes(scene, pack.number) || (!narrow && too_curved(scene, all.winding))) {
+  if (no_lanes(scene, pack.number) || (!narrow && too_curved(given, all.winding))) {
     replicate(scene, series, crew, made);
   } else {
     add_in_lanes(scene, series, pack, all, crew, ranks, made);

@@ -52,7 +52,7 @@ void spin_together(std::vector<Strand>& strands) {
 
 StrandMaker::StrandMaker(const Scene& scene)
     : model_(scene.model),
-      model_options_(scene.model_options),
+      model_options_(scene),
       method_(&find_integrator(scene.integrator)),
       options_(scene.options),
       effects_(make_effects(scene)),
@@ -90,7 +90,8 @@ Effects StrandMaker::acting(const StrandToMake& strand,
 std::unique_ptr<System> StrandMaker::metered(
     const StrandToMake& strand,
     std::vector<std::shared_ptr<const Metered>>& meters) const {
-  return model_->on_strand(strand.strand, model_options_, acting(strand, meters));
+  return model_->on_strand(strand.strand, model_options_.of(strand.strand),
+                           acting(strand, meters));
 }
 
 SteppedSystem StrandMaker::one(const StrandToMake& strand, std::size_t number) const {
@@ -153,7 +154,8 @@ std::optional<SteppedSystem> StrandMaker::together(std::span<const StrandToMake>
     each.push_back(strand.strand);
     effects.push_back(acting(strand, meters));
   }
-  auto system = model_->on_strands(each, model_options_, std::move(effects));
+  auto system =
+      model_->on_strands(each, model_options_.of(each.front()), std::move(effects));
   if (system == nullptr) return {};
   SteppedSystem made(std::move(system));
   made.meters = std::move(meters);

@@ -11,6 +11,7 @@
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/scene.h"
 #include "simulation/scene/support_table.h"
+#include "simulation/scene_changes/strand_options.h"
 
 namespace tress::simulation {
 
@@ -67,7 +68,7 @@ class StrandMaker {
                  std::vector<std::shared_ptr<const Metered>>& meters) const;
 
   const ModelEntry* model_;
-  Parameters model_options_;
+  StrandOptions model_options_;
   const IntegratorEntry* method_;
   Options options_;
   Effects effects_;

@@ -54,7 +54,9 @@ constexpr Parameter file_keys[] = {
     {.name = "bad_strands",
      .help = "file: treatment of strands with fewer than two points, repeated points, or "
              "points that are not finite. In a .usda also of strands with a number of "
-             "points that does not suit their basis. drop: left out, and counted",
+             "points that does not suit their basis. drop: left out, and counted. Of "
+             "repeated "
+             "points only the second is left out",
      .choices = "refuse|drop"},
     {.name = "hidden_strands",
      .help =

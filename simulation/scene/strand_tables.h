@@ -36,6 +36,11 @@ struct StrandTables {
   std::shared_ptr<const Skin> skin = {};  // surface that carries roots, or null
 };
 
+/// Returns whether there are tables from which the strands can be made again.
+inline bool describe_strands(const StrandTables* tables) {
+  return tables != nullptr && !tables->sources.empty();
+}
+
 /// Strands of a scene, divided into elements.
 struct CutStrands {
   std::vector<Strand> strands;      // strands that are simulated
@@ -76,6 +81,8 @@ class StrandSeries {
   std::size_t source(std::size_t k) const;
   /// First strand of each of these tables, and the end; for a series of all.
   std::span<const std::size_t> first() const { return first_; }
+  /// Returns the number of strand k among all that the tables describe.
+  std::size_t number(std::size_t k) const { return some_.empty() ? k : some_[k]; }
   /// Makes all strands.
   CutStrands all() const;
   /// The fits of all grooms from files.
@@ -89,9 +96,6 @@ class StrandSeries {
   /// `fits`: those of an equal series, or none.
   StrandSeries(std::shared_ptr<const StrandTables> tables, const RootMotion& head,
                std::uint64_t seed, StrandLimits most, const Fits& fits);
-  /// Among all that the tables describe.
-  std::size_t number(std::size_t k) const { return some_.empty() ? k : some_[k]; }
-
   std::shared_ptr<const StrandTables> tables_;
   RootMotion head_;
   std::optional<FreeRoot> free_root_;

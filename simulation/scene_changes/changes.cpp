@@ -6,7 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "contract/input_error.h"
 #include "simulation/groom/guide_choice.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene_changes/typical_strands.h"
@@ -43,9 +45,36 @@ Ingredient mode(const std::string& name, const std::string& word) {
           {}};
 }
 
+void set_driven(Scene& scene, DrivenTables driven) {
+  if (scene.tables == nullptr) return;
+  auto tables = std::make_shared<StrandTables>(*scene.tables);
+  tables->driven = std::move(driven);
+  scene.tables = std::move(tables);
+}
+
+/// Table `i` of a list in [effects]: `name`, `name`_2, ...
+Ingredient driven(const std::string& name, std::vector<Table> DrivenTables::*list,
+                  std::size_t i) {
+  return {i == 0 ? name : name + "_" + std::to_string(i + 1),
+          [list, i](const Scene& from) {
+            Scene changed = from;
+            DrivenTables left = from.tables->driven;
+            (left.*list).erase((left.*list).begin() + static_cast<std::ptrdiff_t>(i));
+            set_driven(changed, std::move(left));
+            return changed;
+          },
+          [list, i](const Scene& from) {
+            Scene changed = bare(from);
+            DrivenTables alone;
+            (alone.*list).push_back((from.tables->driven.*list)[i]);
+            set_driven(changed, std::move(alone));
+            return changed;
+          }};
+}
+
 template <class Change>
 Scene cut_anew(Scene scene, const Change& changed) {
-  if (scene.tables == nullptr) {
+  if (!describe_strands(scene.tables.get())) {
     throw std::logic_error("strands without a table cannot be remeshed");
   }
   auto tables = std::make_shared<StrandTables>(changed(*scene.tables));
@@ -69,6 +98,11 @@ Scene with_grooms(Scene scene, const Change& change) {
     }
     return tables;
   });
+}
+
+/// Of [[supports]].
+std::size_t strand_of(const Table& support) {
+  return static_cast<std::size_t>(support.values().whole("strand"));
 }
 
 void set_whole(Table& table, const std::string& key, std::size_t value) {
@@ -127,7 +161,7 @@ Scene with_elements_at_rest(Scene scene, int elements) {
 }
 
 bool may_cut_at_rest(const Scene& scene) {
-  return scene.tables != nullptr &&
+  return describe_strands(scene.tables.get()) &&
          std::ranges::all_of(scene.strands,
                              [](const Strand& strand) { return !strand.free_root; }) &&
          std::ranges::all_of(scene.tables->sources, [](const StrandSource& source) {
@@ -181,7 +215,11 @@ std::vector<std::size_t> guides_of(const Scene& scene, std::size_t guides) {
 
 Scene with_strands(Scene scene, std::vector<Strand> strands) {
   scene.strands = std::move(strands);
-  scene.tables.reset();
+  if (scene.tables != nullptr) {
+    auto tables = std::make_shared<StrandTables>(*scene.tables);
+    tables->sources.clear();
+    scene.tables = std::move(tables);
+  }
   return scene;
 }
 
@@ -202,6 +240,15 @@ std::vector<Ingredient> ingredients(const Scene& scene) {
                      return changed;
                    }});
   }
+  if (scene.tables != nullptr) {
+    const DrivenTables& of = scene.tables->driven;
+    for (std::size_t i = 0; i < of.moments.size(); ++i) {
+      all.push_back(driven("point_moment", &DrivenTables::moments, i));
+    }
+    for (std::size_t i = 0; i < of.shapes.size(); ++i) {
+      all.push_back(driven("natural_shape", &DrivenTables::shapes, i));
+    }
+  }
   if (scene.model_options.knows("modes")) {
     const std::string_view modes = scene.model_options.word("modes");
     if (modes == "bend_twist") all.push_back(mode("mode twist", "bend"));
@@ -213,11 +260,12 @@ std::vector<Ingredient> ingredients(const Scene& scene) {
 
 Scene bare(Scene scene) {
   scene.effects.clear();
+  set_driven(scene, {});
   return scene;
 }
 
 Scene thinned(Scene scene, std::size_t most) {
-  if (scene.strands_touch()) return scene;
+  if (scene.strands_touch() || SceneJoints(scene).any()) return scene;
   if (scene.strands.size() <= most) return scene;
   const auto typical = typical_strands(scene.strands, most);
   return only(std::move(scene), typical);
@@ -227,7 +275,20 @@ Scene only(Scene scene, const std::vector<std::size_t>& strands) {
   std::vector<Strand> chosen;
   chosen.reserve(strands.size());
   for (const std::size_t i : strands) chosen.push_back(scene.strands[i]);
-  return with_strands(std::move(scene), std::move(chosen));
+  scene = with_strands(std::move(scene), std::move(chosen));
+  if (scene.tables == nullptr) return scene;
+  refuse_if(!scene.tables->joints.empty(), "some of the strands that [[joints]] join",
+            "scene " + scene.name, "take all strands, or a scene without [[joints]]");
+  StrandTables tables = *scene.tables;
+  std::erase_if(tables.supports, [&](const Table& support) {
+    return std::ranges::count(strands, strand_of(support)) == 0;
+  });
+  for (Table& support : tables.supports) {
+    const auto number = std::ranges::find(strands, strand_of(support)) - strands.begin();
+    set_whole(support, "strand", static_cast<std::size_t>(number));
+  }
+  scene.tables = std::make_shared<const StrandTables>(std::move(tables));
+  return scene;
 }
 
 Scene refined(Scene scene) {

@@ -56,7 +56,8 @@ Scene with_guides(Scene scene, std::size_t guides);
 /// Returns the indices of these guides among the strands of every_strand().
 std::vector<std::size_t> guides_of(const Scene& scene, std::size_t guides);
 
-/// The scene with other strands, which no table describes.
+/// The scene with other strands, which no table describes, in the place of its own. What
+/// [[supports]], [[joints]], moments and natural shapes over time say holds for them.
 Scene with_strands(Scene scene, std::vector<Strand> strands);
 
 /// The scene without any effect.
@@ -64,7 +65,8 @@ Scene bare(Scene scene);
 
 /// At most `most` typical strands; all if strands touch each other.
 Scene thinned(Scene scene, std::size_t most);
-/// The scene with only these strands.
+/// The scene with only these strands and what acts on them. Throws InputError if joints
+/// join strands.
 Scene only(Scene scene, const std::vector<std::size_t>& strands);
 
 /// Segments divided into halves of the same shape, steps halved: the difference from the

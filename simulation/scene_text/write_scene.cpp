@@ -180,7 +180,7 @@ std::string toml_value(const Parameter& parameter, std::string_view text) {
 }
 
 std::string scene_text(const Scene& scene) {
-  if (scene.tables == nullptr && !scene.strands.empty()) {
+  if (!describe_strands(scene.tables.get()) && !scene.strands.empty()) {
     throw std::logic_error("strands without a table cannot be written");
   }
   std::string text;

@@ -36,9 +36,7 @@ constexpr double newton = 1e-6;
 constexpr double nearby = 1e-9;
 // of all lengths and moduli must move strands by a hundredth of the difference. Lanes
 // differ from strands by less than that change a hundred times: Newton's method ends at
-// 1e-10 of the typical coordinates, and the points of an element are those of any
-// strand's need in a batch, which agree with the strand's own to 1e-8
-// (models::quadrature_points).
+// 1e-10 of the typical coordinates.
 constexpr double amplified = 100;
 // Strands that choose their steps end them at other times in lanes, to
 constexpr double tolerance = 1e-3;

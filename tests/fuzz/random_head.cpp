@@ -73,10 +73,6 @@ std::string with_lanes(Draw& draw) {
     text += "[effects.strand_interaction]\ncoupling = \"lagged\"\n";
   }
   text += moving_body(draw, length);
-  // Contact is not smooth: the sums over an element depend on its points.
-  if (!nodes && text.find("effects.body") != std::string::npos) {
-    text.insert(text.find("[integrator]"), "quadrature = 8\n");
-  }
   return text;
 }
 
@@ -170,9 +166,6 @@ std::string of_anything(Draw& draw) {
   if (draw.chance(0.1)) text += "rest = \"inverse\"\nunstable = \"keep\"\n";
   text +=
       fmt::format("[model]\nid = \"{}\"\n", model.id) + options(draw, model.parameters);
-  for (const Parameter& p : model.parameters) {
-    if (p.name == "quadrature") text += fmt::format("{} = 8\n", p.name);
-  }
   text += integrator(draw, method, constrained, step);
   text += fmt::format(
       "[material]\nname = \"custom\"\nradius_m = {:.4g}\nyoungs_modulus_pa = {:.4g}\n"

@@ -251,7 +251,7 @@ TEST(Sweep, AJournalOfAnotherBuildIsRefused) {
       key.insert(key.find('"' + part + '"') + part.size() + 4, "0");
       return sealed(key) + journal.substr(end);
     });
-    EXPECT_THAT(error, HasSubstr("it had other " + part)) << error;
+    EXPECT_THAT(error, HasSubstr("it had another " + part)) << error;
   }
 }
 

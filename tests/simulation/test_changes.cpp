@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -11,7 +12,9 @@
 #include "integrators/integrator_options.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/scene_tables.h"
+#include "simulation/scene/strand_tables.h"
 #include "simulation/scene_changes/changes.h"
+#include "simulation/scene_changes/strand_options.h"
 #include "simulation/scene_text/write_scene.h"
 
 namespace tress::test_changes {
@@ -224,6 +227,60 @@ TEST(Changes, RefuseWhatNoTableSays) {
   expect_same(one.strands.front(), scene.strands[1]);
   EXPECT_THROW(with_elements(one, 5), std::logic_error);
   EXPECT_THROW(scene_text(one), std::logic_error);
+}
+
+/// Two strands. What acts on them is not in the strands themselves.
+Scene held_pair() {
+  return parse_scene(
+      "title = \"h\"\n[model]\nid = \"der\"\n"
+      "[[strand]]\nname = \"a\"\nlength_m = 0.1\n"
+      "[[strand]]\nname = \"b\"\nlength_m = 0.2\n"
+      "[[supports]]\nstrand = 0\nkind = \"ball\"\n"
+      "[[supports]]\nstrand = 1\nkind = \"ball\"\n"
+      "[[effects.point_moment]]\nmoment_n_m = [0, 1e-9, 0]\n[effects.gravity]\n",
+      "held.toml");
+}
+
+TEST(Changes, KeepWhatActsOnTheStrands) {
+  const Scene scene = held_pair();
+  for (const Scene& of : {refined(scene), with_strands(scene, scene.strands)}) {
+    EXPECT_EQ(of.tables->supports.size(), 2U);
+    EXPECT_EQ(of.tables->driven.moments.size(), 1U);
+  }
+  const Scene second = only(scene, {1});
+  ASSERT_EQ(second.tables->supports.size(), 1U);
+  EXPECT_EQ(second.tables->supports.front().values().whole("strand"), 0);
+  EXPECT_EQ(second.tables->driven.moments.size(), 1U);
+  std::vector<std::string> names;
+  for (const Ingredient& part : ingredients(scene)) names.push_back(part.name);
+  EXPECT_EQ(std::ranges::count(names, "point_moment"), 1);
+  for (const Ingredient& part : ingredients(scene)) {
+    if (part.name != "point_moment") continue;
+    EXPECT_FALSE(part.without(scene).tables->driven.any());
+    EXPECT_TRUE(part.alone(scene).tables->driven.any());
+    EXPECT_TRUE(part.alone(scene).effects.empty());
+  }
+  EXPECT_FALSE(bare(scene).tables->driven.any());
+}
+
+/// A strand alone has the points that it needs, and beside a curl as many as that.
+TEST(StrandOptions, HaveTheSamePointsInStrandsOfOneNumberOfElements) {
+  const std::string straight = "[[strand]]\nname = \"a\"\nlength_m = 0.1\nelements = 4\n",
+                    curl =
+                        "[[strand]]\nname = \"b\"\nlength_m = 0.1\nelements = 4\n"
+                        "shape = \"helix\"\ncurl_radius_m = 0.004\n",
+                    fine = "[[strand]]\nname = \"c\"\nlength_m = 0.1\nelements = 9\n";
+  const Scene scene = parse_scene(
+      "title = \"p\"\n[model]\nid = \"super_helix\"\n" + straight + curl + fine,
+      "p.toml");
+  const StrandOptions options(scene);
+  const auto points = [&](std::size_t k) {
+    return options.of(scene.strands[k]).whole("quadrature");
+  };
+  EXPECT_EQ(points(1), chosen_points(scene, largest_winding(scene, scene.strands[1])));
+  EXPECT_EQ(points(0), points(1));
+  EXPECT_LT(points(2), points(1));
+  EXPECT_EQ(points(2), chosen_points(scene, largest_winding(scene, scene.strands[2])));
 }
 
 }  // namespace tress::test_changes

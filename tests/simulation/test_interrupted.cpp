@@ -195,7 +195,7 @@ TEST(Interrupted, AStateOfAnotherCommitIsRefused) {
         content.insert(content.find("commit") + 9, "0");
         return sealed(content);
       });
-  EXPECT_THAT(message, HasSubstr("it had other commit ('0"));
+  EXPECT_THAT(message, HasSubstr("it had another commit ('0"));
 }
 
 TEST(RunKey, HoldsTheContentsOfTheFilesThatASceneNames) {
@@ -227,7 +227,7 @@ TEST(Interrupted, AGuardedRunIsNotContinuedWithoutItsGuard) {
   EXPECT_EQ(toy.wait(process).code, 130);
   const Toy::Result result = toy.run(std::string(run) + " --resume --no-guard");
   EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.err, HasSubstr("it had other guard ('on', now 'off')"));
+  EXPECT_THAT(result.err, HasSubstr("it had another guard ('on', now 'off')"));
 }
 
 /// A head of four hairs, two frames.
@@ -246,6 +246,29 @@ TEST(Simulate, TwoRunsOfAHeadWriteTheSameBytes) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   ASSERT_EQ(toy.run("scene.toml --as batch --out b --progress none").code, 0);
   EXPECT_TRUE(toy.read("a/scene.h5") == toy.read("b/scene.h5"));
+}
+
+/// A batch is not continued strand by strand, and the refusal costs nothing.
+TEST(Interrupted, ABatchThatIsNotContinuedIsKept) {
+  Toy toy;
+  std::string text = small_head;
+  text.replace(text.find("0.02"), 4, "100 ");
+  toy.write("scene.toml", text);
+  const std::string batch = "scene.toml --as batch --frames 4 --out out --progress none";
+  const pid_t process = toy.start(batch);
+  await_lines(toy, 3);
+  kill(process, SIGTERM);
+  ASSERT_EQ(toy.wait(process).code, 130);
+  const auto left = toy.files();
+  const Toy::Result other = toy.run("scene.toml --as strands --out out --resume");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("it had another way to run ('batch', now 'strands')"));
+  EXPECT_EQ(toy.files(), left);
+  const pid_t again = toy.start(batch + " --resume");
+  const auto lines = std::ranges::count(toy.read("out/scene.csv"), '\n');
+  await_lines(toy, static_cast<std::size_t>(lines) + 2);
+  kill(again, SIGTERM);
+  EXPECT_EQ(toy.wait(again).code, 130);
 }
 
 TEST(Simulate, AnOutputThatCannotBeWrittenIsRefusedBeforeAnyWork) {

@@ -28,6 +28,8 @@ TEST(Tether, HoldsThePointThatCarriesThePlace) {
   EXPECT_EQ(held(0.7), 1U);
   EXPECT_EQ(held(0.8), 2U);
   EXPECT_EQ(held(1), 2U);
+  EXPECT_EQ(held(0.25 * (1 - 1e-15)), 0U);
+  EXPECT_EQ(held(0.25 * (1 + 1e-15)), 0U);
 }
 
 TEST(Tether, HoldsOnePointOnly) {
