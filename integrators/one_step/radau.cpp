@@ -9,15 +9,9 @@
 namespace tress::integrators {
 namespace {
 
-constexpr double r6 = 2.449489742783178;  // sqrt 6
 constexpr std::size_t count = RadauTable::stages;
 
-constexpr RadauTable table{
-    .c = {(4 - r6) / 10, (4 + r6) / 10, 1},
-    .a = {{{(88 - 7 * r6) / 360, (296 - 169 * r6) / 1800, (-2 + 3 * r6) / 225},
-           {(296 + 169 * r6) / 1800, (88 + 7 * r6) / 360, (-2 - 3 * r6) / 225},
-           {(16 - r6) / 36, (16 + r6) / 36, 1. / 9}}},
-    .t = {{{0.2632}, {0.4068, 0.2632}, {0.3724, 0.3843, 0.2632}}}};
+constexpr RadauTable table = radau_table();
 
 /// Corrections shrink at the rate of T, so that more of them are allowed than Newton's
 /// method with its own matrices needs.
@@ -33,6 +27,10 @@ constexpr double farthest_guess = 3;
 constexpr double first_part = 0.25, shorter_part = 0.25, most_growth = 2,
                  least_growth = 1.02;
 constexpr double shortest_part = 1e-3;
+/// The same with the whole Jacobian, from the longest part solved or the first one.
+constexpr double first_on_path = 0.02, shortest_on_path = 1e-5, growth_power = 1.5,
+                 least_growth_on_path = 1.005;
+constexpr int most_on_path = 200;
 /// Solutions with I - g J of an estimate: the second removes what the first leaves in the
 /// velocities of stiff directions that turn.
 constexpr int filters = 2;
@@ -48,8 +46,6 @@ double lagrange(std::size_t j, double x) {
 
 }  // namespace
 
-const RadauTable& radau_table() { return table; }
-
 RadauStages::RadauStages(Dynamics& dynamics, const Options& options, double remaining)
     : dynamics_(dynamics),
       rules_(NewtonRules::of(options.newton_tolerance, remaining)),
@@ -63,6 +59,8 @@ RadauStages::RadauStages(Dynamics& dynamics, const Options& options, double rema
       z_(q_),
       solved_{.x = x_},
       part_{.x = x_},
+      before_{.x = x_},
+      whole_(dynamics, rules_, options.newton_iterations),
       stresses_(count, StressOrigin(dynamics)) {}
 
 void RadauStages::start_from(const Start& start) noexcept {
@@ -221,6 +219,55 @@ Status RadauStages::by_parts(double h) noexcept {
   }
 }
 
+/// The displacements of a stage, of h^2 a, continue along a line, and so do the
+/// multipliers. The polynomial of a part oscillates beyond it.
+void RadauStages::extrapolate(double h) noexcept {
+  if (before_.h == 0) return guess(part_, h);
+  const double further = (h - part_.h) / (part_.h - before_.h);
+  const double last = (1 + further) * (part_.h / h) * (part_.h / h),
+               first = -further * (before_.h / h) * (before_.h / h);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Unknowns &x = part_.x[i], &y = before_.x[i];
+    std::ranges::transform(x.a, y.a, guess_[i].a.begin(), [&](double to, double from) {
+      return last * to + first * from;
+    });
+    std::ranges::transform(
+        x.lambda, y.lambda, guess_[i].lambda.begin(),
+        [&](double to, double from) { return (1 + further) * to - further * from; });
+  }
+}
+
+Status RadauStages::by_path(double h) noexcept {
+  whole_.start_from(start_.t, start_.q, start_.v);
+  before_.h = 0;
+  double growth = most_growth;
+  double part = part_.h > 0 ? std::min(1.0, growth * part_.h / h) : first_on_path;
+  for (int i = 0; i < most_on_path; ++i) {
+    extrapolate(part * h);
+    x_ = guess_;
+    const Status s = whole_.solve(part * h, x_);
+    if (s == Status::fatal) return s;
+    if (s == Status::ok) {
+      std::swap(before_, part_);
+      keep(part * h, part_);
+      if (part == 1) {
+        tie(h);
+        return s;
+      }
+      growth = std::min(most_growth, std::pow(growth, growth_power));
+    } else if (part_.h == 0) {
+      part *= shorter_part;
+      if (part < shortest_on_path) return s;
+      continue;
+    } else {
+      growth = std::sqrt(growth);
+      if (growth < least_growth_on_path) return s;
+    }
+    part = std::min(1.0, growth * part_.h / h);
+  }
+  return Status::retry;
+}
+
 void RadauStages::keep(double h, Solution& solution) const noexcept {
   solution.t = start_.t;
   solution.h = h;
@@ -233,6 +280,7 @@ Status RadauStages::step(double t, double h, In q, In v, In a, In lambda,
   guess(solved_, h);
   Status s = newton(h);
   if (s == Status::retry && effort == Effort::whole) s = by_parts(h);
+  if (s == Status::retry && effort == Effort::whole) s = by_path(h);
   if (s == Status::ok) keep(h, solved_);
   return s;
 }

@@ -4,35 +4,14 @@
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
+#include "integrators/one_step/radau_newton.h"
+#include "integrators/one_step/radau_table.h"
 #include "integrators/stage/effort.h"
 #include "integrators/stage/newton_rules.h"
 #include "integrators/stage/stress_origin.h"
 #include "integrators/stage/unknowns.h"
 
 namespace tress::integrators {
-
-/// Radau IIA with three stages, and the triangular matrix with which its stages are
-/// solved.
-struct RadauTable {
-  static constexpr std::size_t stages = 3;  // number of stages
-  /// A matrix over the stages, by rows.
-  using Matrix = std::array<std::array<double, stages>, stages>;
-  std::array<double, stages> c{};  // times of the stages over h
-  Matrix a{};                      // coefficients; the last row leads to the new state
-  Matrix t{};                      // lower triangular, with one diagonal entry
-
-  /// Returns the diagonal entry of t.
-  double gamma() const { return t[0][0]; }
-};
-
-/// Returns the coefficients. [Hairer, Wanner 1996, Solving ODEs II, table IV.5.6]
-///
-/// The triangular T minimises the largest spectral radius of (I - z T)^-1 z (A - T) over
-/// Re z <= 0, 0.242 near |z| = 5. That is the rate at which the iteration of RadauStages
-/// converges for linear equations. Crout's triangular factor of A, whose three diagonal
-/// entries differ and need three matrices, has 0.372 [van der Houwen, de Swart 1997, SIAM
-/// J. Sci. Comput. 18, 41].
-const RadauTable& radau_table();
 
 /// The stages of one step of q' = v, v' = a, by
 ///
@@ -54,7 +33,7 @@ const RadauTable& radau_table();
 /// Matrices: one for all stages while it converges (Refresh::every_step, when_slow), or
 /// one for each stage at its own state, which reaches longer steps of strands whose stiff
 /// directions turn. Where that fails, shorter steps from the same start lead to the whole
-/// one.
+/// one. Where these stop growing, RadauNewton solves longer ones.
 class RadauStages {
  public:
   /// Works on `dynamics`, which must outlive it. `remaining` is the error left at which
@@ -110,6 +89,10 @@ class RadauStages {
   void tie(double h) noexcept;
   /// Solves a part of the step, then longer ones from its polynomial.
   Status by_parts(double h) noexcept;
+  /// Goes on from the longest part, with the whole Jacobian.
+  Status by_path(double h) noexcept;
+  /// Guesses a step of length h from the last two parts.
+  void extrapolate(double h) noexcept;
   void keep(double h, Solution& solution) const noexcept;
   double time(double h, std::size_t i) const noexcept {
     return start_.t + radau_table().c[i] * h;
@@ -123,7 +106,9 @@ class RadauStages {
   std::vector<Unknowns> x_, guess_, y_;         // of the stages; y_: last correction
   std::vector<std::vector<double>> q_, v_, z_;  // of the stages; z_: change of v_
   Solution solved_, part_;                      // the last step, the longest part
-  std::vector<StressOrigin> stresses_;          // of the stages
+  Solution before_;                             // the part solved before it
+  RadauNewton whole_;
+  std::vector<StressOrigin> stresses_;  // of the stages
 };
 
 }  // namespace tress::integrators
