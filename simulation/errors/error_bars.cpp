@@ -216,16 +216,13 @@ ErrorBar missing(std::string why) {
   return bar;
 }
 
-Scene finer_in_time(Scene scene) {
-  const double part = scene.chooses_steps() ? 10 : 2;
+Scene with_tenth_of_the_tolerance(Scene scene) {
+  constexpr double part = 10;
   Options& options = scene.options;
-  if (scene.chooses_steps()) {
-    for (double* const value :
-         {&options.tolerance, &options.rtol, &options.atol, &options.min_step}) {
-      *value /= part;
-    }
+  for (double* const value : {&options.tolerance, &options.rtol, &options.atol,
+                              &options.min_step, &options.step}) {
+    *value /= part;  // the step is that between exchanges of strands that touch
   }
-  options.step /= part;  // of fixed steps, and between exchanges of strands that touch
   return scene;
 }
 
@@ -258,7 +255,12 @@ std::size_t ErrorBar::parted() const {
 }
 
 ErrorBar time_error(const Scene& scene, int threads) {
-  Run given(scene, threads), finer(finer_in_time(scene), threads);
+  const bool chosen = scene.chooses_steps();
+  Run given(scene, threads),
+      finer(chosen ? with_tenth_of_the_tolerance(scene) : scene, threads);
+  // Half of `dt_s` would not do: steps end at frames, so that a run can have shorter
+  // ones.
+  if (!chosen) finer.world.divide_steps(2);
   if (std::ranges::min(lengths(given)) == 0) {
     return missing("the body has no length to measure errors by");
   }

@@ -57,10 +57,10 @@ constexpr double space_bound = 1.5;  // factor for estimates in space
 constexpr std::string_view time_population = "90 runs of 6 clamped hairs";
 constexpr std::string_view space_population = "14 runs of 6 clamped hairs";  // in words
 
-/// Estimates the error against a run with half the step, or with a tenth of the tolerance
-/// (of rtol and atol), whose own error is neglected. The scene's method is assumed to
-/// have its declared order. Where contact or friction lower the order to 1, a method of
-/// order 2 has an error up to 3/2 of the estimate.
+/// Estimates the error against a run that halves every step, or with a tenth of the
+/// tolerance (of rtol and atol), whose own error is neglected. The scene's method is
+/// assumed to have its declared order. Where contact or friction lower the order to 1, a
+/// method of order 2 has an error up to 3/2 of the estimate.
 ErrorBar time_error(const Scene& scene, int threads);
 
 /// Distance of two runs of one scene with two meshes, at equal arc length, times

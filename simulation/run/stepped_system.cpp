@@ -119,21 +119,32 @@ void SteppedSystem::advance_between_teleports(const IntegratorEntry& method,
                                               bool last) {
   if (status != Status::ok) return;
   const double begin = integrator->time(), span = end - begin,
-               count = std::max(1.0, std::ceil(span / options.step - 1e-9));
+               count = parts * std::max(1.0, std::ceil(span / options.step - 1e-9));
   const bool again =
       has_fixed_step(method, options) && count <= static_cast<double>(options.max_steps);
   keep(begin, integrator->q(), integrator->v());
   begun_ = q;
-  status = integrator->advance(end, observer());
+  status = take_steps(end, span / count);
   while (again && status != Status::ok && !breached() && !gave_up_ &&
          work_left(options) > 0 && shortened_++ < most_shortened) {
     const double next = t + span / count;
     status =
         shorter_steps(method, options, next < end - 1e-6 * span / count ? next : end);
-    if (status == Status::ok) status = integrator->advance(end, observer());
+    if (status == Status::ok) status = take_steps(end, span / count);
   }
   if (!guard || breached() || (status == Status::ok && !last)) return;
   if (!guard->judge(t, q, v)) status = Status::fatal;
+}
+
+/// Advances to `end`, by steps of h where the method's own are divided into parts.
+Status SteppedSystem::take_steps(double end, double h) {
+  if (parts == 1) return integrator->advance(end, observer());
+  Status s = Status::ok;
+  while (s == Status::ok && integrator->time() < end) {
+    const double next = integrator->time() + h;
+    s = integrator->advance(next < end - 1e-6 * h ? next : end, observer());
+  }
+  return s;
 }
 
 std::string SteppedSystem::no_dissipation() const {

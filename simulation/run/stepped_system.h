@@ -39,6 +39,7 @@ struct SteppedSystem {
   std::optional<Guards> guard;             // check of the steps; none: not checked
   std::optional<BodyDepth> depth;          // depth in bodies; none: no bodies
   SupportedStart supported;                // how it came onto its supports
+  int parts = 1;                           // equal steps taken for each fixed step
   /// Effects of its first strand, of the second ...
   std::vector<std::shared_ptr<const Metered>> meters;
 
@@ -96,6 +97,7 @@ struct SteppedSystem {
                                  double end, bool last);
   void teleport(const IntegratorEntry& method, const Options& options,
                 Teleports& teleports, double at, double end);
+  Status take_steps(double end, double h);
   double work_left(const Options& options) const;
   Status shorter_steps(const IntegratorEntry& method, const Options& options, double end);
   /// Stores every state and passes it to the guard.

@@ -76,6 +76,10 @@ class World {
   /// Returns the present state.
   Snapshot snapshot();
 
+  /// Divides every fixed step from now on into this number of equal parts, whatever the
+  /// frames and teleports at which steps end.
+  void divide_steps(int parts);
+
   /// Advances all strands to t_end, as SteppedSystem. Not ok: failure() reports what
   /// happened, where and when. Where failed strands stay, always ok: see lost().
   Status advance(double t_end);
@@ -246,6 +250,7 @@ class World {
   ControlMesh* mesh_ = nullptr;
   const StrandFriction* friction_ = nullptr;
   std::vector<HeldShape> held_;
+  int parts_ = 1;                       // of each interval between exchanges
   std::optional<StepControl> control_;  // of the exchanges, with a tolerance
   Exchanges exchanges_;
   std::vector<Body> bodies_;

@@ -30,6 +30,14 @@ double World::next_teleport() const {
   return next;
 }
 
+/// Where strands are coupled, the step is the interval between exchanges, and each strand
+/// takes one step in it.
+void World::divide_steps(int parts) {
+  parts_ = parts;
+  if (!couplings_.empty()) return;
+  for (Body& body : bodies_) body.parts = parts;
+}
+
 Status World::advance(double t_end) {
   // Strands see the others either before a teleport or after it.
   while (!couplings_.empty()) {
@@ -64,8 +72,9 @@ Status World::advance_between_teleports(double t_end) {
   // Without an exchange no strand has to wait for the others.
   const double span = t_end - t_;
   const double count =
-      couplings_.empty() ? 1.0
-                         : std::max(1.0, std::ceil(span / maker_.options().step - 1e-9));
+      couplings_.empty()
+          ? 1.0
+          : parts_ * std::max(1.0, std::ceil(span / maker_.options().step - 1e-9));
   const double begin = t_;
   if (count > static_cast<double>(maker_.options().max_steps)) {
     failure_ = fmt::format("more than max_steps exchanges needed at t = {:.9g} s: {}", t_,

@@ -86,6 +86,60 @@ INSTANTIATE_TEST_SUITE_P(Orders, InTime,
                            return "M" + std::to_string(tested.index);
                          });
 
+/// Steps end at frames, here of 10 ms: a run with dt_s = 40 ms takes steps of 10 ms. The
+/// last frame is 4 ms after the one before: one step. Tolerance as for other fixed steps.
+TEST(ErrorBars, AStepLongerThanAFrameIsThatOfTheFrame) {
+  Scene scene = released("id = \"esdirk43\"\ndt_s = 0.04");
+  scene.duration = 0.104;
+  Scene reference = scene;
+  reference.options.step = 0.01 / 16;
+  const double found = distance(scene, reference, 1);
+  EXPECT_GT(found, 1e-5);
+  EXPECT_NEAR(time_error(scene, 1).strands.at(0).error.largest, found,
+              (1. / 16 + 0.1) * found);
+}
+
+/// 9.9 and 6 ms both give two steps to a frame of 10 ms: the runs are the same, and so
+/// are those with half the steps.
+TEST(ErrorBars, EqualRunsHaveEqualEstimates) {
+  const auto error = [](const char* step) {
+    return time_error(released(std::string("id = \"implicit_midpoint\"\ndt_s = ") + step),
+                      1)
+        .strands.at(0)
+        .error;
+  };
+  const PointErrors found = error("0.0099");
+  EXPECT_GT(found.largest, 1e-4);
+  EXPECT_EQ(found.largest, error("0.006").largest);
+  EXPECT_EQ(found.largest, error("0.005").largest);
+  EXPECT_EQ(found.rms, error("0.006").rms);
+}
+
+/// A run of one step.
+TEST(ErrorBars, OneStepIsHalvedToo) {
+  Scene scene = released("id = \"tr_bdf2\"\ndt_s = 0.002");
+  scene.duration = 0.001;
+  EXPECT_GT(time_error(scene, 1).strands.at(0).error.largest, 0);
+}
+
+/// Strands 4 mm apart exchange their positions at the ends of steps, here once a frame.
+TEST(ErrorBars, StepsBetweenExchangesAreHalvedToo) {
+  const auto error = [](const std::string& step) {
+    const std::string strand =
+        "[[strand]]\nlength_m = 0.1\nelements = 4\nroot_tangent = [1, 0, 0]\n";
+    const Scene scene = parse_scene(
+        "title = \"t\"\nduration_s = 0.05\nframes_per_s = 100\n[model]\nid = "
+        "\"super_helix\"\n[integrator]\nid = \"backward_euler\"\ndt_s = " +
+            step + "\n[material]\nname = \"hair.asian\"\n" + strand + strand +
+            "position_m = [0, 0.004, 0]\n[effects.gravity]\n"
+            "[effects.strand_interaction]\n",
+        "two.toml");
+    return time_error(scene, 1).strands.at(0).error.largest;
+  };
+  EXPECT_GT(error("0.04"), 1e-3);
+  EXPECT_EQ(error("0.04"), error("0.01"));
+}
+
 /// The error falls as the tolerance to the power 5/6 in the limit (tr_bdf2.cpp): a tenth
 /// leaves 0.15 of it, and up to (1.2 / 0.95)^2 of that, for steps within the control's
 /// dead band are left as they are.
