@@ -32,6 +32,10 @@ function table(heads, body) {
 
 const method = (row) => `${row.integrator}${row.jacobian ? `, jacobian ${row.jacobian}` : ''}`;
 
+/// What stands for a limit that was not found.
+const no_limit = (row) =>
+  ['inconclusive', 'timeout', 'crashed'].includes(row.status) ? 'inconclusive' : 'none';
+
 function stable_steps() {
   const rows = rows_of('stability_limit').filter((row) => row.study !== 'tolerance');
   const size = (row) => (typeof row.dt_max_s === 'number' ? row.dt_max_s : 0);
@@ -45,7 +49,7 @@ function stable_steps() {
              `${row.limited_by === 'cap' ? '≥ ' : ''}${seconds(row.dt_max_s)}`,
              row.limited_by === 'cap' ? 'not tried' : row.limited_by,
              seconds(1 / row.realtime_factor)]
-          : [method(row), 'none', row.reason, '']),
+          : [method(row), no_limit(row), row.reason, '']),
   );
 }
 
@@ -59,7 +63,7 @@ function tolerances() {
         typeof row.tolerance_loosest === 'number'
           ? [method(row), asked(row.tolerance_loosest), asked(row.tolerance_tightest),
              row.steps_usual]
-          : [method(row), 'none', row.reason, '']),
+          : [method(row), no_limit(row), row.reason, '']),
   );
 }
 

@@ -130,9 +130,11 @@ std::vector<Case> cases(const CommandLine& line) {
   }
   std::vector<Case> all;
   for (const StabilityCase& c : stability_cases(line, settings)) {
-    StepSearch own = search;
-    own.coarsest = std::min(own.coarsest, c.scene->coarsest);
-    const Work work{c,          c.parameters(settings), settings.options(), own, row_work,
+    const Work work{c,
+                    c.parameters(settings),
+                    settings.options(),
+                    up_to(c.scene->coarsest, search),
+                    row_work,
                     line.repeat};
     all.push_back(
         {c.identity(), [work](Row& row, const Deadline&) { measure(work, row); }});
@@ -158,7 +160,8 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
 }
 
 /// A method without a stable step, or one that needs impractically many steps, is an
-/// expected result.
+/// expected result. "inconclusive" is none: no step of the user's scene was found
+/// unstable, or the steps below a stable one were not tried.
 bool finding(const Row& row) {
   return row.status() == "unstable" || row.status() == "gave_up" ||
          row.status() == "refused";

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "contract/input_error.h"
@@ -70,32 +73,57 @@ std::optional<StabilityRun> judge(Scene scene, double t_end, double& left) {
 }
 
 /// Stability is not monotone, so steps between those of the search are tried as well:
-/// these parts of the limit, judged for longer. Where one is unstable, the limit falls
-/// below it, and the parts of the new one are tried.
+/// these parts of the limit. Where one is unstable, the limit falls below it, and the
+/// parts of the new one are tried.
 constexpr double parts_of_limit[] = {1, 0.95, 0.9, 0.8, 0.7};
 constexpr double after_unstable = 0.9;
 
-/// Adds the runs that confirm the limit, as far as the work of `judge` reaches.
-void confirm(const SceneLimits& how, const JudgeStep& judge, SearchedSteps& searched) {
-  double limit = step_limit(searched, how.search).stable;
-  for (bool unstable = true; unstable && limit >= how.search.finest;) {
-    unstable = false;
-    for (const double part : parts_of_limit) {
-      const auto run = judge(part * limit);
-      if (!run) return;
-      searched.runs[part * limit] = *run;
-      unstable = !run->stable();
-      if (unstable) {
-        limit *= part * after_unstable;
-        break;
+/// Runs the parts of the limit that the runs show, first as in the search, then for
+/// longer. Returns false if the work of a judge was used up before all parts of a limit
+/// had been run as in the search.
+bool confirm(const StepSearch& search, const JudgeStep& as_searched,
+             const JudgeStep& for_longer, SearchedSteps& searched) {
+  double limit = step_limit(searched, search).stable;
+  while (limit > 0) {
+    double unstable = 0;
+    for (const JudgeStep* judge : {&as_searched, &for_longer}) {
+      for (const double part : parts_of_limit) {
+        const double dt = part * limit;
+        if (judge == &as_searched && searched.runs.contains(dt)) continue;
+        const auto run = (*judge)(dt);
+        if (!run) return judge == &for_longer;
+        searched.runs[dt] = *run;
+        if (!run->stable()) unstable = dt;
+        if (unstable > 0) break;
       }
+      if (unstable > 0) break;
     }
+    if (unstable == 0) return true;
+    const double below = step_limit(searched, search).stable;
+    limit = below > after_unstable * unstable ? below : after_unstable * unstable;
   }
+  return false;
+}
+
+/// Longer steps than this part of the longest run are not tried: fewer of them would show
+/// no growth.
+constexpr double least_steps = 10;
+
+void inconclusive(double stable, Row& row) {
+  row.set("dt_max_s", std::numeric_limits<double>::quiet_NaN());
+  row.failed("inconclusive",
+             stable > 0
+                 ? fmt::format("the work of a row was used up before the steps just "
+                               "below {:.3g} s, which was stable, had been tried",
+                               stable)
+                 : "the work of a row was used up by the longest step");
 }
 
 void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   const double t_end = std::min(how.horizon, scene.duration);
   row.set("t_end_s", t_end);
+  const StepSearch search =
+      up_to(times_as_long * scene.duration / least_steps, how.search);
   Scene tried = scene;
   tried.options.tolerance = 0;
   const auto confirmed_s = [&](double dt) {
@@ -105,17 +133,24 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
     tried.options.step = dt;
     return judge(tried, end, work);
   };
-  double left = how.most_work, left_confirming = how.most_work,
-         left_above = how.most_work;
+  double left = how.most_work, left_checking = how.most_work,
+         left_confirming = how.most_work, left_above = how.most_work;
+  const auto as_searched = [&](double& work) {
+    return [&](double dt) {
+      return judge_to(dt, judged_s(scene, t_end, dt, tried_steps), work);
+    };
+  };
   std::optional<FoundLimit> limit;
   try {
-    SearchedSteps searched = search_steps(how.search, [&](double dt) {
-      return judge_to(dt, judged_s(scene, t_end, dt, tried_steps), left);
-    });
-    confirm(
-        how, [&](double dt) { return judge_to(dt, confirmed_s(dt), left_confirming); },
+    SearchedSteps searched = search_steps(search, as_searched(left));
+    const bool checked = confirm(
+        search, as_searched(left_checking),
+        [&](double dt) { return judge_to(dt, confirmed_s(dt), left_confirming); },
         searched);
-    limit = found_limit(searched, how.search, row);
+    limit = found_limit(searched, search, row);
+    if (limit ? !checked : searched.runs.empty()) {
+      return inconclusive(limit ? limit->step : 0, row);
+    }
     if (!limit) return;
     // Without work left to confirm it, the limit is judged for as long as in the search.
     row.set("t_end_s", std::min(confirmed_s(limit->step), limit->run.t));
@@ -135,8 +170,7 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
 }
 
 void measure_tolerances(const Scene& scene, const SceneLimits& how, Row& row) {
-  const double t_end = std::min(how.horizon, scene.duration);
-  row.set("t_end_s", t_end);
+  row.set("t_end_s", scene.duration);
   double left = how.most_work;
   Scene tried = scene;
   tried.options.max_step = how.search.coarsest;
@@ -146,12 +180,15 @@ void measure_tolerances(const Scene& scene, const SceneLimits& how, Row& row) {
           const double before = left;
           tried.options.tolerance = tolerance;
           const auto run =
-              judge(driven(tried, *tried.model, find_integrator(tried.integrator)), t_end,
-                    left);
+              judge(driven(tried, *tried.model, find_integrator(tried.integrator)),
+                    scene.duration, left);
           if (!run) return {};
           return ToleranceRun{*run, before - left};
         },
         row);
+    if (row.status() == "gave_up") {
+      row.failed("inconclusive", std::string(row.text("reason")));
+    }
   } catch (const InputError& refused) {
     row.failed("refused", refused.what());
   }

@@ -43,29 +43,27 @@ std::string tried_in_words(const Row& row) {
                      longest);
 }
 
-/// Why there is no limit: a search that ended, or one whose work ran out.
+/// Why there is no limit: a process that ended early, a search that ended, or one whose
+/// work ran out.
 std::string not_found(const Row& row) {
+  const bool killed = row.status() == "timeout";
+  if (killed || row.status() == "inconclusive") {
+    return fmt::format("inconclusive: {}: raise it by {}", row.text("reason"),
+                       killed ? "--timeout S" : "--set row_work=X");
+  }
+  if (!row.has("runs")) return fmt::format("no answer: {}", row.text("reason"));
   if (row.text("search_done") == "true") {
     return fmt::format("no stable step found: {}", row.text("reason"));
   }
   const double runs = row.number("runs");
-  const std::string ended =
-      runs == 0 ? "not even one run ended"
-                : fmt::format("{} run{}, down to {}", runs, runs == 1 ? "" : "s",
-                              duration(row.number("dt_finest_s")));
   return fmt::format(
-      "no stable step found in the work given ({}): raise it by --set row_work=X", ended);
+      "no stable step found in the work given ({} run{}, down to {}): raise it by --set "
+      "row_work=X",
+      runs, runs == 1 ? "" : "s", duration(row.number("dt_finest_s")));
 }
 
 std::string by_step(const Row& row) {
   if (!row.has("dt_max_s")) return fmt::format("{}: {}", method(row), not_found(row));
-  const bool ended = row.text("search_done") != "false";
-  if (!ended && row.number("stable_runs") == 1) {
-    return fmt::format(
-        "{}: no limit found in the work given: one run, with {}, was stable, and no "
-        "shorter step was tried: raise it by --set row_work=X",
-        method(row), duration(row.number("dt_max_s")));
-  }
   std::string line = fmt::format("{}: {}", method(row), tried_in_words(row));
   if (row.text("limited_by") == "cap") {
     if (row.number("runs") > 1) line += ", the longest that was tried";
@@ -78,7 +76,7 @@ std::string by_step(const Row& row) {
   } else if (row.has("at_1_5")) {
     line += fmt::format(", unstable at 1.5 times that ({})", row.text("at_1_5"));
   }
-  if (!ended) line += "; shorter steps were not checked";
+  if (row.text("search_done") == "false") line += "; shorter steps were not checked";
   line += fmt::format("; judged over {}", duration(row.number("t_end_s")));
   if (row.number("stable_runs") > 1) line += " at the longest step";
   if (row.has("realtime_factor")) {
@@ -90,8 +88,11 @@ std::string by_step(const Row& row) {
 
 std::string by_tolerance(const Row& row) {
   if (!row.has("tolerance_loosest")) {
-    return fmt::format("{} with a tolerance: none found that is stable: {}", method(row),
-                       row.text("reason"));
+    const bool unstable = row.status() == "unstable";
+    return fmt::format(
+        "{} with a tolerance: {}", method(row),
+        unstable ? fmt::format("none found that is stable: {}", row.text("reason"))
+                 : not_found(row));
   }
   return fmt::format("{} with a tolerance: stable from {:.1g} to {:.1g}; judged over {}",
                      method(row), row.number("tolerance_loosest"),

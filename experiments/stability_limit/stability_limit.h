@@ -52,8 +52,12 @@ std::span<const Parameter> stability_settings();
 double set_or(const Parameters& rows, std::string_view key, double usual);
 
 /// Search parameters for steps; `finest` (s) and `depth` are defaults that the user may
-/// override.
+/// override. Throws InputError if no step lies between `floor_s` and `cap_s`.
 StepSearch step_search(const Parameters& rows, double finest, double depth);
+
+/// The search without steps longer than this (s); of a shorter one than all of them, that
+/// step alone.
+StepSearch up_to(double coarsest, StepSearch search);
 
 /// Whether a study of all integrators includes this one: it has a step, and is named, or
 /// is one that --quick keeps.

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "contract/input_error.h"
 #include "experiments/stability_limit/stability_limit.h"
 
 namespace tress::experiments::stability_limit {
@@ -53,7 +56,8 @@ constexpr Parameter settings_of_rows[] = {
      .max = 1e4,
      .whole = true},
     {.name = "row_work",
-     .help = "work of the search for one row (max_work). 0: 2e7, with --quick 3e6, with "
+     .help = "work of the search for one row (max_work), of a scene file also of each of "
+             "its checks. 0: 2e7, with --quick 3e6, with "
              "--full 1e8. Of study tolerance: 1e8, with --quick 3e7, with --full 3e8. Of "
              "study nodal: 1e9, with --quick 1.5e8",
      .number = 0,
@@ -69,10 +73,21 @@ double set_or(const Parameters& rows, std::string_view key, double usual) {
 }
 
 StepSearch step_search(const Parameters& rows, double finest, double depth) {
-  return {.coarsest = rows.number("cap_s"),
-          .finest = set_or(rows, "floor_s", finest),
-          .resolution = rows.number("resolution"),
-          .depth = std::max(set_or(rows, "depth", depth), 1.0)};
+  const StepSearch search{.coarsest = rows.number("cap_s"),
+                          .finest = set_or(rows, "floor_s", finest),
+                          .resolution = rows.number("resolution"),
+                          .depth = std::max(set_or(rows, "depth", depth), 1.0)};
+  if (search.finest <= search.coarsest) return search;
+  throw InputError(
+      fmt::format("the smallest step tried, {:g} s, is longer than the largest, {:g} s",
+                  search.finest, search.coarsest),
+      "--set floor_s, cap_s", "give floor_s <= cap_s");
+}
+
+StepSearch up_to(double coarsest, StepSearch search) {
+  search.coarsest = std::min(search.coarsest, coarsest);
+  search.finest = std::min(search.finest, search.coarsest);
+  return search;
 }
 
 }  // namespace tress::experiments::stability_limit

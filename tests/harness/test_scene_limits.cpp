@@ -163,6 +163,64 @@ centre_m = [0.03, 0, -0.07]
   }
 }
 
+// However little work there is: a limit that is told was run at the steps just below it,
+// and a row without these runs is no result.
+TEST_F(SceneLimit, IsInconclusiveWithoutTheStepsBelow) {
+  const std::string scene = file("springs.toml", springs);
+  int limits = 0, inconclusive = 0;
+  for (double work = 1e3; work < 1e7; work *= 1.3) {
+    const SceneLimits how{
+        {.coarsest = 1e-3, .finest = 1e-7, .depth = 3}, work, 0.05, 1, 1};
+    const auto found = rows(scene, {"rk4"}, how);
+    ASSERT_EQ(found.size(), 1u);
+    const Row& row = found.front();
+    if (row.status() == "inconclusive") {
+      ++inconclusive;
+      EXPECT_FALSE(row.has("dt_max_s"));
+      EXPECT_THAT(stability_answer(found).front(),
+                  HasSubstr("rk4 (jacobian exact): inconclusive: the work of a row was "
+                            "used up "));
+    } else if (row.has("dt_max_s")) {
+      ++limits;
+      EXPECT_LE(row.number("dt_finest_s"), 0.7 * row.number("dt_max_s")) << work;
+      EXPECT_GE(row.number("stable_runs"), 5) << work;
+    }
+  }
+  EXPECT_GT(limits, 0);
+  EXPECT_GT(inconclusive, 0);
+}
+
+// Fewer than ten steps show no growth: longer ones than a tenth of the longest run, five
+// times the scene, are not tried.
+TEST_F(SceneLimit, IsAtMostATenthOfTheRun) {
+  std::string text = springs;
+  text.replace(text.find("duration_s = 0.05"), 17, "duration_s = 1e-3");
+  const SceneLimits how{{.depth = 3}, 1e7, 0.5, 1, 1};
+  const auto found = rows(file("short.toml", text), {"backward_euler"}, how);
+  ASSERT_EQ(found.size(), 1u);
+  const Row& row = found.front();
+  ASSERT_TRUE(row.ok()) << row.text("reason");
+  EXPECT_DOUBLE_EQ(row.number("dt_max_s"), 5e-4);
+  EXPECT_EQ(row.text("limited_by"), "cap");
+  EXPECT_THAT(stability_answer(found).front(),
+              HasSubstr(" to 500 us, the longest that was tried; judged over 5 ms at "));
+}
+
+TEST(StepSearchOfSettings, NeedsAStepBetweenItsBounds) {
+  const auto search = [](const char* key, const char* value) {
+    CommandLine line;
+    line.set = {{key, value}};
+    return step_search(Settings(line, stability_settings()).experiment(), 1e-6, 30);
+  };
+  EXPECT_EQ(search("floor_s", "0.1").finest, 0.1);
+  EXPECT_THROW(search("floor_s", "1"), InputError);
+  EXPECT_THROW(search("cap_s", "1e-9"), InputError);
+  // Of a scene whose drive needs shorter steps than all of them, one step is left.
+  const StepSearch one = up_to(0.01, search("floor_s", "0.1"));
+  EXPECT_EQ(one.coarsest, 0.01);
+  EXPECT_EQ(one.finest, 0.01);
+}
+
 /// The sentence about a row of these columns.
 std::string sentence(double dt_max, double finest, int runs, int stable, bool done,
                      std::string_view limited_by) {
@@ -176,10 +234,6 @@ std::string sentence(double dt_max, double finest, int runs, int stable, bool do
 
 TEST(LimitInWords, SaysNoMoreThanWasTried) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(
-      sentence(0.1, 0.1, 1, 1, false, "cap"),
-      "s, m: i: no limit found in the work given: one run, with 100 ms, was stable, "
-      "and no shorter step was tried: raise it by --set row_work=X");
   EXPECT_EQ(sentence(0.1, 0.1, 1, 1, true, "cap"),
             "s, m: i: stable at 100 ms, the only step tried; judged over 500 ms");
   EXPECT_EQ(sentence(0.1, 0.02, 4, 4, false, "cap"),
@@ -189,16 +243,31 @@ TEST(LimitInWords, SaysNoMoreThanWasTried) {
   EXPECT_EQ(sentence(0.003, 0.0003, 15, 8, true, "energy"),
             "s, m: i: stable at every one of 8 steps tried from 300 us to 3 ms; judged "
             "over 500 ms at the longest step");
-  EXPECT_EQ(
-      sentence(1e-4, 1e-4, 9, 1, false, "energy"),
-      "s, m: i: no limit found in the work given: one run, with 100 us, was stable, "
-      "and no shorter step was tried: raise it by --set row_work=X");
-  EXPECT_EQ(sentence(none, none, 0, 0, false, ""),
-            "s, m: i: no stable step found in the work given (not even one run ended): "
-            "raise it by --set row_work=X");
   EXPECT_EQ(sentence(none, 0.05, 2, 0, false, "energy"),
             "s, m: i: no stable step found in the work given (2 runs, down to 50 ms): "
             "raise it by --set row_work=X");
+}
+
+/// The sentence about a row without a result.
+std::string failed(std::string_view study, std::string_view status,
+                   std::string_view reason) {
+  Row row;
+  row.set("study", study).set("scene", "s").set("model", "m").set("integrator", "i");
+  row.failed(status, reason);
+  return stability_answer({row}).front();
+}
+
+// A process that was killed has no runs to tell of, and needs time, not work.
+TEST(LimitInWords, SaysWhatEndedARowEarly) {
+  EXPECT_EQ(failed("file", "timeout", "killed after 60 s"),
+            "s, m: i: inconclusive: killed after 60 s: raise it by --timeout S");
+  EXPECT_EQ(failed("tolerance", "timeout", "killed after 60 s"),
+            "s, m: i with a tolerance: inconclusive: killed after 60 s: raise it by "
+            "--timeout S");
+  EXPECT_EQ(failed("file", "crashed", "signal 11"), "s, m: i: no answer: signal 11");
+  EXPECT_EQ(failed("tolerance", "inconclusive", "work used up"),
+            "s, m: i with a tolerance: inconclusive: work used up: raise it by --set "
+            "row_work=X");
 }
 
 TEST_F(SceneLimit, OfAMethodThatTheModelCannotTakeIsARefusal) {

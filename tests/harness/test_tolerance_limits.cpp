@@ -143,6 +143,22 @@ TEST(ToleranceLimit, OfAScene) {
   EXPECT_GE(rows.front().number("steps_usual"), 0.05 / 0.01);
 }
 
+// The horizon is the least time of a step, which is judged as far as a number of steps
+// reaches; a tolerance is judged over the scene.
+TEST(ToleranceLimit, OfASceneIsJudgedOverTheWholeScene) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "springs_horizon.toml";
+  std::ofstream(path) << springs;
+  CommandLine line;
+  line.integrators = {"tr_bdf2"};
+  const auto found = [&](double most_work) {
+    const SceneLimits how{
+        {.coarsest = 0.01, .finest = 1e-4, .depth = 1}, most_work, 0.02, 1, 1};
+    return run(scene_tolerance_cases(line, {path.string()}, how)).at(0);
+  };
+  EXPECT_EQ(found(1e8).number("t_end_s"), 0.05);
+  EXPECT_EQ(found(1).status(), "inconclusive");
+}
+
 TEST(ToleranceLimit, UnstableRodsByToleranceBreakAClaim) {
   const auto state = [](std::string_view limited_by) {
     Row row;

@@ -31,6 +31,19 @@ mine,backward_euler,exact,0.1,cap,100,
   assert.match(html, /250 ms/); // a simulated second of bdf2
 });
 
+test('a row that ended early is inconclusive, not without a stable step', () => {
+  const html = page({
+    'stability_limit.csv': `study,scene,integrator,jacobian,dt_max_s,limited_by,realtime_factor,tolerance_loosest,tolerance_tightest,steps_usual,status,reason
+file,mine,bdf2,exact,,,,,,,inconclusive,too little work
+file,mine,rk4,exact,,,,,,,unstable,too fast
+tolerance,mine,tr_bdf2,exact,,,,,,,timeout,killed
+`,
+  });
+  assert.match(html, /<td>bdf2, jacobian exact<\/td><td>inconclusive<\/td><td>too little work/);
+  assert.match(html, /<td>rk4, jacobian exact<\/td><td>none<\/td><td>too fast/);
+  assert.match(html, /<td>tr_bdf2, jacobian exact<\/td><td>inconclusive<\/td><td>killed/);
+});
+
 test('what is stable by tolerance stands in a table of its own', () => {
   const html = page({
     'stability_limit.csv': `study,scene,integrator,jacobian,dt_max_s,limited_by,realtime_factor,tolerance_loosest,tolerance_tightest,steps_usual,reason
