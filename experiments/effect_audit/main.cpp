@@ -267,9 +267,6 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
   print_answer(line, lines);
 }
 
-/// A scene that fails without one of its effects is a valid result.
-bool finding(const Row& row) { return row.text("effect") != "none"; }
-
 constexpr Unused unused[] = {{"models", "the scene files set them"},
                              {"integrators", "the scene files set them"},
                              {"elements", "the scene files set them"},

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <string>
 
+#include "simulation/files/row.h"
+
 namespace tress::experiments::effect_audit {
 
 /// Changes by an effect, all over the length. They are the distance of the tips without
@@ -27,6 +29,13 @@ inline std::string verdict(const Change& of, double accuracy) {
   if (of.change + of.change_error < accuracy) return "drop";
   if (of.discretisation <= accuracy) return "too close to call";
   return fmt::format("cannot tell: discretisation {:.2g} %", 1e2 * of.discretisation);
+}
+
+/// Returns whether a failed row is a valid result: the scene fails without one of its
+/// effects, or cannot be without it. A process that was killed or crashed is none.
+inline bool finding(const simulation::Row& row) {
+  return row.text("effect") != "none" &&
+         (row.status() == "diverged" || row.status() == "refused");
 }
 
 }  // namespace tress::experiments::effect_audit

@@ -31,5 +31,19 @@ TEST(EffectVerdict, DropsASmallEffectOfACoarseScene) {
   EXPECT_EQ(verdict({0.004, 0.002, 0.018}, accuracy), "drop");
 }
 
+// A scene that fails without an effect needs it; a row that was killed tells nothing.
+TEST(EffectVerdict, OfARowThatWasKilledIsNone) {
+  const auto row = [](const char* effect, const char* status) {
+    simulation::Row made;
+    made.set("effect", effect).failed(status, "why");
+    return made;
+  };
+  EXPECT_TRUE(finding(row("gravity", "diverged")));
+  EXPECT_TRUE(finding(row("gravity", "refused")));
+  EXPECT_FALSE(finding(row("gravity", "timeout")));
+  EXPECT_FALSE(finding(row("gravity", "crashed")));
+  EXPECT_FALSE(finding(row("none", "diverged")));
+}
+
 }  // namespace
 }  // namespace tress::experiments::effect_audit
