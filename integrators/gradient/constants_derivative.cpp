@@ -142,7 +142,8 @@ std::optional<ConstantsDerivative> constants_derivative(System& system,
   }
   if (here == far && !loaded && !clamped) return {};  // here: it may act elsewhere
   if (found.moves_points && !clamped) return {};
-  if ((parameter.places || clamped) && (loaded || !forces.quadratic)) {
+  const bool unknown = parameter.law == ParameterLaw::unknown;
+  if ((unknown || parameter.places || clamped) && (loaded || !forces.quadratic)) {
     found.loads.stencil = placed_stencil(parameter);
     for (const double s : found.loads.stencil.at) {
       found.loads.systems.push_back(parameter(s));

@@ -13,4 +13,13 @@ struct KnownForces {
   bool quadratic = false;
 };
 
+/// Law of the residual in a parameter s, in states and at times that no probe sees.
+enum class ParameterLaw {
+  unknown,  // It may begin, end or turn anywhere.
+  affine,   // If it is affine in s near the start, it is affine in s everywhere.
+  // As affine, and its derivative by s is one analytic function of the state, without
+  // pieces in time.
+  smooth
+};
+
 }  // namespace tress::integrators

@@ -158,11 +158,13 @@ VariedSystem varied_system(System& system, const RunParameter& parameter,
   VariedSystem varied{placed_stencil(parameter), {}, {}, parameter.name};
   varied.starts = parameter.starts && starts_alone(system, parameter);
   const bool own_history = system.history() != nullptr && memory == VariedMemory::own;
-  if (!parameter.places && !own_history) {
+  const bool known = parameter.law != ParameterLaw::unknown;
+  if (known && !parameter.places && !own_history) {
     auto far = parameter(affine_stencil.at[0]);
     if (is_affine(system, *parameter(affine_stencil.at[0] / 2), *far)) {
       varied.stencil = affine_stencil;
-      if (system.layout().constraints == 0) {
+      const bool smooth = parameter.law == ParameterLaw::smooth;
+      if (smooth && system.layout().constraints == 0) {
         varied.simple = simple_derivative(system, *far, Probe(system));
       }
       varied.systems.push_back(std::move(far));

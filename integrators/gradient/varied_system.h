@@ -21,6 +21,7 @@ struct RunParameter : std::function<std::unique_ptr<System>(double s)> {
   std::optional<double> places = {};
   std::string name = {};  // for messages; empty: it has none
   bool starts = false;    // whether it is of the initial state, and no forces begin later
+  ParameterLaw law = ParameterLaw::unknown;  // decides what may be measured at a probe
 };
 
 /// f'(0) = base f(0) + sum_i weight_i f(at_i).
@@ -80,10 +81,11 @@ enum class VariedMemory { own, of_run };
 
 /// Returns the affine stencil where residual and start are affine in s. This is measured
 /// near the start, where all terms of the strand are alive, at several times, and once
-/// far away. Two kinds never get it. What moves points or RunParameter::places is not
-/// affine in forces that begin to act later. The residual of a system with a History of
-/// its own depends on the states behind it. `simple` is measured at three states near the
-/// start and tried at a fourth one.
+/// far away. Measurements prove nothing about other states. Parameters of an unknown law
+/// therefore get central differences, and so do those that move points or that
+/// RunParameter::places. The residual of a system with a History of its own depends on
+/// the states behind it and gets them too. `simple` of a smooth law is measured at three
+/// states near the start and tried at a fourth one.
 VariedSystem varied_system(System& system, const RunParameter& parameter,
                            VariedMemory memory = VariedMemory::own);
 
@@ -98,9 +100,9 @@ struct ConstantsDerivative {
 
 /// The derivative of the constants by a parameter that changes nothing else in the
 /// residual but loads and the clamp: measured at three states, for random velocities. A
-/// parameter that places or moves the clamp always has loads, which may begin to act
-/// later, unless `forces` are quadratic: viscous drag always acts. Empty: it changes
-/// other things, or the system has no constants.
+/// parameter of an unknown law, or that places or moves the clamp, always has loads,
+/// which may begin to act later, unless `forces` are quadratic: viscous drag always acts.
+/// Empty: it changes other things, or the system has no constants.
 std::optional<ConstantsDerivative> constants_derivative(System& system,
                                                         const RunParameter& parameter,
                                                         KnownForces forces = {});

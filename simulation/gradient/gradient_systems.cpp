@@ -101,6 +101,7 @@ std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
       return exact_system_of(changed, strand);
     });
     all.back().name = parameter.name;
+    all.back().law = parameter.law;
     // Supports and effects may hold what they find at the start.
     all.back().starts = parameter.starts && !SceneSupports(scene).change(strand) &&
                         known_forces(scene).quadratic;

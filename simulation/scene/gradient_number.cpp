@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/input_error.h"
+#include "models/affine_numbers.h"
 #include "simulation/scene/gradient_table.h"
 #include "simulation/scene/strand_tables.h"
 
@@ -112,6 +113,15 @@ std::string unused_number(const models::EffectEntry& effect, std::string_view ke
   return {};
 }
 
+integrators::ParameterLaw law_of_number(const EffectChoice& effect,
+                                        std::string_view key) {
+  using enum integrators::ParameterLaw;
+  if (!models::affine_in(*effect.entry, key, effect.parameters)) return unknown;
+  if (effect.entry->contact || effect.entry->make == nullptr) return affine;
+  const auto made = effect.entry->make(effect.parameters, models::RootMotion{});
+  return models::depends_on_place(*made) ? affine : smooth;
+}
+
 bool add_table_parameter(const Scene& scene, std::string_view name,
                          const std::string& place, std::vector<SceneParameter>& to) {
   const std::size_t dot = name.find('.');
@@ -139,6 +149,8 @@ bool add_table_parameter(const Scene& scene, std::string_view name,
                         changed.tables = std::move(own);
                       },
                       of.positive, of.min, of.max});
+        // Loads and moments are products of these numbers.
+        to.back().law = integrators::ParameterLaw::affine;
       });
   return found;
 }

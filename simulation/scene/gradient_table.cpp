@@ -167,6 +167,7 @@ class Finder {
                     for (Strand& strand : scene.strands) scale(strand, s);
                   },
                   true, key.min, key.max});
+    to.back().law = integrators::ParameterLaw::smooth;
     return true;
   }
 
@@ -217,6 +218,7 @@ class Finder {
                     }
                   }});
     to.back().starts = of.shape == &Segment::initial;
+    to.back().law = integrators::ParameterLaw::smooth;
   }
 
   bool of_root(std::string_view name, std::vector<SceneParameter>& to) const {
@@ -276,6 +278,8 @@ class Finder {
                     scene.tables = std::move(tables);
                   },
                   of.positive, of.min, of.max, places(of.unit)});
+    // The velocities of a free root are of the start alone.
+    if (motion == "free") to.back().law = integrators::ParameterLaw::affine;
     return true;
   }
 
@@ -297,6 +301,7 @@ class Finder {
                     changed.parameters.set(of.key, of.text(changed.parameters, s));
                   },
                   of.positive, of.min, of.max, places(of.unit)});
+    to.back().law = law_of_number(effect, of.key);
     return true;
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contract/parameters.h"
+#include "integrators/gradient/known_forces.h"
 #include "simulation/scene/scene.h"
 #include "simulation/table/table.h"
 
@@ -41,6 +42,11 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
 std::string unused_number(const models::EffectEntry& effect, std::string_view key,
                           const Parameters& values);
 
+/// Returns the law of an effect's force in one of its numbers: smooth under gravity and
+/// viscous drag, affine where models/affine_numbers.h declares it, unknown
+/// otherwise.
+integrators::ParameterLaw law_of_number(const EffectChoice& effect, std::string_view key);
+
 /// "name.x" becomes "name", 0; empty without such an end.
 std::optional<std::size_t> take_component(std::string_view& name);
 /// Unit vector of the world's axis k.
@@ -70,6 +76,8 @@ struct SceneParameter {
   /// effects.
   bool places = false;
   bool starts = false;  // whether it is the shape at t = 0
+  /// Law of the forces in this number.
+  integrators::ParameterLaw law = integrators::ParameterLaw::unknown;
 };
 
 /// Adds the number of [[supports]] or [[effects.point_moment]] with this name, such as

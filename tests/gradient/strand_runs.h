@@ -60,10 +60,13 @@ struct StrandRun {
     return strand_copies(*model, strand(p), p, strand_effects(p));
   }
 
+  /// Gravity and viscous drag are smooth.
   RunParameter parameter(const Varied& varied) const {
-    return [this, varied](double s) {
+    RunParameter made = [this, varied](double s) {
       return make(varied.key, varied.value + s * varied.unit);
     };
+    made.law = ParameterLaw::smooth;
+    return made;
   }
 };
 

@@ -178,8 +178,9 @@ TEST_P(KnownGradient, OfAnOscillatorIsThatOfItsAmplificationMatrix) {
   Options options;
   options.step = h;
   options.newton_tolerance = 1e-15;
-  const std::vector<RunParameter> stiffness{
+  std::vector<RunParameter> stiffness{
       [](double s) { return std::make_unique<Oscillator>(s); }};
+  stiffness[0].law = ParameterLaw::smooth;
   GradientRun run(oscillator, std::make_unique<Oscillator>(0), stiffness,
                   {GetParam(), options});
   ASSERT_EQ(run.start(), Status::ok) << run.failure();

@@ -71,4 +71,38 @@ TEST(VariedSystem, IsNotSimpleWhereAParameterDoesNotActYet) {
   EXPECT_EQ(one.systems.size(), 4u);  // nor is it believed to be affine
 }
 
+/// A spring of stiffness 1 + s whose force has a term s^2 beyond q = 5.
+class TurningSpring final : public System {
+ public:
+  explicit TurningSpring(double s) : s_(s) {}
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {true, true}; }
+  void initial_state(Out q, Out v) const override { q[0] = v[0] = 1; }
+  void scale(Out q_typ, Out v_typ) const override { q_typ[0] = v_typ[0] = 1; }
+  Status residual(double, In q, In, In a, Out r) noexcept override {
+    r[0] = a[0] + (1 + s_) * q[0] + (q[0] > 5 ? s_ * s_ * (q[0] - 5) : 0);
+    return Status::ok;
+  }
+  Status linearize(double, In, In, In, Weights) noexcept override { return Status::ok; }
+  Status solve(In, Out) noexcept override { return Status::ok; }
+
+ private:
+  double s_;
+};
+
+// A run may visit states where a force turns, and no probe has to.
+TEST(VariedSystem, BelievesNoProbeOfAParameterWhoseLawIsUnknown) {
+  TurningSpring system(0);
+  RunParameter parameter = [](double s) { return std::make_unique<TurningSpring>(s); };
+  const auto systems = [&](ParameterLaw law) {
+    parameter.law = law;
+    const VariedSystem one = varied_system(system, parameter);
+    EXPECT_EQ(one.simple.has_value(), law == ParameterLaw::smooth);
+    return one.systems.size();
+  };
+  EXPECT_EQ(systems(ParameterLaw::unknown), central_stencil.at.size());
+  EXPECT_EQ(systems(ParameterLaw::affine), 1u);
+  EXPECT_EQ(systems(ParameterLaw::smooth), 1u);
+}
+
 }  // namespace tress::test_varied_system

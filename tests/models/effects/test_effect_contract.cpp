@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "models/affine_numbers.h"
 #include "models/effects/catalogue.h"
 #include "models/motion/root_motion.h"
 #include "tests/models/effects/cloud.h"
@@ -101,11 +102,14 @@ struct Case {
     for (const auto& [key, word] : words) text += "_" + key + "_" + word;
     return text;
   }
+  Parameters parameters() const {
+    Parameters all(entry->parameters, "effect " + std::string(entry->id));
+    for (const auto& [key, value] : lively(entry->id)) all.set(key, value);
+    for (const auto& [key, value] : words) all.set(key, value);
+    return all;
+  }
   std::unique_ptr<const Effect> make() const {
-    Parameters parameters(entry->parameters, "effect " + std::string(entry->id));
-    for (const auto& [key, value] : lively(entry->id)) parameters.set(key, value);
-    for (const auto& [key, value] : words) parameters.set(key, value);
-    return entry->make(parameters, moving_head());
+    return entry->make(parameters(), moving_head());
   }
 };
 
@@ -185,6 +189,31 @@ TEST_P(EffectContract, ActsAndIsFinite) {
     largest = std::max(largest, std::abs(f));
   }
   EXPECT_GT(largest, 1e-3);
+}
+
+// Gradients trust the declaration in all states. A sum of some ten terms is rounded at
+// most ten times.
+TEST_P(EffectContract, IsAffineInTheNumbersThatItDeclares) {
+  const Parameters here = GetParam().parameters();
+  for (const Parameter& p : GetParam().entry->parameters) {
+    if (!affine_in(*GetParam().entry, p.name, here)) continue;
+    const auto load_at = [&](double more) {
+      Parameters changed = here;
+      const Vec v = p.components == 3 ? here.vec(p.name) : Vec{};
+      const double step = more * 0.25;
+      changed.set(p.name, p.components == 3
+                              ? number_text(v.x + step) + "," + number_text(v.y - step) +
+                                    "," + number_text(v.z + step)
+                              : number_text(here.number(p.name) + step));
+      const auto made = GetParam().entry->make(changed, moving_head());
+      return load(*made, now, cloud.points());
+    };
+    const auto f0 = load_at(0), f1 = load_at(1), f2 = load_at(2);
+    for (std::size_t i = 0; i < f0.size(); ++i) {
+      const double size = std::abs(f0[i]) + std::abs(f2[i]);
+      ASSERT_NEAR(f1[i], (f0[i] + f2[i]) / 2, 1e-13 * (1 + size)) << p.name;
+    }
+  }
 }
 
 TEST_P(EffectContract, IsFiniteAtDegeneratePlaces) {
