@@ -15,7 +15,8 @@ using std::numbers::pi;
 
 constexpr Parameter parameters_of_tether[] = {
     {.name = "at",
-     .help = "held point, as a fraction of the strand's length: 0 root, 1 tip",
+     .help = "held point, as a fraction of the strand's length: 0 root, 1 tip. The "
+             "tether holds the point of the model that carries this part of the length",
      .number = 1,
      .min = 0,
      .max = 1},

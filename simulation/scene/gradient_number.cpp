@@ -44,13 +44,13 @@ constexpr RefusedKey refused_keys[] = {
     {"natural_shape", "from", "derivatives jump where a part ends between elements"},
     {"natural_shape", "to", "derivatives jump where a part ends between elements"},
     {"supports", "axis", "the length of a direction does nothing"},
-    {"supports", "slide", "the length of a direction does nothing"}};
-
-bool is_refused(std::string_view table, std::string_view key) {
-  return std::ranges::any_of(refused_keys, [&](const RefusedKey& one) {
-    return one.table == table && one.key == key;
-  });
-}
+    {"supports", "slide", "the length of a direction does nothing"},
+    {"tether", "at",
+     "a tether holds one point of the model, and runs jump where that changes"},
+    {"self_contact", "separation_m",
+     "contact rounds it to elements, and runs jump where their number changes"},
+    {"self_contact", "inner_radius_m",
+     "contact points of an element are a whole number, and runs jump where it changes"}};
 
 /// see(list, i, name) of every such table.
 template <class See>
@@ -98,6 +98,13 @@ std::string unit_of(const Parameter& p) {
 
 }  // namespace
 
+std::string_view no_derivative(std::string_view table, std::string_view key) {
+  const auto found = std::ranges::find_if(refused_keys, [&](const RefusedKey& one) {
+    return one.table == table && one.key == key;
+  });
+  return found == std::end(refused_keys) ? std::string_view() : found->reason;
+}
+
 std::string unused_number(const models::EffectEntry& effect, std::string_view key,
                           const Parameters& values) {
   for (const models::EffectUse& one : effect.uses) {
@@ -135,10 +142,8 @@ bool add_table_parameter(const Scene& scene, std::string_view name,
         const std::string_view written = name.substr(dot + 1);
         std::string_view key = written;
         take_component(key);
-        for (const RefusedKey& one : refused_keys) {
-          if (one.table != list.name || one.key != key) continue;
-          refuse_gradient(name, one.reason, place, "leave it out");
-        }
+        const std::string_view reason = no_derivative(list.name, key);
+        if (!reason.empty()) refuse_gradient(name, reason, place, "leave it out");
         const GradientNumber of =
             gradient_number(name, written, table.declared(), table.values(), place);
         to.push_back({std::string(name), of.unit, of.value, of.measure, false,
@@ -161,7 +166,7 @@ std::vector<std::string> table_parameter_names(const Scene& scene) {
       scene, [&](const ListedTables& list, std::size_t i, const std::string& of_table) {
         for (const Parameter& p : list.of(*scene.tables)[i].declared()) {
           if (p.text || p.rows || p.whole || !p.choices.empty()) continue;
-          if (is_refused(list.name, p.name)) continue;
+          if (!no_derivative(list.name, p.name).empty()) continue;
           all.push_back(
               fmt::format("{}.{}{}", of_table, p.name, p.components == 3 ? ".x" : ""));
         }

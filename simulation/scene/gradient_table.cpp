@@ -291,6 +291,8 @@ class Finder {
     if (found == effects.end()) return false;
     const auto i = static_cast<std::size_t>(found - effects.begin());
     const EffectChoice& effect = scene_.effects[i];
+    const std::string_view reason = no_derivative(effect.entry->id, name.substr(dot + 1));
+    if (!reason.empty()) refuse(name, reason, "compare runs");
     const GradientNumber of = gradient_number(
         name, name.substr(dot + 1), effect.entry->parameters, effect.parameters, place_);
     const std::string unused = unused_number(*effect.entry, of.key, effect.parameters);
@@ -323,7 +325,8 @@ class Finder {
     for (std::size_t i = 0; i < effects.size(); ++i) {
       const EffectChoice& effect = scene_.effects[i];
       for (const Parameter& p : effect.entry->parameters) {
-        if (unused_number(*effect.entry, p.name, effect.parameters).empty()) {
+        if (unused_number(*effect.entry, p.name, effect.parameters).empty() &&
+            no_derivative(effect.entry->id, p.name).empty()) {
           add(effects[i], p);
         }
       }

@@ -42,6 +42,10 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
 std::string unused_number(const models::EffectEntry& effect, std::string_view key,
                           const Parameters& values);
 
+/// Returns why runs have no derivative by a number of a table or an effect. Empty: they
+/// have one.
+std::string_view no_derivative(std::string_view table, std::string_view key);
+
 /// Returns the law of an effect's force in one of its numbers: smooth under gravity and
 /// viscous drag, affine where models/affine_numbers.h declares it, unknown
 /// otherwise.

@@ -321,6 +321,22 @@ TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
   EXPECT_NE(refused("off = \"tip\"\n").find("unknown key 'off'"), std::string::npos);
 }
 
+// Runs are staircases in numbers that are rounded to points or samples.
+TEST(SceneGradient, IsRefusedByNumbersThatAreRounded) {
+  const auto reason = [](const std::string& by) {
+    const std::string effect = by.substr(0, by.find('.'));
+    return refused("by = [\"" + by + "\"]\n[effects." + effect + "]\n");
+  };
+  EXPECT_NE(reason("tether.at").find("holds one point of the model"), std::string::npos);
+  EXPECT_NE(reason("self_contact.separation_m").find("rounds it to elements"),
+            std::string::npos);
+  EXPECT_NE(reason("self_contact.inner_radius_m").find("are a whole number"),
+            std::string::npos);
+  const std::string listed = refused("by = [\"zzzzzz\"]\n[effects.tether]\n");
+  EXPECT_NE(listed.find("tether.soft_m"), std::string::npos) << listed;
+  EXPECT_EQ(listed.find("tether.at,"), std::string::npos) << listed;
+}
+
 // Units are those of the names, whatever else is in parentheses.
 TEST(SceneGradient, HasTheUnitsOfItsParameters) {
   const std::string effects = "[effects.tether]\n[effects.distributed_load]\nto = 0.83\n";
