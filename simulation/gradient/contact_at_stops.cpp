@@ -1,13 +1,48 @@
 #include "simulation/gradient/contact_at_stops.h"
 
 #include <algorithm>
+#include <memory>
 
-#include "contract/forms/contact_form.h"
-#include "simulation/gradient/run_stops.h"
-#include "simulation/gradient/scene_gradient.h"
+#include "models/effects/effect.h"
 #include "simulation/scene/strand_tables.h"
 
 namespace tress::simulation {
+namespace {
+
+using models::Points;
+
+/// Records the points on which effects act: nodes, or the points of a quadrature.
+class SeenPoints final : public models::Effect {
+ public:
+  std::string_view name() const override { return "seen_points"; }
+  models::Needs needs() const override { return {.position = true}; }
+  void add_load(double, const Points& p, InOut) const noexcept override {
+    x.clear();
+    for (std::size_t i = static_cast<std::size_t>(p.held); i < p.length.size(); ++i) {
+      if (!(p.length[i] > 0)) continue;  // touches nothing
+      for (std::size_t k = 0; k < 3; ++k) x.push_back(p.x[3 * i + k]);
+    }
+  }
+  void add_derivatives(double, const Points&, double, double,
+                       InOut) const noexcept override {}
+  double potential(double, const Points&) const noexcept override { return 0; }
+  double power(double, const Points&) const noexcept override { return 0; }
+
+  mutable std::vector<double> x;  // (3 points), m
+};
+
+std::vector<double> touchable_points(const Scene& scene, std::size_t strand) {
+  const auto points = std::make_shared<SeenPoints>();
+  const auto system =
+      scene.model->on_strand(scene.strands[strand], scene.model_options, {points});
+  std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q),
+      a(q), r(q);
+  system->initial_state(q, v);
+  static_cast<void>(system->residual(0, q, v, a, r));
+  return points->x;
+}
+
+}  // namespace
 
 bool near_change(std::span<const double> changes, double t, double step) {
   constexpr double rounding = 1e-9;
@@ -18,16 +53,12 @@ bool near_change(std::span<const double> changes, double t, double step) {
 
 bool begins_inside(const Scene& scene, std::size_t strand) {
   constexpr double rounding = 1e-9;  // over the length of the strand
-  const auto system = exact_system_of(scene, strand);
-  ContactForm* const contacts = system->contact_form();
-  if (contacts == nullptr || contacts->complementarity() == nullptr) return false;
-  std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q);
-  system->initial_state(q, v);
-  if (contacts->complementarity()->take(0, q, v, q, v) == 0) return false;
-  const std::vector<double> x = points_at(*system, 0, q);
-  const Effects effects = make_effects(scene);
+  const models::Effects effects = make_effects(scene);
+  if (!models::hold_contacts(effects)) return false;
+  const std::vector<double> x = touchable_points(scene, strand);
   return std::ranges::any_of(effects, [&](const auto& effect) {
-    const double depth = effect->penetration(0, x).value_or(0);
+    const bool exact = effect->for_strand(0) != nullptr;
+    const double depth = exact ? effect->penetration(0, x).value_or(0) : 0;
     return depth > rounding * scene.strands[strand].length();
   });
 }

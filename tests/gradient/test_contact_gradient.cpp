@@ -208,4 +208,24 @@ TEST(ContactGradient, IsRefusedWhereThereIsNone) {
   EXPECT_NE(checked("-0.03", "0.01").find("begins inside a body"), std::string::npos);
 }
 
+// The sphere reaches into the strand between two nodes, and no node is inside. Contact
+// acts on the points of the quadrature.
+TEST(ContactGradient, IsRefusedWhereAStrandBeginsInsideBetweenItsNodes) {
+  const auto inside = [](const std::string& radius) {
+    return refusal([&] {
+      check_gradient(parse_scene(
+          head(0.12, 3, 60) +
+              "[effects.body]\nshape = \"sphere\"\ncentre_m = [0.046176, 0, "
+              "-0.061438]\nfriction_law = \"exact\"\nnormal = \"rigid\"\nradius_m = " +
+              radius +
+              "\n[model]\nid = \"super_helix\"\n[strand]\nlength_m = 0.1\nelements = "
+              "4\nshape = \"along\"\ndarboux_along = [[0, 0, 10, 0]]\n[root]\n"
+              "[gradient]\nby = [\"body.radius_m\"]\n",
+          "s.toml"));
+    });
+  };
+  EXPECT_NE(inside("0.04").find("begins inside a body"), std::string::npos);
+  EXPECT_EQ(inside("0.03"), "");
+}
+
 }  // namespace tress::test_contact_gradient
