@@ -108,9 +108,17 @@ RecordRuns::RecordRuns(const FitTask& task) {
                 points.file, "leave one of them out");
     }
   }
+  const auto unknown = [](const FitRecord& one) { return one.points->sigma.empty(); };
+  const auto none = std::ranges::find_if(task.records, unknown),
+             some = std::ranges::find_if_not(task.records, unknown);
+  refuse_if(none != task.records.end() && some != task.records.end(),
+            fmt::format("no column sigma_m, which {} has: residuals of the two have no "
+                        "common scale",
+                        some == task.records.end() ? "" : some->points->file),
+            none == task.records.end() ? "" : none->points->file,
+            "give sigma_m in all records, or in none");
+  known_ = none == task.records.end();
   for (const FitRecord& record : task.records) add(task, record);
-  known_ = std::ranges::none_of(
-      task.records, [](const FitRecord& one) { return one.points->sigma.empty(); });
 }
 
 void RecordRuns::add(const FitTask& task, const FitRecord& from) {

@@ -374,6 +374,28 @@ TEST(SceneFit, RefusesNoRecordAndTheSameOneTwice) {
               HasSubstr("a record that is given twice counts twice (a.csv)"));
 }
 
+// Residuals over sigma_m and residuals in metres have no common scale.
+TEST(SceneFit, RefusesRecordsWithAndWithoutStandardErrors) {
+  const Scene scene = Curl{}.scene();
+  const std::string known = "time_s,x_m,sigma_m\n0.05,0,1e-3\n0.1,0,1e-3\n0.2,0,1e-3\n",
+                    unknown = "time_s,y_m\n0.05,0\n0.1,0\n0.2,0\n";
+  const PointRecord a = parse_point_record(known, "a.csv"),
+                    b = parse_point_record(unknown, "b.csv");
+  const auto refused = [&](const PointRecord& one, const PointRecord& other) {
+    return refusal([&] {
+      check_fit({.records = {{&scene, &one}, {&scene, &other}},
+                 .by = {four[0]},
+                 .bounds = {},
+                 .priors = {}});
+    });
+  };
+  for (const auto& text : {refused(a, b), refused(b, a)}) {
+    EXPECT_EQ(text,
+              "no column sigma_m, which a.csv has: residuals of the two have no common "
+              "scale (b.csv): give sigma_m in all records, or in none");
+  }
+}
+
 // A time as a table prints it, with 9 digits, is not after the end.
 TEST(SceneFit, AcceptsTheLastFrameOfATable) {
   const Scene scene = Curl{.duration = 1.0 / 3}.scene();
