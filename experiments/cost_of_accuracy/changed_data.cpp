@@ -2,7 +2,6 @@
 #include <functional>
 
 #include "experiments/cost_of_accuracy/scene_measure.h"
-#include "experiments/numerics/tip_track.h"
 #include "simulation/run/tip_paths.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -36,7 +35,7 @@ SceneReference differences(const Scene& given, const Comparison& comparison,
   };
   SceneReference made{{difference(Change::up), difference(Change::down)},
                       comparison.frames};
-  made.tips.gap = tip_error(made.tips.other, made.tips.tip, comparison.length);
+  made.tips.gap = compared_error(made.tips.other, made.tips.tip, comparison);
   return made;
 }
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/tip_track.h"
 #include "experiments/run/message.h"
 #include "simulation/run/tip_paths.h"
 
@@ -87,7 +86,7 @@ class Side {
         std::vector<double> limit = x;
         const double factor = extrapolation(method_, level.elements);
         for (std::size_t i = 0; i < x.size(); ++i) limit[i] += factor * (x[i] - fine_[i]);
-        change_ = limit_.empty() ? never : tip_error(limit, limit_, comparison_->length);
+        change_ = limit_.empty() ? never : compared_error(limit, limit_, *comparison_);
         limit_ = std::move(limit);
         coarse_ = std::move(fine_);
         coarse_level_ = fine_level_;
@@ -129,7 +128,7 @@ SceneReference pair_of(const Side& a, const Side& b, const Comparison& compariso
   const bool first = a.change() <= b.change();
   SceneReference made{{first ? a.limit() : b.limit(), first ? b.limit() : a.limit()},
                       comparison.frames};
-  made.tips.gap = tip_error(made.tips.other, made.tips.tip, comparison.length);
+  made.tips.gap = compared_error(made.tips.other, made.tips.tip, comparison);
   return made;
 }
 

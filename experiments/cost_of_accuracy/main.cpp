@@ -282,8 +282,9 @@ void advise(const CommandLine& line, const std::vector<Row>& rows) {
   const Row* best = advised(rows);
   if (!may_be_written(rows) || line.out == "-") return;
   const Scene given = read_open_scene(file);
-  write_advised("cost_of_accuracy", line, given.name,
-                advised_text(given, *best, own.number("fps")));
+  const double rate =
+      comparison(given, own.number("fps"), own.number("horizon_s"), 1).rate;
+  write_advised("cost_of_accuracy", line, given.name, advised_text(given, *best, rate));
 }
 
 constexpr Unused unused[] = {not_random};

@@ -55,8 +55,8 @@ void decide(Study& study, const Deadline& deadline, Heartbeat& heartbeat) {
           "the references agree for the first {:.2g} s of {:.3g} s only, beyond they "
           "differ by {:.2g} % of the length ({}): the motion is too sensitive, or more "
           "time is needed (--set answer_s)",
-          static_cast<double>(frames) / plan.rate,
-          static_cast<double>(study.asked) / plan.rate, 1e2 * study.beyond, study.how));
+          study.comparison.time_of(frames), study.comparison.horizon(),
+          1e2 * study.beyond, study.how));
     }
   }
   const std::size_t size = study.reference.tips.tip.size();
@@ -81,7 +81,10 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity,
   }
   heartbeat.doing("computing the references");
   const auto kept = [&](const ReferenceCut& cut, const std::string& as) {
-    return kept_reference(study.given, study.comparison, cut, plan.references, as);
+    // The stored gap may be that of another version: it is taken from the tips.
+    return first_frames(
+        kept_reference(study.given, study.comparison, cut, plan.references, as),
+        study.comparison);
   };
   SceneReference whole = kept(plan.reference, name);
   std::optional<SceneReference> fine;

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/tip_track.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/tip_paths.h"
 
@@ -92,7 +91,7 @@ std::function<bool(const std::vector<double>&)> SceneMeasure::useless(
     const std::vector<double>& reference) const {
   if (useless_ == never) return {};
   const double most = std::pow(useless_ * comparison_.length, 2) *
-                      static_cast<double>(reference.size()) / 3;
+                      (static_cast<double>(reference.size()) / 3 - strands());
   return [&reference, most, seen = std::size_t{0},
           squares = 0.0](const std::vector<double>& x) mutable {
     for (; seen < std::min(x.size(), reference.size()); ++seen) {
@@ -152,7 +151,7 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
         run.once_s < short_run
             ? repeated(method, elements, substeps, short_repeats, 0).least_s
             : run.once_s;
-    Trial made{0, elements, substeps, tip_error(run.tips, reference_, comparison_.length),
+    Trial made{0, elements, substeps, compared_error(run.tips, reference_, comparison_),
                wall_s};
     made.work = run.work;
     made.indicator = run.indicator;
@@ -168,8 +167,8 @@ std::optional<Trial> SceneMeasure::quick(const Method& method, int elements, int
 double SceneMeasure::neighbour_error(const Method& method, int elements, int substeps,
                                      Neighbour which, double most_s) const {
   try {
-    return tip_error(outcome(method, elements, substeps, most_s, which).tips,
-                     reference(which), comparison_.length);
+    return compared_error(outcome(method, elements, substeps, most_s, which).tips,
+                          reference(which), comparison_);
   } catch (const std::runtime_error&) {  // including refusals: InputError is one
     return never;
   }
@@ -182,7 +181,7 @@ std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count,
     const TipPaths paths = tip_paths(run, 0, {.wall_s = most_s});
     const bool once = paths.once_s > long_run_s;
     Trial made{
-        0, 0, 0, tip_error(paths.x, reference_, comparison_.length),
+        0, 0, 0, compared_error(paths.x, reference_, comparison_),
         once ? paths.once_s : wall_time(wall_times(run, count, long_enough)).least_s};
     made.indicator = paths.indicator;
     return made;
@@ -198,8 +197,7 @@ WallTime SceneMeasure::time(const Method& method, int elements, int substeps,
 
 double SceneMeasure::error(const Method& method, int elements, int substeps,
                            const std::vector<double>& reference) const {
-  return tip_error(outcome(method, elements, substeps).tips, reference,
-                   comparison_.length);
+  return compared_error(outcome(method, elements, substeps).tips, reference, comparison_);
 }
 
 }  // namespace tress::experiments::cost_of_accuracy

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <system_error>
 
 #include "contract/input_error.h"
@@ -22,6 +23,13 @@ namespace {
 
 /// Version of the reference computation; increment it to invalidate stored references.
 constexpr int reference_version = 1;
+
+/// Times at which a scene shorter than a frame is compared, and the largest frame rate
+/// that a scene file takes (1/s).
+constexpr double times_within_a_frame = 4, largest_rate = 1e6;
+
+/// A number of frames is whole up to this.
+constexpr double whole_frame = 1e-9;
 
 constexpr std::string_view columns[] = {"t_s", "strand",    "x_m",       "y_m",
                                         "z_m", "other_x_m", "other_y_m", "other_z_m"};
@@ -56,7 +64,7 @@ std::string text_of(const SceneReference& reference, const Comparison& compariso
   for (std::size_t i = 0; i < reference.tips.tip.size(); i += 3) {
     const std::size_t frame = i / 3 / strands;
     Row row;
-    row.set("t_s", static_cast<double>(frame) / comparison.rate);
+    row.set("t_s", comparison.time_of(frame));
     row.set("strand", i / 3 % strands);
     for (std::size_t k = 0; k < 3; ++k) {
       row.set(columns[2 + k], reference.tips.tip[i + k]);
@@ -75,13 +83,28 @@ Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands) {
   Comparison made{.rate = rate, .strands = strands};
   const double span = horizon > 0 ? std::min(horizon, given.duration) : given.duration;
-  made.frames = static_cast<std::size_t>(std::max(1.0, std::floor(span * rate + 1e-9)));
+  if (span * rate < 1 - whole_frame) {
+    made.rate = std::min(times_within_a_frame / span, largest_rate);
+  }
+  // As Scene::last_frame.
+  const double frames = std::max(1.0, std::ceil(span * made.rate - whole_frame));
+  made.frames = static_cast<std::size_t>(frames);
+  if (frames > span * made.rate + whole_frame) made.end = span;
   const std::vector<Strand>& all = given.strands;
   const std::vector<std::size_t> typical = typical_strands(all, strands);
   for (const std::size_t i : typical) made.length += all[i].length();
   made.length /= static_cast<double>(typical.size());
   if (typical.size() < all.size()) made.chosen = typical;
   return made;
+}
+
+double compared_error(const std::vector<double>& tip,
+                      const std::vector<double>& reference,
+                      const Comparison& comparison) {
+  if (tip.size() != reference.size()) return std::numeric_limits<double>::infinity();
+  const std::size_t per_frame = reference.size() / (comparison.frames + 1);
+  return tip_error(std::span(tip).subspan(per_frame),
+                   std::span(reference).subspan(per_frame), comparison.length);
 }
 
 Scene compared(Scene scene, const Comparison& comparison) {
@@ -103,8 +126,10 @@ SceneReference scene_reference(const Scene& given, const Comparison& comparison,
     return tip_paths(scene, 0).x;
   };
   const Finest finest{cut.elements, 1 / (comparison.rate * cut.substeps)};
-  return {converged_rod(tips, comparison.length, {"super_helix", "der"}, finest),
-          comparison.frames};
+  const SceneReference made{
+      converged_rod(tips, comparison.length, {"super_helix", "der"}, finest),
+      comparison.frames};
+  return first_frames(made, comparison);
 }
 
 SceneReference first_frames(const SceneReference& reference,
@@ -114,7 +139,9 @@ SceneReference first_frames(const SceneReference& reference,
   cut.frames = std::min(comparison.frames, reference.frames);
   cut.tips.tip.resize(per_frame * (cut.frames + 1));
   cut.tips.other.resize(per_frame * (cut.frames + 1));
-  cut.tips.gap = tip_error(cut.tips.other, cut.tips.tip, comparison.length);
+  Comparison own = comparison;
+  own.frames = cut.frames;
+  cut.tips.gap = compared_error(cut.tips.other, cut.tips.tip, own);
   return cut;
 }
 
@@ -188,6 +215,7 @@ std::string reference_key(const Scene& given, const Comparison& comparison,
   for (const std::size_t strand : comparison.chosen) {
     chosen += fmt::format(" {}", strand);
   }
+  if (std::isfinite(comparison.end)) chosen += fmt::format(" end {}", comparison.end);
   return hash(fmt::format("{} {} {} {}{} {} {}\n{}", reference_version, comparison.rate,
                           comparison.frames, comparison.strands, chosen, cut.elements,
                           cut.substeps, physics(given)));

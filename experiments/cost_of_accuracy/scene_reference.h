@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,21 +13,35 @@
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// Compared quantities: the tips of `strands` strands at all frames up to a horizon.
+/// Compared quantities: the tips of `strands` strands at all frames up to a horizon, and
+/// at the horizon, which may cut the last frame short.
 struct Comparison {
   double rate = 60;         // frames per second
-  std::size_t frames = 30;  // the horizon
+  std::size_t frames = 30;  // times of comparison after t = 0
   std::size_t strands = 1;  // of a groom
   double length = 0;        // of the strands, mean (m)
   /// Indices of the strands; empty: all. They are typical ones of the scene in its file,
   /// and so the same for every discretisation.
   std::vector<std::size_t> chosen = {};
 
-  double horizon() const { return static_cast<double>(frames) / rate; }
+  double end = std::numeric_limits<double>::infinity();  // s, where it is no whole frame
+
+  /// Returns the time of a frame, s.
+  double time_of(std::size_t frame) const {
+    return std::min(static_cast<double>(frame) / rate, end);
+  }
+  double horizon() const { return time_of(frames); }
 };
-/// A horizon of 0 is the scene's duration.
+/// A horizon of 0 is the scene's duration. A span shorter than a frame is compared at
+/// several times: `rate` is higher then.
 Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands);
+
+/// Root mean square distance of tips, frame by frame from t = 0, over strands and times
+/// of comparison, over the length. At t = 0 every run is exact: that frame is left out.
+/// Infinite where a tip is missing or not finite.
+double compared_error(const std::vector<double>& tip,
+                      const std::vector<double>& reference, const Comparison& comparison);
 
 /// The scene restricted to the comparison's strands and frames.
 Scene compared(Scene scene, const Comparison& comparison);

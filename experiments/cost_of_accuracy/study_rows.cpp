@@ -11,9 +11,12 @@
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
+/// Frames of the horizon at the requested rate, with the part of the last one.
+double frames(const Study& study) { return study.comparison.horizon() * study.plan.rate; }
+
 void set_wall(const Study& study, double wall_s, Row& row) {
   row.set("wall_s_per_sim_s", wall_s / study.comparison.horizon());
-  row.set("ms_per_frame", 1e3 * wall_s / static_cast<double>(study.comparison.frames));
+  row.set("ms_per_frame", 1e3 * wall_s / frames(study));
 }
 
 /// A run whose error exceeds the loosest target by this factor is abandoned.
@@ -148,8 +151,7 @@ void add_control(const Study& study, Finalists& finalists, double target,
 void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows) {
   const double budget_s = study.plan.budget_s;
   if (budget_s == 0) return;
-  const auto frames = static_cast<double>(study.comparison.frames);
-  const auto run = finalists.within(budget_s * frames, study.floor());
+  const auto run = finalists.within(budget_s * frames(study), study.floor());
   Row row = run ? row_of(study, "budget", *run) : begin(study, "budget");
   row.set("budget_ms", 1e3 * budget_s);
   if (!run) {

@@ -46,7 +46,8 @@ constexpr Column table_columns[] = {
      "requested tolerance over the length, of a run that chooses its steps"},
     {"mean_step_s", "mean step of that run"},
     {"error_rel",
-     "tip against the continuous rod: rms over frames and strands, over the length"},
+     "tip against the continuous rod: rms over strands, frames after t = 0 and the end "
+     "of the scene, over the length"},
     {"error_refined_rel", "error_rel against the reference refined once more"},
     {"error_neighbours_rel",
      "largest error of its neighbours: 1 and 2 elements more, step or tolerance "

@@ -1,7 +1,8 @@
 // judge SCENE ADVISED STRANDS: how far is a run of ADVISED, as it is written, from the
 // rod of SCENE? By two models that cost_of_accuracy does not take for its references, by
 // tr_bdf2: super_clothoid, and corde extrapolated from two numbers of elements. Prints
-// "ERROR DOUBT": rms of the tips at all frames over the length, of the run and of one
+// "ERROR DOUBT": rms of the tips over the length, at all frames
+// after t = 0 and at the end, of the run and of one
 // reference from the other.
 #include <algorithm>
 #include <cstdio>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "experiments/cost_of_accuracy/scene_reference.h"
-#include "experiments/numerics/tip_track.h"
 #include "simulation/run/tip_paths.h"
 
 namespace tress {
@@ -54,8 +54,8 @@ int judge(const std::string& given_file, const std::string& advised_file, int st
       tips(given, compare, "super_clothoid", 48, tolerance);
   const std::vector<double> other = limit_of_corde(given, compare);
   const TipPaths run = tip_paths(compared(advised, compare), 0);
-  std::printf("%.6g %.6g\n", tip_error(run.x, reference, compare.length),
-              tip_error(other, reference, compare.length));
+  std::printf("%.6g %.6g\n", compared_error(run.x, reference, compare),
+              compared_error(other, reference, compare));
   return 0;
 }
 

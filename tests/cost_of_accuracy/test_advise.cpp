@@ -85,6 +85,32 @@ TEST(Advise, ComparesTheWholeScene) {
               HasSubstr("over the first 0.2 s of 0.8 s"));
 }
 
+// 1.98 frames of 1/60 s.
+TEST(Advise, ComparesTheEndThatIsNoWholeFrame) {
+  Toy process;
+  std::string shorter = sagging;
+  shorter.replace(shorter.find("0.1"), 3, "0.033");
+  process.write("hair.toml", shorter);
+  const Toy::Result result = process.run("--advise hair.toml" + small);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(winner_of(process).number("horizon_s"), 0.033);
+  EXPECT_EQ(winner_of(process).number("asked_s"), 0.033);
+  EXPECT_THAT(line_of(result.out, "take "), HasSubstr("over the whole 0.033 s"));
+}
+
+// A scene of a quarter of a frame: its file has the frames that were compared.
+TEST(Advise, ComparesWithinAFrame) {
+  Toy process;
+  std::string shorter = sagging;
+  shorter.replace(shorter.find("0.1"), 3, "0.004");
+  process.write("hair.toml", shorter);
+  const Toy::Result result = process.run("--advise hair.toml" + small);
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(winner_of(process).number("horizon_s"), 0.004);
+  const Scene scene = parse_scene(process.read("hair.advised.toml"), "hair.advised.toml");
+  EXPECT_EQ(scene.frame_rate, 1000);
+}
+
 // A soft hair without any friction, swung and stopped: nobody knows its motion for long.
 TEST(Advise, SaysHowFarItIsValidWhereReferencesPart) {
   Toy process;

@@ -122,6 +122,52 @@ TEST(SceneReference, ModelsAgreeBetterWhenRefined) {
   EXPECT_LT(second.tips.gap, 1e-3);
 }
 
+Scene lasting(const Scratch& folder, double seconds) {
+  std::string text = sagging;
+  text.replace(text.find("0.2"), 3, fmt::format("{}", seconds));
+  return read_open_scene(folder.write("lasting.toml", text));
+}
+
+TEST(Comparison, ReachesTheEndOfTheScene) {
+  const Scratch folder;
+  const Scene given = lasting(folder, 0.033);  // 1.98 frames
+  const Comparison compare = comparison(given, 60, 0, 1);
+  EXPECT_EQ(compare.frames, 2u);
+  EXPECT_EQ(compare.horizon(), 0.033);
+  EXPECT_EQ(compare.time_of(1), 1 / 60.0);
+  const Scene run = compared(given, compare);
+  EXPECT_EQ(run.last_frame(), compare.frames);
+  EXPECT_EQ(run.time_of(compare.frames), 0.033);
+  EXPECT_NE(reference_key(given, compare, coarse),
+            reference_key(given, {.frames = 2, .length = compare.length}, coarse));
+  // Part of a scene, as requested, and whole frames.
+  EXPECT_EQ(comparison(lasting(folder, 0.2), 60, 0.033, 1).horizon(), 0.033);
+  EXPECT_EQ(comparison(lasting(folder, 0.2), 60, 0, 1).frames, 12u);
+  EXPECT_EQ(comparison(lasting(folder, 1.9), 1, 0, 1).horizon(), 1.9);
+}
+
+// One time of comparison would be the end alone.
+TEST(Comparison, HasSeveralTimesWithinAFrame) {
+  const Scratch folder;
+  const Scene given = lasting(folder, 0.004);
+  const Comparison compare = comparison(given, 60, 0, 1);
+  EXPECT_EQ(compare.frames, 4u);
+  EXPECT_EQ(compare.rate, 1000);
+  EXPECT_EQ(compare.horizon(), 0.004);
+  EXPECT_EQ(compared(given, compare).last_frame(), 4u);
+}
+
+// Tips that are exact at t = 0 and 1 off from there on have the error 1 / length.
+TEST(Comparison, LeavesOutTheStart) {
+  const Comparison compare{.frames = 2, .strands = 2, .length = 4};
+  std::vector<double> tip(18, 0.0);
+  const std::vector<double> reference = tip;
+  for (std::size_t i = 6; i < tip.size(); i += 3) tip[i] = 1;
+  EXPECT_EQ(compared_error(tip, reference, compare), 0.25);
+  tip.pop_back();
+  EXPECT_EQ(compared_error(tip, reference, compare), never);
+}
+
 TEST(SceneReference, EndsWhereItsSidesPart) {
   Comparison compare{.rate = 10, .frames = 9, .strands = 1, .length = 1};
   SceneReference reference;
@@ -137,8 +183,8 @@ TEST(SceneReference, EndsWhereItsSidesPart) {
   EXPECT_EQ(agreed(reference, compare, 0.1).frames, 5u);
   EXPECT_EQ(agreed(reference, compare, 0.1).tips.gap, 0);
   EXPECT_EQ(agreed(reference, compare, 0.1).tips.tip.size(), 18u);
-  // rms over frames 0 to 6: sqrt(1/7).
-  EXPECT_EQ(agreed(reference, compare, 0.4).frames, 6u);
+  // rms over frames 1 to 6: sqrt(1/6) = 0.41; over frames 1 to 7: 0.53.
+  EXPECT_EQ(agreed(reference, compare, 0.42).frames, 6u);
   EXPECT_EQ(agreed(reference, compare, 1).frames, 9u);
   reference.tips.other[3] = 50;
   EXPECT_EQ(agreed(reference, compare, 0.1).frames, 1u);  // one at least

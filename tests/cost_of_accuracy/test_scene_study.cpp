@@ -157,7 +157,7 @@ TEST(SceneStudy, RowsAndAdvisedScenesRepeatTheirError) {
   const SceneReference reference = kept_reference(given, compare, small.plan.reference,
                                                   small.plan.references, "sagging");
   const TipPaths paths = tip_paths(compared(scene, compare), 0);
-  EXPECT_EQ(tip_error(paths.x, reference.tips.tip, compare.length),
+  EXPECT_EQ(compared_error(paths.x, reference.tips.tip, compare),
             best->number("error_rel"));
 }
 
