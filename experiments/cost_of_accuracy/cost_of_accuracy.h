@@ -128,9 +128,12 @@ std::string configuration_and_price(const Row& row);
 /// 2 s".
 std::string validity(const Row& row);
 
-/// The recommended row, or the best known; null if there is none. The winner, unless the
-/// runner-up is both cheaper and more accurate: the two are tied, and the winner is the
-/// simpler.
+/// Exchanges winner and runner-up of an answer where the runner-up is both cheaper and
+/// more accurate. The two are tied then, and the search took the simpler as the winner.
+void put_better_first(std::vector<Row>& rows);
+
+/// The recommended row, or the best known; null if there is none. The best run within the
+/// budget, if that is requested, else the winner.
 const Row* advised(const std::vector<Row>& rows);
 
 /// Whether a file may be written as advised: it is the scene of advised(), and no worse

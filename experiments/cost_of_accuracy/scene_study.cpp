@@ -146,6 +146,7 @@ void settle(const Study& study, Finalists& finalists, const std::vector<double>&
 /// The row that is advised: its file is run as it is written. An answer for a part of the
 /// scene is none for the whole, and a run that misses the target is none.
 void conclude(const Study& study, std::vector<Row>& rows) {
+  put_better_first(rows);
   const Row* best = advised(rows);
   if (best == nullptr) return;
   Row& row = rows[static_cast<std::size_t>(best - rows.data())];

@@ -104,14 +104,34 @@ const configuration = (row) =>
     typeof row.position_tol_rel === 'number' && `tolerance ${row.position_tol_rel}`,
     typeof row.dt_s === 'number' && `dt ${seconds(row.dt_s)}`].filter(Boolean).join(', ');
 
+/// Time for which a row's error is known.
+function validity({ horizon_s, duration_s }) {
+  if (typeof horizon_s !== 'number') return '';
+  return horizon_s < duration_s
+    ? `the first ${seconds(horizon_s)} of ${seconds(duration_s)}`
+    : `the whole ${seconds(duration_s)}`;
+}
+
+/// What the program printed of a row: a run is taken where it is an answer only.
+function standing(row) {
+  if (row.kind === 'runner_up') return 'next best';
+  if (row.kind === 'as_given') return 'your file';
+  if (['ok', 'valid_in_part', undefined].includes(row.status)) return 'take';
+  if (row.status === 'file_differs' || !row.model) return `no answer: ${row.reason}`;
+  const tried = `${row.search}`.includes('cut') ? 'so far' : 'with any method tried';
+  return `no run within ${percent(row.target_error_rel)} ${tried}; best so far`;
+}
+
 function accuracy() {
-  const names = { winner: 'take', runner_up: 'next best', as_given: 'your file' };
   const rows = rows_of('cost_of_accuracy');
+  // A row of a scene without a reference has no kind.
+  const answers = rows.filter(({ kind }) =>
+    !kind || ['winner', 'runner_up', 'as_given'].includes(kind));
   const line = (row) => [configuration(row), percent(row.error_rel),
     typeof row.ms_per_frame === 'number' ? seconds(row.ms_per_frame / 1e3) : row.reason];
   const heads = ['configuration', 'error, of the length', 'time a frame'];
-  return `${table(['', ...heads], rows.filter((row) => names[row.kind])
-    .map((row) => [names[row.kind], ...line(row)]))}
+  return `${table(['', ...heads, 'valid for'],
+    answers.map((row) => [standing(row), ...line(row), validity(row)]))}
 <h2>Error against time</h2>
 <p>What nothing else that was tried beats in both.</p>
 ${table(heads, rows.filter((row) => row.kind === 'front').map(line))}`;

@@ -22,14 +22,22 @@ Row configured(std::string_view kind, double error, double wall) {
 }
 
 TEST(Advice, TakesWhatIsBothCheaperAndMoreAccurate) {
-  const std::vector<Row> rows{configured("winner", 0.009, 1),
-                              configured("runner_up", 0.008, 0.9).set("tied", true)};
+  const Row next = configured("runner_up", 0.008, 0.9).set("tied", true);
+  std::vector<Row> rows{configured("winner", 0.009, 1), next};
+  put_better_first(rows);
   const auto lines = advice(rows);
   EXPECT_TRUE(lines[0].starts_with("take der,")) << lines[0];
-  EXPECT_EQ(advised(rows), &rows[1]);
+  EXPECT_TRUE(lines[1].starts_with("tied within 10 %: super_helix,")) << lines[1];
+  // The table says the same.
+  EXPECT_EQ(rows[0].text("model"), "der");
+  EXPECT_EQ(rows[0].text("kind"), "winner");
+  EXPECT_EQ(rows[0].number("cost_factor"), 1);
+  EXPECT_EQ(rows[1].text("kind"), "runner_up");
+  EXPECT_DOUBLE_EQ(rows[1].number("cost_factor"), 1 / 0.9);
   // Cheaper alone, or more accurate alone, is no reason: the winner is the simpler.
-  EXPECT_TRUE(advice({configured("winner", 0.007, 1), rows[1]})[0].starts_with(
-      "take super_helix,"));
+  std::vector<Row> simpler{configured("winner", 0.007, 1), next};
+  put_better_first(simpler);
+  EXPECT_TRUE(advice(simpler)[0].starts_with("take super_helix,"));
 }
 
 TEST(Advice, KeepsTheFileAsGivenWhereNoRunIsBetter) {

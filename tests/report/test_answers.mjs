@@ -100,6 +100,27 @@ front,der,,exact,,9,bdf2,0.001,0.004,3,
   assert.match(html, /9 elements/);
 });
 
+const advice = (rows) => page({
+  'cost_of_accuracy.csv': `kind,status,model,elements,integrator,dt_s,target_error_rel,error_rel,ms_per_frame,horizon_s,duration_s,search,reason
+${rows}`,
+});
+
+test('a run that is no answer is not taken; one for a part of the scene names the part', () => {
+  const failed = advice(`winner,no_answer,der,8,bdf2,0.001,0.01,0.03,2,2,2,cut: 3 of 9,no run
+`);
+  assert.match(failed, /<td>no run within 1 % so far; best so far<\/td><td>der, 8 elements/);
+  assert.doesNotMatch(failed, /<td>take/);
+  assert.match(advice(`winner,no_answer,der,8,bdf2,0.001,0.01,0.03,2,2,2,whole,no run
+`), /no run within 1 % with any method tried; best so far/);
+  const part = advice(`winner,valid_in_part,der,8,bdf2,0.001,0.01,0.003,2,0.5,2,whole,part only
+`);
+  assert.match(part, /<td>take<\/td>.*<td>the first 500 ms of 2 s<\/td>/);
+  assert.match(advice(`winner,file_differs,der,8,bdf2,0.001,0.01,0.003,2,2,2,whole,differs
+`), /<td>no answer: differs<\/td>/);
+  assert.match(advice(`,no_reference,,,,,,,,,,,models part
+`), /<td>no answer: models part<\/td>/);
+});
+
 test('a table that is not there leaves a gap, never no page', () => {
   assert.match(page({}), /No row/);
 });
