@@ -254,7 +254,7 @@ TEST(Interrupted, ABatchThatIsNotContinuedIsKept) {
   std::string text = small_head;
   text.replace(text.find("0.02"), 4, "100 ");
   toy.write("scene.toml", text);
-  const std::string batch = "scene.toml --as batch --frames 4 --out out --progress none";
+  const std::string batch = "scene.toml --as batch --out out --progress none";
   const pid_t process = toy.start(batch);
   await_lines(toy, 3);
   kill(process, SIGTERM);
