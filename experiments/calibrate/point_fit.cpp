@@ -227,6 +227,14 @@ std::vector<std::string> point_answer(const std::vector<Row>& rows) {
     lines.push_back(
         fmt::format("{} coordinates; root mean square of measured less fitted {:.3g} mm",
                     row.text("points"), 1e3 * row.number("residual_rms_m")));
+    const bool known = row.has("reduced_chi2") && row.has("degrees");
+    if (known && simulation::too_small(row.number("reduced_chi2"),
+                                       static_cast<int>(row.number("degrees")))) {
+      lines.push_back(fmt::format(
+          "residuals are too small for sigma_m (reduced chi^2 {:.2g}): sigma_m is too "
+          "large, and so are the intervals",
+          row.number("reduced_chi2")));
+    }
   }
   lines.insert(lines.end(), reasons.begin(), reasons.end());
   return lines;

@@ -27,6 +27,9 @@ constexpr double least_part = 0.1;  // of a unit vector: a parameter that belong
 constexpr double largest_shift = 0.25;  // half intervals
 constexpr double deviations = 4;        // standard deviations of an autocorrelation
 constexpr double unlikely = 1e-3;       // probability of a larger sum of squares
+// Over the length of a strand: Newton's tolerance and coordinates with nine digits leave
+// less, and no measurement does.
+constexpr double rounding = 1e-8;
 
 /// Singular values in descending order and, by columns, the right singular vectors.
 struct SingularValues {
@@ -196,9 +199,20 @@ void Fit::add_intervals(SceneFit& fit, const LinearizedFit& found) {
 
 /// The status of each parameter that has none yet, and that of the fit: the first.
 void Fit::judge(SceneFit& fit) const {
-  std::string misfit;
+  std::string misfit, unjudged;
   const auto pairs = static_cast<double>(runs_.successive().size());
-  if (pairs > 0 && fit.autocorrelation > deviations / std::sqrt(pairs)) {
+  const double length = task_.records.front().scene->strands.front().length();
+  if (!runs_.sigma_known() && fit.rms < rounding * length) {
+    unjudged = fmt::format(
+        ". Residuals are at rounding ({:.2g} m), as of a run of this scene: their "
+        "correlation is not judged",
+        fit.rms);
+  } else if (too_small(fit.reduced_chi2, fit.degrees)) {
+    unjudged = fmt::format(
+        ". Residuals are too small for sigma_m (reduced chi^2 {:.3g}): their "
+        "correlation is not judged",
+        fit.reduced_chi2);
+  } else if (pairs > 0 && fit.autocorrelation > deviations / std::sqrt(pairs)) {
     misfit =
         fmt::format("residuals are correlated in time ({:.2f})", fit.autocorrelation);
   } else if (runs_.sigma_known() &&
@@ -210,7 +224,8 @@ void Fit::judge(SceneFit& fit) const {
   // either, both are said.
   const auto limited = [&](std::string_view error, std::string_view remedy) {
     return misfit.empty()
-               ? fmt::format("{} error, not noise, limits it; give {}", error, remedy)
+               ? fmt::format("{} error, not noise, limits it; give {}{}", error, remedy,
+                             unjudged)
                : fmt::format(
                      "{}; give {} first; if the residuals stay so, the scene is not that "
                      "of the records, and intervals are too narrow",
@@ -272,6 +287,10 @@ SceneFit Fit::result() {
 }
 
 }  // namespace
+
+bool too_small(double reduced_chi2, int degrees) {
+  return degrees > 0 && reduced_chi2 * degrees < gsl_cdf_chisq_Pinv(unlikely, degrees);
+}
 
 SceneFit fit_scenes(const FitTask& task) { return Fit(task).result(); }
 

@@ -51,6 +51,10 @@ struct FittedParameter {
   std::string status = "ok", reason = {};  // status and its reason in words
 };
 
+/// Returns whether residuals are too small for sigma_m: less than one in a thousand sums
+/// of squares is as small. False where reduced_chi2 is NaN.
+bool too_small(double reduced_chi2, int degrees);
+
 /// A fit and its statistics. Status:
 ///
 ///     ok
@@ -61,13 +65,15 @@ struct FittedParameter {
 ///                     interval
 ///     space_error     twice the elements do
 ///     misfit          residuals are correlated in time or too large for sigma_m: the
-///                     scene is not that of the records, and intervals are too narrow
+///                     scene is not that of the records, and intervals are too narrow.
+///                     Residuals at rounding, or too small for sigma_m, are not judged
 ///     solver_error    the fit did not converge, or a run failed
 struct SceneFit {
   std::vector<FittedParameter> parameters = {};  // parameters in the order of FitTask::by
   /// Singular values of the derivatives of the weighted residuals by the unknowns
   /// (logarithms of positive parameters, others over their measure), descending. Those of
-  /// parameters at a bound are left out.
+  /// parameters at a bound are left out. Without sigma_m, residuals are over a thousandth
+  /// of the strand's length.
   std::vector<double> singular = {};
   std::string undetermined = {};       // combinations that no record determines, in words
   double rms = not_there;              // m, of measured less fitted

@@ -18,6 +18,7 @@ namespace tress::test_scene_fit {
 
 using namespace simulation;
 using testing::HasSubstr;
+using testing::Not;
 using testing_support::refusal;
 
 const std::vector<std::string> four{"youngs_modulus_pa", "internal_friction_kg_m3_s",
@@ -109,6 +110,27 @@ TEST(SceneFit, FindsFourParametersOfARecordWithoutNoise) {
   EXPECT_LE(found.evaluations, 12);  // two for the shifts
   EXPECT_EQ(found.undetermined, "");
   EXPECT_EQ(found.singular.size(), 4u);
+  // What is left is rounding, of which no correlation is judged.
+  EXPECT_NE(found.status, "misfit");
+  EXPECT_THAT(found.reason, Not(HasSubstr("residuals are correlated")));
+  EXPECT_THAT(found.reason, HasSubstr("Residuals are at rounding"));
+}
+
+// The same record with a standard error of 1 mm, where rounding is left.
+TEST(SceneFit, JudgesNoCorrelationOfResidualsFarBelowSigma) {
+  Curl start;
+  start.modulus *= 1.5, start.friction *= 2, start.drag /= 2;
+  const Scene scene = start.scene();
+  const PointRecord record = record_of(Curl{}.scene(), 25, 1e-3);
+  const SceneFit found = fit_scenes({.records = {{&scene, &record}},
+                                     .by = four,
+                                     .bounds = {},
+                                     .priors = {},
+                                     .shifts = false});
+  EXPECT_LT(found.reduced_chi2, 1e-6);
+  EXPECT_TRUE(too_small(found.reduced_chi2, found.degrees));
+  EXPECT_FALSE(too_small(1, found.degrees));
+  EXPECT_EQ(found.status, "ok") << found.reason;
 }
 
 /// Records of the test below: 100, or as many as ./tress test --extremes asks for.
