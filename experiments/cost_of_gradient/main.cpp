@@ -1,4 +1,6 @@
 // How wrong is a gradient, and what does it cost?
+#include <algorithm>
+
 #include "experiments/cost_of_gradient/cost_of_gradient.h"
 #include "experiments/problems/strand_models.h"
 #include "experiments/run/experiment.h"
@@ -74,6 +76,10 @@ std::vector<Case> cases(const CommandLine& line) {
   fitted.set("part", "fit").set("model", "super_helix");
   add(fitted, [sweep](const Row& own) { return fit_rows(own, sweep); });
   for (const ContactLaw& law : contact_laws()) {
+    const auto selected = [&](std::string_view id) {
+      return wanted(line.integrators, id);
+    };
+    if (std::ranges::none_of(law.integrators, selected)) continue;
     Row identity;
     identity.set("part", "contact").set("law", law.name).set("model", "super_helix");
     add(identity,
