@@ -10,7 +10,9 @@
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "simulation/files/run_key.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene/support_table.h"
 #include "simulation/scene_text/write_scene.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -26,6 +28,11 @@ Scene read_open_scene(const std::string& file) {
     throw InputError(
         "strands that touch each other: no two models agree on them for long", file,
         "leave out effects between strands");
+  }
+  if (SceneSupports(scene).constrain() || SceneJoints(scene).any()) {
+    throw InputError(
+        "supports or joints: no run of the search holds them", file,
+        "leave them out, or use simulate --error-bars for a run of your own");
   }
   return scene;
 }

@@ -52,8 +52,8 @@ double extrapolation(const Method& method, int elements);
 bool may_extrapolate(const Scene& scene);
 
 /// A scene whose model, integrator, numbers of elements and steps are left open. Throws
-/// InputError as read_scene does, and where the scene has no strand or strands that touch
-/// each other.
+/// InputError as read_scene does, and where the scene has no strand, strands that touch
+/// each other, or supports or joints that constrain.
 Scene read_open_scene(const std::string& file);
 
 /// The scene by this method, with `elements` per strand, `rate` frames per second and

@@ -199,6 +199,16 @@ TEST(Advise, SaysTheBestSoFarWhereTheSearchWasCut) {
   EXPECT_TRUE(process.exists("hair.advised.toml"));
 }
 
+TEST(Advise, RefusesSupportsBeforeAnythingRuns) {
+  Toy process;
+  process.write("held.toml", std::string(sagging) + "[[supports]]\nat = \"tip\"\n");
+  const Toy::Result result = process.run("--advise held.toml" + small);
+  EXPECT_EQ(result.code, 2) << result.out;
+  EXPECT_THAT(result.err, HasSubstr("supports or joints"));
+  EXPECT_THAT(result.err, HasSubstr("simulate --error-bars"));
+  EXPECT_FALSE(process.exists("table.csv"));
+}
+
 TEST(Advise, SaysThatTimeIsOver) {
   Toy process;
   process.write("hair.toml", sagging);
