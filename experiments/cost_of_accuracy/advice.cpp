@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
@@ -105,6 +106,14 @@ std::string more(const Row& row) {
       by_the_clock ? "answer_s (--set answer_s, --timeout)" : "--set search_work");
 }
 
+/// Why the file as given was not compared, if it was not.
+void add_failed_given(const std::vector<Row>& rows, std::vector<std::string>& lines) {
+  const auto given = std::ranges::find_if(
+      rows, [](const Row& row) { return row.text("kind") == "as_given" && !row.ok(); });
+  if (given == rows.end()) return;
+  lines.push_back(fmt::format("your file was not compared: {}", given->text("reason")));
+}
+
 /// Whether a run that misses the target has a larger error than the file as given.
 bool worse_than_given(const std::vector<Row>& rows, const Row& best) {
   const Row* given = find(rows, "as_given");
@@ -112,25 +121,60 @@ bool worse_than_given(const std::vector<Row>& rows, const Row& best) {
          given->number("error_rel") < best.number("error_rel");
 }
 
+/// Whether the error of a run meets the target with the gap of the references.
+bool near(const Row& row, double target) {
+  return row.number("error_rel") + row.number("reference_gap") <= target;
+}
+
+/// What keeps a run with a small error from being an answer: the gap of the references,
+/// or its neighbours. Empty where its error is above the target.
+std::string doubts(const Row& row) {
+  const double target = row.number("target_error_rel");
+  if (row.status() != "no_answer" || !(row.number("error_rel") <= target)) return "";
+  if (!near(row, target)) {
+    return fmt::format("error and gap of the references, {:.2g} %, exceed {:.3g} %",
+                       1e2 * row.number("reference_gap"), 1e2 * target);
+  }
+  if (!row.has("worst_neighbour")) return "its neighbours were not all examined";
+  return fmt::format(
+      "its neighbour with {} has an error of {:.2g} %, {:.3g} % is allowed",
+      row.text("worst_neighbour"), 1e2 * row.number("error_neighbours_rel"),
+      1e2 * neighbour_allowance * target);
+}
+
+/// The file as given where nothing meets the target, or why it was not compared.
+void add_given(const std::vector<Row>& rows, const Row& best,
+               std::vector<std::string>& lines) {
+  if (const Row* given = find(rows, "as_given")) {
+    lines.push_back(fmt::format("your file{}: {}{}",
+                                worse_than_given(rows, best) ? " is better" : "",
+                                configuration_and_price(*given),
+                                near(*given, best.number("target_error_rel"))
+                                    ? "; its neighbours were not examined"
+                                    : ""));
+  } else {
+    add_failed_given(rows, lines);
+  }
+}
+
 /// If no run meets the target.
 std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& best) {
   const double target = 1e2 * best.number("target_error_rel");
+  const std::string doubt = doubts(best);
   std::vector<std::string> lines{
-      cut(best) ? fmt::format("no run within {:.3g} % so far", target)
-                : fmt::format("no run within {:.3g} % with any method tried", target),
-      fmt::format("best so far {}{}", limits(best), configuration_and_price(best))};
-  if (const Row* given = find(rows, "as_given")) {
-    lines.push_back(fmt::format("your file{}: {}",
-                                worse_than_given(rows, best) ? " is better" : "",
-                                configuration_and_price(*given)));
-  }
+      fmt::format("no run within {:.3g} %{} {}", target,
+                  doubt.empty() ? "" : " with neighbours that hold",
+                  cut(best) ? "so far" : "with any method tried"),
+      fmt::format("best so far {}{}{}{}", limits(best), configuration_and_price(best),
+                  doubt.empty() ? "" : "; ", doubt)};
+  add_given(rows, best, lines);
   if (cut(best)) lines.push_back(more(best));
   return lines;
 }
 
 /// The file's own configuration if it is worse, else the most expensive of the replaced
-/// choices.
-std::string what_not(const std::vector<Row>& rows, const Row& best) {
+/// choices, if there is one.
+std::optional<std::string> what_not(const std::vector<Row>& rows, const Row& best) {
   const double target = best.number("target_error_rel");
   if (const Row* given = find(rows, "as_given")) {
     const double factor =
@@ -149,7 +193,7 @@ std::string what_not(const std::vector<Row>& rows, const Row& best) {
       worst = &row;
     }
   }
-  if (worst == nullptr) return "no other configuration was found within the target";
+  if (worst == nullptr) return {};
   return fmt::format("another {}, {}: {:.3g} times the time", worst->text("choice"),
                      what(*worst), worst->number("cost_factor"));
 }
@@ -182,6 +226,14 @@ const Row* advised(const std::vector<Row>& rows) {
   return budget != nullptr ? budget : find(rows, "winner");
 }
 
+void mark_unanswered(std::vector<Row>& rows) {
+  for (Row& row : rows) {
+    if (row.text("kind") != "winner" && row.text("kind") != "budget") continue;
+    if (row.status() != "not_met" && row.status() != "below_reference") continue;
+    row.failed("no_answer", std::string(row.text("reason")));
+  }
+}
+
 void put_better_first(std::vector<Row>& rows) {
   const auto winner = std::ranges::find_if(rows, run_of("winner"));
   const auto next = std::ranges::find_if(rows, run_of("runner_up"));
@@ -205,12 +257,15 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   const Row* best = advised(rows);
   if (best == nullptr) {
     const Row& first = rows.front();
-    return {
+    std::vector<std::string> lines{
         first.status() == "timeout"
             ? fmt::format("out of time before the first run was compared ({}): complete "
                           "references are kept, continue with a larger --timeout",
                           first.text("reason"))
             : fmt::format("no answer: {}", first.text("reason"))};
+    add_given(rows, first, lines);
+    if (cut(first)) lines.push_back(more(first));
+    return lines;
   }
   if (best->status() == "no_answer") return best_so_far(rows, *best);
   if (best->status() == "file_differs") {
@@ -225,7 +280,10 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   if (winner != best && winner != nullptr && !winner->ok()) winner = nullptr;
   const Row* next = best == winner ? find(rows, "runner_up") : winner;
   lines.push_back(next_best(next));
-  lines.push_back(what_not(rows, winner == nullptr ? *best : *winner));
+  if (auto avoid = what_not(rows, winner == nullptr ? *best : *winner)) {
+    lines.push_back(*std::move(avoid));
+  }
+  add_failed_given(rows, lines);
   if (cut(*best)) lines.push_back(more(*best));
   return lines;
 }
@@ -255,8 +313,10 @@ std::string advised_text(const Scene& given, const Row& row, double rate) {
   Scene made = trial_scene(given, taken.method, taken.elements, taken.accuracy, rate);
   // Beyond, nothing is promised, and it may not run.
   if (row.text("horizon_cut") == "true") made.duration = row.number("horizon_s");
-  return fmt::format("# {} as advised for {} frames per second: {}, {}.\n# {}{}\n\n{}",
+  const std::string doubt = doubts(row);
+  return fmt::format("# {} as advised for {} frames per second: {}, {}.\n# {}{}\n{}\n{}",
                      given.name, rate, price(row), validity(row), limits(row), what(row),
+                     doubt.empty() ? "" : fmt::format("# No answer: {}.\n", doubt),
                      scene_text(made));
 }
 

@@ -128,6 +128,10 @@ std::string configuration_and_price(const Row& row);
 /// 2 s".
 std::string validity(const Row& row);
 
+/// Gives rows of an answer that meet neither target nor budget the status no_answer, so
+/// that the exit code is 3.
+void mark_unanswered(std::vector<Row>& rows);
+
 /// Exchanges winner and runner-up of an answer where the runner-up is both cheaper and
 /// more accurate. The two are tied then, and the search took the simpler as the winner.
 void put_better_first(std::vector<Row>& rows);

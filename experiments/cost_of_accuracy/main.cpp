@@ -236,6 +236,9 @@ std::vector<std::string> method_scenes_of(const Settings& settings) {
 
 std::vector<Case> cases(const CommandLine& line) {
   const Settings settings(line, own_settings);
+  if (!settings.experiment().word("advise").empty() && settings.chosen("scenes")) {
+    throw InputError("--advise with --scene", "--scene", "give one of them");
+  }
   const StudyPlan plan = plan_of(line, settings);
   std::vector<Case> all;
   std::set<std::string> names;
@@ -264,7 +267,7 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
 /// An insufficiently known rod, or the absence of an alternative, is a valid result.
 bool finding(const Row& row) {
   return row.text("kind") == "method" || row.status() == "below_reference" ||
-         row.status() == "not_met" || row.status() == "diverged";
+         row.status() == "not_met" || row.text("kind") == "as_given";
 }
 
 void advise(const CommandLine& line, const std::vector<Row>& rows) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "contract/input_error.h"
+#include "integrators/catalogue.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/tip_paths.h"
 
@@ -174,8 +175,8 @@ double SceneMeasure::neighbour_error(const Method& method, int elements, int sub
   }
 }
 
-std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count,
-                                           double most_s) const {
+std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count, double most_s,
+                                           std::string& why) const {
   const Scene run = compared(given, comparison_);
   try {
     const TipPaths paths = tip_paths(run, 0, {.wall_s = most_s});
@@ -185,7 +186,8 @@ std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count,
         once ? paths.once_s : wall_time(wall_times(run, count, long_enough)).least_s};
     made.indicator = paths.indicator;
     return made;
-  } catch (const std::runtime_error&) {
+  } catch (const std::runtime_error& failure) {
+    why = failure.what();
     return {};
   }
 }

@@ -72,8 +72,10 @@ class SceneMeasure {
   /// reference; infinite where `quick` is empty.
   double neighbour_error(const Method& method, int elements, int substeps,
                          Neighbour which, double most_s) const;
-  /// Measures a run of any scene `count` times, as `quick` does.
-  std::optional<Trial> best_of(const Scene& scene, int count, double most_s) const;
+  /// Measures a run of any scene `count` times, as `quick` does. Where the result is
+  /// empty, `why` has the reason.
+  std::optional<Trial> best_of(const Scene& scene, int count, double most_s,
+                               std::string& why) const;
   /// The time alone.
   WallTime time(const Method& method, int elements, int substeps, int count) const;
   /// Against another reference.

@@ -41,6 +41,9 @@ constexpr Share refine_share{1, 0.6};
 constexpr Share sweep_share{3, 0.7};
 /// Replacing each choice of the winners.
 constexpr Share last_share{4, 0.8};
+/// Part of the time of a search that the run of the file as given has, even where the
+/// search has used all of it.
+constexpr double given_share = 0.1;
 
 /// Counts the work of a search. The time until the deadline matters only in an emergency;
 /// each stage leaves some of it to later ones.
@@ -147,10 +150,10 @@ void settle(const Study& study, Finalists& finalists, const std::vector<double>&
 /// scene is none for the whole, and a run that misses the target is none.
 void conclude(const Study& study, std::vector<Row>& rows) {
   put_better_first(rows);
+  mark_unanswered(rows);
   const Row* best = advised(rows);
   if (best == nullptr) return;
   Row& row = rows[static_cast<std::size_t>(best - rows.data())];
-  if (row.status() == "not_met") row.failed("no_answer", std::string(row.text("reason")));
   if (!row.ok() || !confirm(study, row) || !study.cut()) return;
   row.failed("valid_in_part",
              fmt::format("the references agree for the first {:.3g} s of {:.3g} s only",
@@ -203,11 +206,12 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
   std::vector<Row> rows;
   if (search_plan.targets.empty()) {
     Row row = begin(study, "winner");
-    rows.push_back(row.failed(
-        "below_reference",
-        fmt::format("all targets are < {} x gap {:.3g}", study.trusted(), study.gap())));
+    rows.push_back(
+        row.failed("below_reference", below_reference(study, plan.targets.front())));
+    if (plan.advise) conclude(study, rows);
     return rows;
   }
+  const double time_s = deadline.remaining_s();
   bool bounded = true;  // runs, by the time of the best
   Work work(study, deadline);
   SearchProgress progress(study, search_plan.targets.back(), heartbeat);
@@ -270,7 +274,9 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
       rows.back().set("time_scatter", finalists.scatter(run));
     }
   }
-  add_given(study, plan.advise ? deadline.remaining_s() : never, rows);
+  add_given(study,
+            plan.advise ? std::max(deadline.remaining_s(), given_share * time_s) : never,
+            rows);
   if (search.cut()) how += ", cut while the best runs were compared";
   if (work.cut_by_clock()) how += ", by the clock";
   for (Row& row : rows) {

@@ -29,6 +29,17 @@ std::string not_met(bool cut) {
              : "no run within the target with neighbours that hold";
 }
 
+/// Reason where no run of the search was compared.
+std::string no_run(double target) {
+  return fmt::format("no run came to its end within {:.2g} % of the length",
+                     1e2 * useless * target);
+}
+
+/// The first line of a message.
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
 }  // namespace
 
 Row begin(const Study& study, std::string_view kind) {
@@ -66,6 +77,16 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   return row;
 }
 
+std::string below_reference(const Study& study, double target) {
+  const std::string why =
+      fmt::format("target {:.3g} % < {} x {:.3g} %, the gap of the references",
+                  1e2 * target, study.trusted(), 1e2 * study.gap());
+  if (!study.plan.advise) return why;
+  return fmt::format(
+      "{}: give --set accuracy={:.2g} or more, or more time (--set answer_s)", why,
+      1.05 * study.floor());
+}
+
 SceneMeasure measure_of(const Study& study) {
   return {study.given,   study.comparison,       study.reference.tips.tip,
           study.changed, study.plan.longest_run, useless * study.plan.targets.front()};
@@ -76,9 +97,7 @@ void add_target(const Study& study, Finalists& finalists, double target,
   if (target < study.floor()) {
     Row row = begin(study, "winner");
     row.set("target_error_rel", target);
-    rows.push_back(row.failed("below_reference",
-                              fmt::format("target {} < {} x gap {:.3g} of the references",
-                                          target, study.trusted(), study.gap())));
+    rows.push_back(row.failed("below_reference", below_reference(study, target)));
     return;
   }
   const auto met = finalists.of(target - study.gap(), !study.plan.advise);
@@ -86,7 +105,8 @@ void add_target(const Study& study, Finalists& finalists, double target,
     const auto nearest = finalists.nearest();
     Row row = nearest ? row_of(study, "winner", *nearest) : begin(study, "winner");
     row.set("target_error_rel", target);
-    rows.push_back(row.failed("not_met", not_met(finalists.cut())));
+    rows.push_back(row.failed("not_met", nearest ? not_met(finalists.cut())
+                                                 : no_run(study.plan.targets.front())));
     return;
   }
   const auto add = [&](std::string_view kind, const Trial& run) -> Row& {
@@ -165,10 +185,12 @@ void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows
 bool confirm(const Study& study, Row& row) {
   const double rate = study.comparison.rate;
   const std::string text = advised_text(study.given, row, rate);
+  std::string why;
   const auto run =
-      measure_of(study).best_of(parse_scene(text, "advised scene"), 0, never);
+      measure_of(study).best_of(parse_scene(text, "advised scene"), 0, never, why);
   if (!run) {
-    row.failed("file_differs", "the advised file does not run to the end");
+    row.failed("file_differs",
+               "the advised file does not run to the end: " + first_line(why));
     return false;
   }
   const double promised = row.number("error_rel");
@@ -201,9 +223,11 @@ void add_given(const Study& study, double most_s, std::vector<Row>& rows) {
   } else {
     row.set("dt_s", given.options.step);
   }
-  const auto run = measure_of(study).best_of(given, study.plan.repeat, most_s);
+  std::string why;
+  const auto run = measure_of(study).best_of(given, study.plan.repeat, most_s, why);
   if (!run) {
-    row.failed("diverged", "the scene as given does not run to the horizon, or too long");
+    const bool late = why.find("takes too long") != why.npos;
+    row.failed(late ? "timeout" : "diverged", "the scene as given: " + first_line(why));
   } else {
     row.set("error_rel", run->error);
     if (run->indicator > 0) row.set("error_indicator", run->indicator);

@@ -43,6 +43,9 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run);
 
 SceneMeasure measure_of(const Study& study);
 
+/// Why a target below the floor has no answer, and for advice the remedy.
+std::string below_reference(const Study& study, double target);
+
 /// Winner, runner-up and replaced choices of one target.
 void add_target(const Study& study, Finalists& finalists, double target,
                 std::vector<Row>& rows);

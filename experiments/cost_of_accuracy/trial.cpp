@@ -50,7 +50,10 @@ const Trial* most_accurate(const std::vector<Trial>& runs, double wall_s, double
     if (run.wall_s > wall_s) continue;
     const double error = std::max(run.judged(), floor);
     const double least = best == nullptr ? never : std::max(best->judged(), floor);
-    if (error < least || (error == least && run.wall_s < best->wall_s)) best = &run;
+    if (best == nullptr || error < least ||
+        (error == least && run.wall_s < best->wall_s)) {
+      best = &run;
+    }
   }
   return best;
 }

@@ -119,7 +119,8 @@ function standing(row) {
   if (['ok', 'valid_in_part', undefined].includes(row.status)) return 'take';
   if (row.status === 'file_differs' || !row.model) return `no answer: ${row.reason}`;
   const tried = `${row.search}`.includes('cut') ? 'so far' : 'with any method tried';
-  return `no run within ${percent(row.target_error_rel)} ${tried}; best so far`;
+  const holds = row.error_rel <= row.target_error_rel ? ' with neighbours that hold' : '';
+  return `no run within ${percent(row.target_error_rel)}${holds} ${tried}; best so far`;
 }
 
 function accuracy() {

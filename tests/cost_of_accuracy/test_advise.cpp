@@ -192,11 +192,15 @@ TEST(Advise, SaysTheBestSoFarWhereTheSearchWasCut) {
   const Toy::Result result = process.run(
       "--advise hair.toml --set accuracy=0.002 --set search_work=0.0005" + small);
   EXPECT_EQ(result.code, 3) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("no run within 0.2 % so far"));
+  EXPECT_THAT(result.out,
+              HasSubstr("no run within 0.2 % with neighbours that hold so far"));
+  EXPECT_THAT(line_of(result.out, "best so far "),
+              HasSubstr("; its neighbours were not all examined"));
   EXPECT_THAT(result.out, HasSubstr("best so far super_helix"));
   EXPECT_THAT(result.out, HasSubstr("--set search_work"));
   EXPECT_THAT(result.out, testing::Not(HasSubstr("nothing")));
-  EXPECT_TRUE(process.exists("hair.advised.toml"));
+  EXPECT_THAT(process.read("hair.advised.toml"),
+              HasSubstr("\n# No answer: its neighbours were not all examined.\n"));
 }
 
 TEST(Advise, RefusesSupportsBeforeAnythingRuns) {
@@ -245,6 +249,10 @@ TEST(Advise, RefusesWhatItCannotDo) {
   EXPECT_EQ(bead.code, 2);
   EXPECT_THAT(bead.err, HasSubstr("geometry"));
   EXPECT_EQ(process.run("--advise none.toml" + small).code, 2);
+  process.write("hair.toml", sagging);
+  const Toy::Result both = process.run("--advise hair.toml --scene hair.toml" + small);
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--advise with --scene"));
   EXPECT_EQ(process.run("--budget -1" + small).code, 2);
 }
 

@@ -112,6 +112,8 @@ test('a run that is no answer is not taken; one for a part of the scene names th
   assert.doesNotMatch(failed, /<td>take/);
   assert.match(advice(`winner,no_answer,der,8,bdf2,0.001,0.01,0.03,2,2,2,whole,no run
 `), /no run within 1 % with any method tried; best so far/);
+  assert.match(advice(`winner,no_answer,der,8,bdf2,0.001,0.01,0.001,2,2,2,whole,no run
+`), /no run within 1 % with neighbours that hold with any method tried; best so far/);
   const part = advice(`winner,valid_in_part,der,8,bdf2,0.001,0.01,0.003,2,0.5,2,whole,part only
 `);
   assert.match(part, /<td>take<\/td>.*<td>the first 500 ms of 2 s<\/td>/);
