@@ -202,8 +202,7 @@ TEST_P(RigidSupportGradientOf, IsThatOfDifferencesOfRuns) {
     if (model == "super_helix" && starts) {
       const std::string no =
           refusal([&] { check_gradient(parse_scene(scene, "s.toml")); });
-      EXPECT_NE(no.find("use backward_euler, bdf2"), std::string::npos)
-          << no;
+      EXPECT_NE(no.find("use backward_euler, bdf2"), std::string::npos) << no;
       continue;
     }
     expect_differences(parse_scene(scene, "s.toml"), 1e-3, 1e-6);
