@@ -11,7 +11,8 @@ namespace tress::models {
 /// Lines with a choice need one of the words for it.
 struct AffineNumbers {
   std::string_view effect, keys;  // keys are separated by '|'
-  std::string_view choice = {}, words = {};
+  std::string_view choice = {};   // parameter that decides; empty: none
+  std::string_view words = {};    // words of it for which the line holds
 };
 
 /// Gradients take central differences by all other numbers, and by those of plug-ins.

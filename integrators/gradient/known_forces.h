@@ -17,9 +17,7 @@ struct KnownForces {
 enum class ParameterLaw {
   unknown,  // It may begin, end or turn anywhere.
   affine,   // If it is affine in s near the start, it is affine in s everywhere.
-  // As affine, and its derivative by s is one analytic function of the state, without
-  // pieces in time.
-  smooth
+  smooth    // Affine, with a derivative by s that is analytic in state and time.
 };
 
 }  // namespace tress::integrators
