@@ -5,6 +5,7 @@
 
 #include "models/effects/effect.h"
 #include "simulation/scene/strand_tables.h"
+#include "simulation/scene_changes/strand_options.h"
 
 namespace tress::simulation {
 namespace {
@@ -33,8 +34,8 @@ class SeenPoints final : public models::Effect {
 
 std::vector<double> touchable_points(const Scene& scene, std::size_t strand) {
   const auto points = std::make_shared<SeenPoints>();
-  const auto system =
-      scene.model->on_strand(scene.strands[strand], scene.model_options, {points});
+  const Strand& one = scene.strands[strand];
+  const auto system = scene.model->on_strand(one, StrandOptions(scene).of(one), {points});
   std::vector<double> q(static_cast<std::size_t>(system->layout().coordinates)), v(q),
       a(q), r(q);
   system->initial_state(q, v);

@@ -98,14 +98,14 @@ MatrixXd pulls(const std::vector<Touch>& all, GivenForces& points,
 }  // namespace
 
 HoldingBodies body_support(const Scene& scene, const Strand& strand,
-                           const Effects& effects) {
+                           const Parameters& model_options, const Effects& effects) {
   const auto points = std::make_shared<GivenForces>();
   Effects others{points};
   for (const auto& effect : effects) {
     if (dynamic_cast<const Body*>(effect.get()) == nullptr) others.push_back(effect);
   }
   if (others.size() == effects.size() + 1 && !hold_contacts(effects)) return {};
-  const auto system = scene.model->on_strand(strand, scene.model_options, others);
+  const auto system = scene.model->on_strand(strand, model_options, others);
   NaturalStrains& strains = strains_to_hold(scene, strand, *system, inverse_rest);
   DenseStatics statics(*system, coordinates_at_start(*system));
   const VectorXd load = statics.residual();

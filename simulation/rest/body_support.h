@@ -16,9 +16,10 @@ struct HoldingBodies {
   std::vector<std::pair<std::size_t, std::vector<double>>> offsets;
 };
 
-/// For a strand of a scene without motion, under these effects. Throws InputError if it
-/// is inside a body whose forces are not a function of the state.
+/// For a strand of a scene without motion, with its model's options, under these effects.
+/// Throws InputError if it is inside a body whose forces are not a function of the state.
 HoldingBodies body_support(const Scene& scene, const Strand& strand,
+                           const Parameters& model_options,
                            const models::Effects& effects);
 
 /// A body of body_support() with its offsets.

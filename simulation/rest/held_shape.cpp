@@ -14,6 +14,7 @@
 #include "simulation/rest/dense_statics.h"
 #include "simulation/rest/natural_gain.h"
 #include "simulation/scene/scene_check.h"
+#include "simulation/scene_changes/strand_options.h"
 
 namespace tress::simulation {
 namespace {
@@ -89,8 +90,8 @@ std::vector<double> balance(System& system, NaturalStrains& strains,
   return at;
 }
 
-void invert(const Scene& scene, const Strand& strand, Effects effects, HeldShape& held) {
-  Parameters options = scene.model_options;
+void invert(const Scene& scene, const Strand& strand, Parameters options, Effects effects,
+            HeldShape& held) {
   if (options.knows("jacobian")) options.set("jacobian", "exact");
   const auto system = scene.model->on_strand(strand, options, std::move(effects));
   const std::vector<double> q = coordinates_at_start(*system);
@@ -108,7 +109,8 @@ void invert(const Scene& scene, const Strand& strand, Effects effects, HeldShape
   held.sag = distance(*system, q, balanced(statics, at));
 }
 
-HeldShape held_shape(const Scene& scene, std::size_t k, const Effects& between) {
+HeldShape held_shape(const Scene& scene, std::size_t k, const Parameters& options,
+                     const Effects& between) {
   HeldShape held;
   const Strand& strand = scene.strands[k];
   const auto acting = [&] {
@@ -116,16 +118,16 @@ HeldShape held_shape(const Scene& scene, std::size_t k, const Effects& between) 
     all.insert(all.end(), between.begin(), between.end());
     return all;
   };
-  const HoldingBodies support = body_support(scene, strand, acting());
+  const HoldingBodies support = body_support(scene, strand, options, acting());
   held.contacts = support.contacts;
   held.offsets = support.offsets;
-  invert(scene, strand, acting(), held);
+  invert(scene, strand, options, acting(), held);
   if (!held.would_fall() || scene.unstable != Unstable::stiffen) return held;
   if (!std::isfinite(held.least_factor)) {
     throw std::runtime_error("it would fall however stiff it were");
   }
   held.factor = stiffened * held.least_factor;
-  invert(scene, stiffer(strand, held), acting(), held);
+  invert(scene, stiffer(strand, held), options, acting(), held);
   return held;
 }
 
@@ -147,10 +149,11 @@ std::vector<HeldShape> held_shapes(const Scene& scene,
                                    const std::function<Effects(std::size_t)>& between,
                                    Crew& crew, std::span<const std::size_t> numbers) {
   const Scene held_scene = still(scene);
+  const StrandOptions options(held_scene);
   std::vector<HeldShape> all(scene.strands.size());
   in_parts(crew, 0, all.size(), all.size(), [&](std::size_t k, std::size_t) {
     try {
-      all[k] = held_shape(held_scene, k, between(k));
+      all[k] = held_shape(held_scene, k, options.of(held_scene.strands[k]), between(k));
     } catch (const std::runtime_error& error) {
       throw InputError(
           fmt::format("strand {}: {}", numbers.empty() ? k : numbers[k], error.what()),
