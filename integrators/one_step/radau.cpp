@@ -22,15 +22,15 @@ constexpr double slow_rate = 0.5;
 constexpr double least_rate = 0.25;
 /// Largest length of an extrapolation over that of the solution.
 constexpr double farthest_guess = 3;
-/// Lengths of parts: the first over the step, each over the one before where none has
-/// been solved, growth at most and at least.
-constexpr double first_part = 0.25, shorter_part = 0.25, most_growth = 2,
-                 least_growth = 1.02;
-constexpr double shortest_part = 1e-3;
-/// The same with the whole Jacobian, from the longest part solved or the first one.
-constexpr double first_on_path = 0.02, shortest_on_path = 1e-5, growth_power = 1.5,
-                 least_growth_on_path = 1.005;
-constexpr int most_on_path = 200;
+/// Lengths of parts over the one before: where none has been solved, and at most.
+constexpr double shorter_part = 0.25, most_growth = 2;
+constexpr RadauParts by_iteration{
+    .first = 0.25, .shortest = 1e-3, .least_growth = 1.02, .growth_power = 1};
+constexpr RadauParts by_whole_jacobian{.first = 0.02,
+                                       .shortest = 1e-5,
+                                       .least_growth = 1.005,
+                                       .growth_power = 1.5,
+                                       .most = 200};
 /// Solutions with I - g J of an estimate: the second removes what the first leaves in the
 /// velocities of stiff directions that turn.
 constexpr int filters = 2;
@@ -197,26 +197,39 @@ Status RadauStages::newton(double h) noexcept {
   return s;
 }
 
-Status RadauStages::by_parts(double h) noexcept {
-  part_.h = 0;
-  double part = first_part, growth = most_growth;
-  for (;;) {
-    guess(part_, part * h);
-    const Status s = newton(part * h);
+/// From the longest part solved, or the first one, to the whole step: `solve` leaves the
+/// stages of a step of its length in x_.
+template <class Solve>
+Status RadauStages::follow(const RadauParts& parts, double h, Solve solve) noexcept {
+  double growth = most_growth;
+  double part = part_.h > 0 ? std::min(1.0, growth * part_.h / h) : parts.first;
+  for (int i = 0; i < parts.most; ++i) {
+    const Status s = solve(part * h);
     if (s == Status::fatal) return s;
     if (s == Status::ok) {
+      std::swap(before_, part_);
       keep(part * h, part_);
       if (part == 1) return s;
+      growth = std::min(most_growth, std::pow(growth, parts.growth_power));
     } else if (part_.h == 0) {
       part *= shorter_part;
-      if (part < shortest_part) return s;
+      if (part < parts.shortest) return s;
       continue;
     } else {
       growth = std::sqrt(growth);
-      if (growth < least_growth) return s;
+      if (growth < parts.least_growth) return s;
     }
     part = std::min(1.0, growth * part_.h / h);
   }
+  return Status::retry;
+}
+
+Status RadauStages::by_parts(double h) noexcept {
+  part_.h = 0;
+  return follow(by_iteration, h, [this](double to) noexcept {
+    guess(part_, to);
+    return newton(to);
+  });
 }
 
 /// The displacements of a stage, of h^2 a, continue along a line, and so do the
@@ -240,32 +253,13 @@ void RadauStages::extrapolate(double h) noexcept {
 Status RadauStages::by_path(double h) noexcept {
   whole_.start_from(start_.t, start_.q, start_.v);
   before_.h = 0;
-  double growth = most_growth;
-  double part = part_.h > 0 ? std::min(1.0, growth * part_.h / h) : first_on_path;
-  for (int i = 0; i < most_on_path; ++i) {
-    extrapolate(part * h);
+  const Status s = follow(by_whole_jacobian, h, [this](double to) noexcept {
+    extrapolate(to);
     x_ = guess_;
-    const Status s = whole_.solve(part * h, x_);
-    if (s == Status::fatal) return s;
-    if (s == Status::ok) {
-      std::swap(before_, part_);
-      keep(part * h, part_);
-      if (part == 1) {
-        tie(h);
-        return s;
-      }
-      growth = std::min(most_growth, std::pow(growth, growth_power));
-    } else if (part_.h == 0) {
-      part *= shorter_part;
-      if (part < shortest_on_path) return s;
-      continue;
-    } else {
-      growth = std::sqrt(growth);
-      if (growth < least_growth_on_path) return s;
-    }
-    part = std::min(1.0, growth * part_.h / h);
-  }
-  return Status::retry;
+    return whole_.solve(to, x_);
+  });
+  if (s == Status::ok) tie(h);
+  return s;
 }
 
 void RadauStages::keep(double h, Solution& solution) const noexcept {

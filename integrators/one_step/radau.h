@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "integrators/formulation/dynamics.h"
@@ -12,6 +13,14 @@
 #include "integrators/stage/unknowns.h"
 
 namespace tress::integrators {
+
+/// Continuation in the length of parts of a step.
+struct RadauParts {
+  double first, shortest;  // over the step
+  double least_growth;     // of the length from part to part; it falls where one fails
+  double growth_power;     // of the growth after a part that succeeds
+  int most = std::numeric_limits<int>::max();  // number of parts
+};
 
 /// The stages of one step of q' = v, v' = a, by
 ///
@@ -87,6 +96,8 @@ class RadauStages {
   Status correct_stage(double h, std::size_t i) noexcept;
   /// Sets q_ and v_ to those of the accelerations.
   void tie(double h) noexcept;
+  template <class Solve>
+  Status follow(const RadauParts& parts, double h, Solve solve) noexcept;
   /// Solves a part of the step, then longer ones from its polynomial.
   Status by_parts(double h) noexcept;
   /// Goes on from the longest part, with the whole Jacobian.

@@ -85,12 +85,16 @@ TEST(Advise, ComparesTheWholeScene) {
               HasSubstr("over the first 0.2 s of 0.8 s"));
 }
 
+std::string sagging_for(const std::string& duration_s) {
+  std::string text = sagging;
+  text.replace(text.find("0.1"), 3, duration_s);
+  return text;
+}
+
 // 1.98 frames of 1/60 s.
 TEST(Advise, ComparesTheEndThatIsNoWholeFrame) {
   Toy process;
-  std::string shorter = sagging;
-  shorter.replace(shorter.find("0.1"), 3, "0.033");
-  process.write("hair.toml", shorter);
+  process.write("hair.toml", sagging_for("0.033"));
   const Toy::Result result = process.run("--advise hair.toml" + small);
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(winner_of(process).number("horizon_s"), 0.033);
@@ -101,9 +105,7 @@ TEST(Advise, ComparesTheEndThatIsNoWholeFrame) {
 // A scene of a quarter of a frame: its file has the frames that were compared.
 TEST(Advise, ComparesWithinAFrame) {
   Toy process;
-  std::string shorter = sagging;
-  shorter.replace(shorter.find("0.1"), 3, "0.004");
-  process.write("hair.toml", shorter);
+  process.write("hair.toml", sagging_for("0.004"));
   const Toy::Result result = process.run("--advise hair.toml" + small);
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(winner_of(process).number("horizon_s"), 0.004);
