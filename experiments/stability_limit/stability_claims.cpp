@@ -109,6 +109,23 @@ void check_tolerances(const std::vector<Row>& rows, Verdicts& verdicts) {
   }
 }
 
+/// A question about a scene file is answered if at least one method has a limit.
+void check_answers(const std::vector<Row>& rows, Verdicts& verdicts) {
+  std::map<std::string, int> limits;
+  for (const Row& row : rows) {
+    if (row.text("study") == "file") limits.try_emplace(std::string(row.text("scene")));
+  }
+  for (const Row& row : rows) {
+    const auto of_scene = limits.find(std::string(row.text("scene")));
+    if (of_scene == limits.end() || !row.ok()) continue;
+    if (row.has("dt_max_s") || row.has("tolerance_loosest")) ++of_scene->second;
+  }
+  for (const auto& [scene, found] : limits) {
+    verdicts.check(scene + ": at least one method has a stable step or tolerance",
+                   found > 0, found);
+  }
+}
+
 }  // namespace
 
 void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
@@ -142,6 +159,7 @@ void check_stability_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
         "below 2 ms",
         [](double dt) { return dt < 0.002; });
   check_tolerances(rows, verdicts);
+  check_answers(rows, verdicts);
 }
 
 }  // namespace tress::experiments::stability_limit
