@@ -155,11 +155,12 @@ bool EsdirkStages::sticks(std::size_t stage, double gently) const noexcept {
 
 /// Solves a backward Euler step, from where step() and backward_euler() have left the
 /// stage.
-Status EsdirkStages::euler(double t, double h, In q, In v) noexcept {
+Status EsdirkStages::euler(double t, double h, In q, In v, Effort effort) noexcept {
   shifted(q_bar_, q, h, v);
   std::ranges::copy(place_, stage_.place_bar().begin());
   std::ranges::fill(a_[last()], 0.0);
-  return stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_[last()], lambda_);
+  return stage_.solve(t + h, q_bar_, v, {1, h, h * h}, a_[last()], lambda_,
+                      Stage::Matrix::own, effort);
 }
 
 Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, double gently,
@@ -172,12 +173,13 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
   stage_.slides(t, q, v, slides_[0]);
   power_ = 0;
   impact_ = stage_.stops(t, q, v, gently);
-  if (impact_) return damped(t, h, q, v, gently);
+  if (impact_) return damped(t, h, q, v, gently, Effort::whole);
   std::ranges::copy(lambda, lambda_.begin());
   // Where steps begin, accelerations include no forces of contacts, which are found in
   // stages only. Those of a backward Euler step, which is not taken, are near.
   if (start == StepSequence::Start::anew &&
-      dynamics_.system().contact_form() != nullptr && euler(t, h, q, v) == Status::ok) {
+      dynamics_.system().contact_form() != nullptr &&
+      euler(t, h, q, v, Effort::whole) == Status::ok) {
     impact_ = stage_.stops(t, q, v, gently);
     if (impact_) return take_euler(t, h, q, v, gently);
     begun_ = dynamics_.accelerate(t, q, v, a_begun_, lambda_) == Status::ok;
@@ -213,20 +215,21 @@ Status EsdirkStages::step(double t, double h, In q, In v, In a, In lambda, doubl
     }
     // A later stage may open the contact again, thrown back by this one's impulse.
     impact_ = stage_.stops(t, q, v, gently) || sticks(i, gently);
-    if (impact_) return damped(t, h, q, v, gently);
+    if (impact_) return damped(t, h, q, v, gently, Effort::whole);
   }
   return Status::ok;
 }
 
-Status EsdirkStages::backward_euler(double t, double h, In q, In v,
-                                    double gently) noexcept {
+Status EsdirkStages::backward_euler(double t, double h, In q, In v, double gently,
+                                    Effort effort) noexcept {
   stage_.leave(t, q);
   stage_.places(t, q, v, place_);
-  return damped(t, h, q, v, gently);
+  return damped(t, h, q, v, gently, effort);
 }
 
-Status EsdirkStages::damped(double t, double h, In q, In v, double gently) noexcept {
-  const Status s = euler(t, h, q, v);
+Status EsdirkStages::damped(double t, double h, In q, In v, double gently,
+                            Effort effort) noexcept {
+  const Status s = euler(t, h, q, v, effort);
   return s == Status::ok ? take_euler(t, h, q, v, gently) : s;
 }
 

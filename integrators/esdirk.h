@@ -68,7 +68,8 @@ class EsdirkStages {
               Effort effort = Effort::whole) noexcept;
 
   /// A backward Euler step instead, which also ends with consistent accelerations.
-  Status backward_euler(double t, double h, In q, In v, double gently) noexcept;
+  Status backward_euler(double t, double h, In q, In v, double gently,
+                        Effort effort) noexcept;
 
   /// The next step does not guess from the last one.
   void forget() { steps_.forget(); }
@@ -92,9 +93,9 @@ class EsdirkStages {
   void difference(double h, Out dq, Out dv) const noexcept;
 
  private:
-  Status euler(double t, double h, In q, In v) noexcept;
+  Status euler(double t, double h, In q, In v, Effort effort) noexcept;
   Status take_euler(double t, double h, In q, In v, double gently) noexcept;
-  Status damped(double t, double h, In q, In v, double gently) noexcept;
+  Status damped(double t, double h, In q, In v, double gently, Effort effort) noexcept;
   bool sticks(std::size_t stage, double gently) const noexcept;
   std::size_t last() const { return table_.stages - 1; }
   void guess(std::size_t i, double h) noexcept;

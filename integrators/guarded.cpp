@@ -16,9 +16,13 @@ namespace {
 constexpr double gain_part = 0.02;
 /// Rounding of the energies over their size.
 constexpr double rounding = 1e-9;
+/// Largest number of backward Euler steps in place of one step.
+constexpr int most_parts = 16;
 
 /// An L-stable step of order 2 or 4. A backward Euler step replaces it where its
-/// equations have no solution, or where the energy grows by more than the work done:
+/// equations have no solution, or where the energy grows by more than the work done.
+/// Where that step has no solution either, 2, 4, ... equal ones replace it. The energy
+/// grows if
 ///
 ///     E_{n+1} > E_n + h max(0, P_n, P_i, P_{n+1}) + 0.02 max(T_n, T_{n+1})
 ///
@@ -30,6 +34,8 @@ class Guarded final : public FixedStep, public Impulsive {
   Guarded(System& system, const Options& options, const EsdirkTable& table)
       : FixedStep(system, options),
         stages_(dynamics_, options, table, {}),
+        q_part_(q_),
+        v_part_(v_),
         energetics_(system.energetics()) {
     if (energetics_ != nullptr) stages_.measure(*energetics_);
   }
@@ -64,9 +70,28 @@ class Guarded final : public FixedStep, public Impulsive {
     if (s == Status::retry || gains(t, h)) {
       ++dynamics_.stats.replaced;
       dynamics_.reached = 0;
-      s = stages_.backward_euler(t, h, q_, v_, gently);
+      s = replaced(t, h, gently);
     }
     take_end(stages_);
+    return s;
+  }
+
+  /// Takes the fewest backward Euler steps whose solutions are found, one with the whole
+  /// effort or several with the plain one.
+  Status replaced(double t, double h, double gently) {
+    Status s = Status::retry;
+    for (int parts = 1; parts <= most_parts && s == Status::retry; parts *= 2) {
+      const double part = h / parts;
+      const Effort effort = parts == 1 ? Effort::whole : Effort::plain;
+      std::ranges::copy(q_, q_part_.begin());
+      std::ranges::copy(v_, v_part_.begin());
+      for (int i = 0; i < parts; ++i) {
+        s = stages_.backward_euler(t + i * part, part, q_part_, v_part_, gently, effort);
+        if (s != Status::ok) break;
+        std::ranges::copy(stages_.q(), q_part_.begin());
+        std::ranges::copy(stages_.v(), v_part_.begin());
+      }
+    }
     return s;
   }
 
@@ -82,6 +107,7 @@ class Guarded final : public FixedStep, public Impulsive {
   }
 
   EsdirkStages stages_;
+  std::vector<double> q_part_, v_part_;  // between the parts of a replaced step
   Energetics* energetics_;  // null: steps are replaced only where they have no solution
 };
 

@@ -36,6 +36,7 @@
 #include "simulation/head/ranks.h"
 #include "simulation/head/scene_head.h"
 #include "simulation/plugin/load_plugin.h"
+#include "simulation/run/world.h"
 #include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene_text/schema.h"
@@ -306,6 +307,11 @@ bool run_job(const Job& job, const Arguments& a, const CommandLine& line, Ranks&
   return complete;
 }
 
+/// Refuses what only the strands at t = 0 show, such as joints whose points are apart.
+void check_start(const Job& job) {
+  if (!job.head) static_cast<void>(simulation::World(job.outline.scene));
+}
+
 int run_scenes(const Arguments& a, const CommandLine& line, Ranks& ranks,
                Interruption& interruption) {
   const std::vector<std::string> files = a.scenes.empty() ? all_scenes() : a.scenes;
@@ -322,7 +328,10 @@ int run_scenes(const Arguments& a, const CommandLine& line, Ranks& ranks,
   }
   const ReadyFolder folder(a.out, "--out " + a.out);
   for (const Job& job : jobs) check_outputs(job.outline.scene.name, job.head, a);
-  if (a.check) return done;
+  if (a.check) {
+    for (const Job& job : jobs) check_start(job);
+    return done;
+  }
   bool complete = true;
   for (const Job& whole : jobs) {
     for (const Job& job : heads_of(whole, a)) {

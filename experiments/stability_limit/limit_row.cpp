@@ -45,8 +45,9 @@ std::optional<FoundLimit> found_limit(const SearchedSteps& searched,
   } else if (std::isnan(limit.stable)) {
     const StabilityRun& last = searched.runs.at(limit.unstable);
     row.failed("unstable",
-               fmt::format("no stable step down to {:.3g} s: {} at t = {:.3g} s {}",
-                           limit.finest, name(last.broken), last.t, last.failure));
+               fmt::format(
+                   "every step tried down to {:.3g} s is unstable: {} at t = {:.3g} s {}",
+                   limit.finest, name(last.broken), last.t, last.failure));
   }
   if (std::isnan(limit.stable)) return {};
   return FoundLimit{limit.stable, searched.runs.at(limit.stable)};

@@ -159,9 +159,9 @@ void answer(const CommandLine& line, const std::vector<Row>& rows) {
   print_answer(line, stability_answer(rows));
 }
 
-/// A method without a stable step, one that needs impractically many steps or one whose
-/// work was used up is an expected result; a scene file without any limit is not
-/// (check_stability_claims).
+/// Expected results: a method without a stable step, one that needs impractically many
+/// steps, and one whose work was used up. check_stability_claims() judges whether a scene
+/// file has any limit.
 bool finding(const Row& row) {
   return row.status() == "unstable" || row.status() == "gave_up" ||
          row.status() == "inconclusive" || row.status() == "refused";

@@ -39,8 +39,9 @@ JointEnd::JointEnd(System& strand, std::size_t first, int point, const std::stri
 void JointEnd::hold_section(const std::string& where) {
   const Sections::Kind kind = section_to_hold(strand_, point_, where);
   refuse_if(kind.turning != Sections::Turning::frame,
-            "the model has no frame of its sections, which a joint could turn", where,
-            "use kind = \"ball\", or a model with twist: modes = \"bend_twist\"");
+            "a weld or hinge needs a frame of the section, which the model lacks", where,
+            "use kind = \"ball\", or a model with twist, such as der or, with modes = "
+            "\"bend_twist\", super_helix");
   section_.emplace(strand_, point_, RootMotion{}, true, Vec{}, strand_.sparse_form(),
                    where);
 }

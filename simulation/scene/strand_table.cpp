@@ -139,7 +139,7 @@ Strand cut_at_rest(const Table& table, const LoadedRod& rod) {
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& failure) {
-    throw InputError(failure.what(), table.place("mesh"), "leave out cuts");
+    throw InputError(failure.what(), table.place("mesh"), "use mesh = \"grading\"");
   }
 }
 
@@ -151,8 +151,9 @@ Strand cut_shape(const Table& table, const StrandMaterial& material, const Shape
   if (p.word("mesh") != "grading") {
     refuse_if(!clamped, "a strand that nothing holds has no shape at rest",
               table.place("mesh"), "leave out one of them");
-    refuse_grading(table, "cuts at rest");
-    refuse_varied(table, "cuts at rest");
+    const std::string mesh = "mesh = \"" + std::string(p.word("mesh")) + "\"";
+    refuse_grading(table, mesh);
+    refuse_varied(table, mesh);
     return cut_at_rest(table, {material.material,
                                material.section,
                                length,

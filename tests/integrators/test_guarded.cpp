@@ -30,6 +30,30 @@ Options steps_of(double h) {
   return options;
 }
 
+/// a = v^2. A step h of backward Euler from v has a solution up to h v = 1/4 only.
+class Runaway final : public System {
+ public:
+  Layout layout() const override { return {1, 0}; }
+  Traits traits() const override { return {true, true}; }
+  void initial_state(Out q, Out v) const override { q[0] = 0, v[0] = 1; }
+  void scale(Out q_typ, Out v_typ) const override { q_typ[0] = v_typ[0] = 1; }
+  Status residual(double, In, In v, In a, Out r) noexcept override {
+    r[0] = a[0] - v[0] * v[0];
+    return Status::ok;
+  }
+  Status linearize(double, In, In v, In, Weights w) noexcept override {
+    slope_ = w.acc - 2 * v[0] * w.vel;
+    return Status::ok;
+  }
+  Status solve(In b, Out x) noexcept override {
+    x[0] = b[0] / slope_;
+    return slope_ == 0 ? Status::retry : Status::ok;
+  }
+
+ private:
+  double slope_ = 1;
+};
+
 struct Pair {
   const char* guarded;
   const char* method;
@@ -71,6 +95,26 @@ TEST_P(OfMethod, StepsThatFailAreReplacedAndMakeNoEnergy) {
   EXPECT_LT(drive.integrator->stats().replaced, drive.integrator->stats().steps);
   EXPECT_LT(most, 0.05 * kinetic);
   EXPECT_LE(before, begin);
+}
+
+// tr_bdf2 has no solution for this step, nor have 1, 2 or 4 steps of backward Euler.
+TEST(Guarded, ReplacesAStepByTheFewestThatHaveSolutions) {
+  constexpr double h = 0.6;
+  Runaway system;
+  Drive drive("guarded", system, steps_of(h));
+  ASSERT_EQ(drive.to(h), Status::ok) << drive.integrator->failure();
+  EXPECT_EQ(drive.integrator->stats().replaced, 1);
+  EXPECT_EQ(drive.integrator->stats().steps, 1);
+  double q = 0, v = 1;
+  for (int i = 0; i < 8; ++i) {
+    constexpr double part = h / 8;
+    v = (1 - std::sqrt(1 - 4 * part * v)) / (2 * part);
+    q += part * v;
+  }
+  // Newton's iteration ends at 1e-10 of the typical rate. Each step amplifies errors
+  // by 1 / (1 - 2 h v), all of them by 14.
+  EXPECT_NEAR(drive.integrator->v()[0], v, 1e-8);
+  EXPECT_NEAR(drive.integrator->q()[0], q, 1e-8);
 }
 
 TEST_P(OfMethod, AnImpulseEndsAllMemoryOfTheStepBefore) {

@@ -433,7 +433,7 @@ TEST(Joints, AreRefusedInOneLineWithPlaceAndRemedy) {
   Text planar;
   planar.model = "id = \"super_helix\"\nmodes = \"bend\"";
   planar.joints += "kind = \"weld\"\n";
-  EXPECT_NE(refused(planar).find("no frame of its sections"), std::string::npos)
+  EXPECT_NE(refused(planar).find("needs a frame of the section"), std::string::npos)
       << refused(planar);
   Text clamped;
   clamped.joints = "[[joints]]\na = [0, \"root\"]\nb = [2, \"root\"]\n";

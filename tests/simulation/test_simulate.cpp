@@ -403,6 +403,11 @@ TEST_P(SimulateBadInput, IsOneLineExitCode2AndNothingWritten) {
             "title = \"t\"\nduration_s = 0.1\n[model]\nid = \"xpbd_cosserat\"\n"
             "[integrator]\nid = \"stable_cosserat_rods\"\ndt_s = 0.0005\n[strand]\n"
             "elements = 10\n[effects.gravity]\n");
+  toy.write("gap.toml",
+            "title = \"t\"\nduration_s = 0.1\n[[strand]]\nlength_m = 0.1\n"
+            "root_tangent = [0, 0, -1]\n[[strand]]\nlength_m = 0.1\nroot = \"free\"\n"
+            "position_m = [0, 0.01, -0.1]\nroot_tangent = [0, 0, -1]\n[[joints]]\n"
+            "a = [0, \"tip\"]\nb = [1, \"root\"]\nkind = \"ball\"\n[effects.gravity]\n");
   const auto before = toy.files();
   const Toy::Result run = toy.run(GetParam().arguments);
   EXPECT_EQ(run.code, 2);
@@ -428,6 +433,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"error_bars_of_sweeps", "sweeps.toml --error-bars --out out",
               "stable_cosserat_rods ends a step after a number of sweeps"},
         Wrong{"one_name", "good.toml ./good.toml --out out", "one name"},
+        Wrong{"joint_with_a_gap", "gap.toml --check --out out",
+              "the points of a joint begin 0.01 m apart"},
         Wrong{"output_is_a_file", "good.toml --out good.toml", "folder"}),
     [](const auto& tested) { return tested.param.name; });
 
