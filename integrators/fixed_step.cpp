@@ -56,7 +56,13 @@ Status FixedStep::start(double t, In q, In v) {
   limit_ = Limit::none;
   dynamics_.begin();
   const Status s = reset(t);
-  return s == Status::ok ? s : fail(s, t, "no acceleration at the initial state");
+  if (s == Status::ok) return s;
+  const bool regular = dynamics_.system().traits().regular_mass;
+  return fail(s, t,
+              regular
+                  ? "no acceleration at the initial state"
+                  : "no acceleration at the initial state: the mass matrix is singular "
+                    "there, which backward_euler and bdf2 allow");
 }
 
 Status FixedStep::end(Status status, double t, const std::string& what) {

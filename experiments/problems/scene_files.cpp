@@ -9,6 +9,8 @@
 #include "experiments/problems/strand_models.h"
 #include "simulation/run/world.h"
 #include "simulation/scene/driven_bodies.h"
+#include "simulation/scene/joint_table.h"
+#include "simulation/scene/support_table.h"
 #include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments {
@@ -37,6 +39,14 @@ Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry)
   if (scene.model != &model) scene = with_method(std::move(scene), {&model, {}, {}, {}});
   scene.options.tolerance = tolerance;
   scene.integrator = entry.id;
+  if (simulation::SceneSupports(scene).constrain() ||
+      simulation::SceneJoints(scene).any()) {
+    const Formulation given = scene.options.formulation;
+    const bool keeps = given != Formulation::parametric && entry.order(given) &&
+                       (tolerance == 0 || given != Formulation::index3);
+    if (!keeps) scene.options.formulation = formulation_of_supports(scene);
+    return scene;  // its run refuses a method that cannot drive it
+  }
   const auto system = scene.strands.empty()
                           ? model.make(scene.model_options)
                           : model.on_strand(scene.strands.front(), scene.model_options,

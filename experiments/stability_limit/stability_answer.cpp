@@ -68,7 +68,9 @@ std::string by_step(const Row& row) {
   if (row.text("limited_by") == "cap") {
     if (row.number("runs") > 1) line += ", the longest that was tried";
   } else if (row.text("at_1_5") == "stable") {
-    line += ", but stable again at 1.5 times that";
+    line += fmt::format(", unstable at {}, but stable again at 1.5 times {}",
+                        duration(row.number("dt_first_unstable_s")),
+                        duration(row.number("dt_max_s")));
   } else if (row.text("at_1_5") == name(Broken::no_solution)) {
     line +=
         ", at 1.5 times that some step has no solution and a run takes shorter ones "

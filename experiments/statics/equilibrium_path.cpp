@@ -75,8 +75,8 @@ class Follower {
         last.event == Event::closed) {
       if (bifurcations_ >= std::abs(options_.branch) || !last.failure.empty()) return;
       fail("the path has " + std::to_string(bifurcations_) +
-           " bifurcations, and branch asks for number " +
-           std::to_string(std::abs(options_.branch)));
+           (bifurcations_ == 1 ? " bifurcation" : " bifurcations") +
+           ", and branch asks for number " + std::to_string(std::abs(options_.branch)));
     } else if (std::ssize(all_) >= options_.points) {
       fail("the largest number of points, before the end of the range; give more points");
     }
@@ -166,6 +166,12 @@ class Follower {
       try {
         std::optional<Station> to = probe(from, step_);
         if (!to || newton_.product(from.tangent, to->tangent) < least_cosine) continue;
+        const Stability& now = to->point.stability;
+        if (!now.apart ||
+            (now.lifted > 0 && now.negative != from.point.stability.negative)) {
+          why_ = "neutral modes and others change their stiffness at once";
+          continue;
+        }
         auto events = events_between(from, *to, step_);
         if (events) return arrive(from, std::move(*to), std::move(*events));
       } catch (const std::runtime_error& error) {
@@ -197,6 +203,10 @@ class Follower {
     }
     strand_.recall(from.memory);
     static_cast<void>(strand_.residual(raw));
+    if (to.point.stability.lifted > 0) {
+      to.point.stability =
+          stability(strand_, raw, neutral_modes() - to.point.stability.lifted);
+    }
     strand_.accept(to.point.at);
     to.memory = strand_.memory();
     newton_.neutral = to.point.stability.neutral;
@@ -231,6 +241,9 @@ class Follower {
       return from;
     }
     Station last{measured_point(strand_, at, newton, neutral_modes()), {}, {}};
+    if (const int lifted = last.point.stability.lifted; lifted > 0) {
+      last.point.stability = stability(strand_, at, neutral_modes() - lifted);
+    }
     last.point.event = Event::end;
     last.point.arclength = from.point.arclength + part * step_;
     add(last.point);

@@ -58,6 +58,14 @@ std::string stability_near(const Rows& rows, std::size_t k, int side) {
   return "";
 }
 
+/// Whether a load between two points makes neutral modes unstable.
+bool topples(const Row& before, const Row& after) {
+  return !is_critical(before) && !is_critical(after) && before.has("neutral_modes") &&
+         after.has("neutral_modes") &&
+         after.number("neutral_modes") < before.number("neutral_modes") &&
+         before.text("stability") == "stable" && after.text("stability") == "unstable";
+}
+
 std::string in_words(const Rows& rows, std::size_t k) {
   const Row& row = *rows[k];
   const bool limit = is_event(row, "limit_point");
@@ -69,7 +77,11 @@ std::string in_words(const Rows& rows, std::size_t k) {
   }
   const std::string before = stability_near(rows, k, -1),
                     after = stability_near(rows, k, 1);
-  if (before != after && !before.empty() && !after.empty()) {
+  // Of several in one step, the one next to the stable side changes the stability.
+  const bool changes = before == "stable"
+                           ? k > 0 && !is_critical(*rows[k - 1])
+                           : k + 1 < rows.size() && !is_critical(*rows[k + 1]);
+  if (before != after && !before.empty() && !after.empty() && changes) {
     text += fmt::format("; {} before, {} after", before, after);
   }
   const bool held = row.text("over") == "supports";  // its place is given
@@ -140,6 +152,12 @@ void describe(const Rows& rows, std::vector<std::string>& lines) {
                   count_of(count("bifurcation"), "bifurcation", "bifurcations")));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (is_critical(*rows[k])) lines.push_back(in_words(rows, k));
+    if (k > 0 && topples(*rows[k - 1], *rows[k])) {
+      lines.push_back(fmt::format(
+          "  unstable as soon as the load acts: at {}, displacements that were neutral "
+          "at the start have negative stiffness",
+          value_of(*rows[k])));
+    }
   }
   const Row& last = *rows.back();
   if (!last.ok()) {

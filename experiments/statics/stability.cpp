@@ -22,15 +22,25 @@ using Eigen::VectorXd;
 /// the root of this rounding over that size.
 constexpr double eigenvalue_rounding = 64 * std::numeric_limits<double>::epsilon();
 
+/// A mode of the path is no longer neutral where its eigenvalue exceeds the limit of
+/// neutral ones by this factor: the balance that Newton's method leaves moves that of a
+/// spin.
+constexpr double lift = 10;
+
+/// Neutral modes have eigenvalues up to this one.
+double limit_of(const VectorXd& values) {
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() *
+                          (values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0);
+  return std::max(neutral_limit, rounding);
+}
+
 /// Indices of the eigenvalues of least size that count as neutral.
 std::vector<Index> neutral_of(const VectorXd& values, int modes) {
   std::vector<Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::ranges::sort(order, {}, [&](Index i) { return std::abs(values[i]); });
   if (modes < 0) {
-    const double rounding = 64 * std::numeric_limits<double>::epsilon() *
-                            (values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0);
-    const double limit = std::max(neutral_limit, rounding);
+    const double limit = limit_of(values);
     modes = static_cast<int>(std::ranges::count_if(
         order, [&](Index i) { return std::abs(values[i]) <= limit; }));
   }
@@ -87,6 +97,11 @@ Stability stability(StaticStrand& strand, const Balance& at, int neutral_modes) 
       if (!std::ranges::binary_search(neutral, i)) others.push_back(i);
     }
     all.values = values(others);
+    const VectorXd left_out = values(neutral).cwiseAbs();
+    all.lifted = static_cast<int>((left_out.array() > lift * limit_of(values)).count());
+    const double least = others.empty() ? std::numeric_limits<double>::infinity()
+                                        : all.values.cwiseAbs().minCoeff();
+    all.apart = all.lifted == 0 || left_out.maxCoeff() < 0.5 * least;
     all.shapes = basis * vectors(Eigen::all, others);
     all.neutral = basis * vectors(Eigen::all, neutral);
   }

@@ -22,6 +22,8 @@ struct Stability {
   Eigen::MatrixXd shapes;   // (n x values) displacements; empty: K is unsymmetric
   /// Displacements without energy, such as the spin of a straight strand about itself.
   Eigen::MatrixXd neutral;
+  int lifted = 0;  // number of the neutral modes that a load has made stiff or unstable
+  bool apart = true;  // whether their eigenvalues are smaller than all others
 };
 
 /// Eigenvalues below this count as those of neutral modes, for rounding leaves no exact

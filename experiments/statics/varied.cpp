@@ -124,13 +124,15 @@ bool set_load(const Scene& scene, const std::string& name, const std::string& pl
       load ? fmt::format("the scene has no [effects.{}]", name)
            : fmt::format("nothing named '{}' can vary in the scene", name),
       place,
-      suggestion(name, views,
-                 known.empty()
-                     ? "give --over KEY=FROM..TO with a number of the scene, such as "
-                       "youngs_modulus_pa"
-                     : fmt::format("give one of {}, or a number of the scene such as "
+      // "gravity" is also the former name of a key.
+      suggestion(name == "gravity" ? "" : name, views,
+                 !known.empty()
+                     ? fmt::format("give one of {}, or a number of the scene such as "
                                    "youngs_modulus_pa",
-                                   fmt::join(known, ", "))));
+                                   fmt::join(known, ", "))
+                 : load ? "add it"
+                        : "give --over KEY=FROM..TO with a number of the scene, such as "
+                          "youngs_modulus_pa"));
 }
 
 /// Refuses an effect that is no load of its own, and names its numbers.
@@ -200,8 +202,8 @@ Varied varied(const Scene& scene, std::string_view text, const std::string& plac
       refuse_if(end < of.number.min || end > of.number.max || !positive,
                 fmt::format("{} = {:g} is out of range", of.name, end), place,
                 fmt::format("give numbers {}between {:g} and {:g}",
-                            of.number.positive ? "above 0 " : "", of.number.min,
-                            of.number.max));
+                            of.number.positive && of.number.min <= 0 ? "above 0 " : "",
+                            of.number.min, of.number.max));
     }
   }
   return of;

@@ -14,10 +14,11 @@ Sections::Kind section_to_hold(System& strand, int point, const std::string& whe
   if (kind.turning != Sections::Turning::nothing) return kind;
   const bool at_end = point == 0 || point + 1 == strand.material_points()->count();
   throw InputError(
-      at_end ? "the model has no section at this end whose direction could be held"
+      at_end ? "no coordinate of the model turns the section at this end"
              : "the direction of the model jumps at this point and cannot be held",
       where,
-      at_end ? "use kind = \"ball\", or another model such as super_helix"
+      at_end ? "use kind = \"ball\"; at a clamped root, a free root and a clamp of "
+               "[[supports]]; or another model, such as super_helix"
              : "hold an end, or use [model] id = \"super_helix\" or \"super_clothoid\"");
 }
 

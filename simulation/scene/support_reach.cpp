@@ -30,6 +30,7 @@ std::string place_of_path(const Table& table) {
 void check_reach(const SupportedEnd& a, const SupportedEnd& b, bool inextensible,
                  double duration, const Table& table) {
   const double arc = std::abs(b.arc - a.arc);
+  if (arc == 0) return;  // two supports of one point are refused elsewhere
   double farthest = 0, at = 0;
   for (int i = 0; i <= instants; ++i) {
     const double t = duration * i / instants;
@@ -50,8 +51,8 @@ void check_reach(const SupportedEnd& a, const SupportedEnd& b, bool inextensible
   }
   if (inextensible && farthest >= (1 - rounding) * arc) {
     throw InputError(
-        fmt::format("an inextensible strand as long as its support is far from the {} at "
-                    "t = {:g} s, {:g} m, cannot move",
+        fmt::format("a support as far from the {} at t = {:g} s as the strand between "
+                    "them is long, {:g} m: the strand is inextensible and cannot move",
                     a.name, at, farthest),
         where, "move the support closer, give slack, or use [model] id = \"der\"");
   }

@@ -204,7 +204,8 @@ Support SceneSupports::support(System& system, const Strand& strand, const Table
     refuse_if(table.given("twist_rad") && held.turning != Sections::Turning::frame,
               "a twist of a model without frames of its sections",
               table.place("twist_rad"),
-              "leave it out, or use a model with twist, such as \"super_helix\"");
+              "leave it out, or use a model with twist, such as \"der\" or, with modes = "
+              "\"bend_twist\", \"super_helix\"");
     if (held.half_edge) strain_half_edge(strand, held, support);
   }
   stay_in_plane(model_options_, duration_, strand, table, support);

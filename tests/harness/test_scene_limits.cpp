@@ -163,6 +163,26 @@ centre_m = [0.03, 0, -0.07]
   }
 }
 
+// Each method has a formulation of supports, which need not be that of the scene.
+TEST_F(SceneLimit, DrivesSupportsInTheFormulationOfEachMethod) {
+  std::string text = springs;
+  const auto put = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("id = \"mass_spring\"", "id = \"der\"");
+  put("id = \"rk4\"", "id = \"tr_bdf2\"");
+  put("[strand]", "[[supports]]\nat = 0.5\n[strand]");
+  const SceneLimits how{{.coarsest = 1e-2, .depth = 2}, 1e6, 0.05, 1, 1};
+  const std::string scene = file("held.toml", text);
+  for (const Row& row :
+       rows(scene, {"backward_euler", "bdf2", "tr_bdf2", "generalized_alpha", "esdirk43"},
+            how)) {
+    EXPECT_EQ(row.status(), "ok") << row.text("integrator") << ": " << row.text("reason");
+    EXPECT_GT(row.number("dt_max_s"), 1e-3) << row.text("integrator");
+  }
+}
+
 // However little work there is: a limit that is told was run at the steps just below it,
 // and a row without these runs is no result.
 TEST_F(SceneLimit, IsInconclusiveWithoutTheStepsBelow) {

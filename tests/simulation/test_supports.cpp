@@ -206,9 +206,9 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
   far.supports = "[[supports]]\n";
   EXPECT_EQ(
       refused(far),
-      "an inextensible strand as long as its support is far from the root at t = 0 "
-      "s, 1 m, cannot move (held.toml:18:1): move the support closer, give slack, or "
-      "use [model] id = \"der\"");
+      "a support as far from the root at t = 0 s as the strand between them is long, "
+      "1 m: the strand is inextensible and cannot move (held.toml:18:1): move the "
+      "support closer, give slack, or use [model] id = \"der\"");
   far.model = "id = \"der\"";
   EXPECT_EQ(refused(far), "");
   Text planar;

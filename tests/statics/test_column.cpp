@@ -209,4 +209,25 @@ TEST(Column, UnderAFollowerForceFluttersThoughItStretches) {
   }
 }
 
+/// A strand that stands on a ball joint is neutral without a load, and topples under any.
+/// It has no bifurcation up to a tenth of its own buckling.
+TEST(Column, OnABallJointTopplesUnderAnyLoad) {
+  for (const char* model : {"super_helix", "super_clothoid", "der", "corde",
+                            "articulated_chain", "mass_spring"}) {
+    const std::string scene = static_scene(
+        "id = \"" + std::string(model) + "\"",
+        "length_m = 0.1\nelements = 10\nroot_tangent = [0, 0, 1]",
+        "[root]\nmotion = \"free\"\n[[supports]]\nat = \"root\"\n[effects.gravity]\n");
+    const auto path = static_path(scene, "gravity=0..0.06");
+    EXPECT_EQ(path.front().stability.negative, 0) << model;
+    EXPECT_GE(path.front().stability.neutral.cols(), 2) << model;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      EXPECT_NE(path[i].event, Event::bifurcation) << model;
+      EXPECT_EQ(path[i].stability.negative, 2) << model << ' ' << path[i].at.value;
+    }
+    EXPECT_EQ(path.back().event, Event::end) << model;
+    EXPECT_EQ(path.back().at.value, 0.06) << model;
+  }
+}
+
 }  // namespace tress::test_column

@@ -57,7 +57,7 @@ const Refused refusals[] = {
     {"NumberWithoutRange", helix, gravity, "--over radius_m", "no range of radius_m",
      "give --over radius_m=FROM..TO"},
     {"NumberOutOfRange", helix, gravity, "--over radius_m=-1..1", "is out of range",
-     "above 0"},
+     "give numbers between 1e-"},
     {"NoSuchEffect", helix, gravity, "--over point_force=0..1",
      "the scene has no [effects.point_force]", "give one of gravity"},
     {"NoSecondForce", helix, force, "--over point_force_2=0..1",
