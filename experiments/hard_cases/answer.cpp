@@ -57,6 +57,27 @@ std::string sentence(const OfModel& model, bool compared) {
                      model.all.runs, accurate, methods);
 }
 
+/// The criteria of the user's scene that ended runs, by name, with their numbers.
+std::vector<std::string> broken_criteria(const std::vector<Row>& rows) {
+  std::map<std::pair<std::string, std::string>, int> broken;
+  for (const Row& row : rows) {
+    const std::string_view measure = row.text("measure_name");
+    const bool named = measure == "depth_m" || measure == "stretch";
+    if (!has(row, Outcome::unstable) || !named || row.has("error_rel")) continue;
+    if (!(row.number("measure") > row.number("limit"))) continue;
+    ++broken[{std::string(measure), std::string(row.text("limit"))}];
+  }
+  std::vector<std::string> lines;
+  for (const auto& [criterion, runs] : broken) {
+    const auto& [measure, limit] = criterion;
+    lines.push_back(fmt::format(
+        "{} of the unstable runs end at the criterion {} > {:.3g} alone; --set most_{}=X "
+        "moves it",
+        runs, measure, std::stod(limit), measure));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> hard_answer(const std::vector<Row>& rows) {
@@ -83,6 +104,7 @@ std::vector<std::string> hard_answer(const std::vector<Row>& rows) {
   });
   std::vector<std::string> lines;
   for (const OfModel& model : models) lines.push_back(sentence(model, compared));
+  for (std::string& line : broken_criteria(rows)) lines.push_back(std::move(line));
   if (refused > 0) {
     lines.push_back(
         fmt::format("not supported: {} of {} runs; the column 'why' has the reasons",

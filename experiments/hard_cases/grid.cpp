@@ -47,7 +47,9 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "most_depth_m",
      .help =
          "largest accepted depth in a body beyond the initial one, scene files (m); 0: "
-         "the radius and 0.07 of the last element",
+         "the radius and 0.07 of the last element, or more in a soft regularised body: "
+         "the "
+         "depth that a fall from the strand's length reaches",
      .number = 0,
      .min = 0},
     {.name = "most_energy_gain_j",

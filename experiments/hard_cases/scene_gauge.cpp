@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "experiments/hard_cases/gauges.h"
@@ -11,10 +12,33 @@
 namespace tress::experiments::hard_cases {
 namespace {
 
+/// Work of gravity per mass over a metre (J/kg), and the least stiffness of a regularised
+/// body (N/m^2); infinite: there is none.
+struct Fall {
+  double gravity = 0, stiffness = std::numeric_limits<double>::infinity();
+
+  explicit Fall(const Scene& scene) {
+    for (const auto& effect : scene.effects) {
+      const Parameters& given = effect.parameters;
+      if (given.knows("gravity_m_s2")) gravity = norm(given.vec("gravity_m_s2"));
+      if (given.knows("friction_law") && given.word("friction_law") == "regularised") {
+        stiffness = std::min(stiffness, given.number("stiffness_n_m2"));
+      }
+    }
+  }
+
+  /// Depth at which a strand that falls by its length comes to rest in the body: its
+  /// energy there is that of the springs, m g L = k L d^2 / 2.
+  double depth(const Strand& strand) const {
+    return std::sqrt(2 * strand.mass() * gravity / stiffness);
+  }
+};
+
 double allowed_depth(const Scene& scene) {
+  const Fall fall(scene);
   double most = 0;
   for (const Strand& strand : scene.strands) {
-    most = std::max(most, hard_cases::allowed_depth(strand));
+    most = std::max({most, hard_cases::allowed_depth(strand), fall.depth(strand)});
   }
   return most;
 }

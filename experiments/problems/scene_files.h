@@ -23,8 +23,8 @@ std::vector<SceneFile> read_strand_scenes(const std::vector<std::string>& files)
 
 /// Returns the scene simulated by this model and integrator. A model other than the
 /// scene's own has its default options. A formulation that the integrator does not
-/// support, and index 3 with a tolerance on supports, is replaced by the one it prefers;
-/// a tolerance is kept if the integrator controls its error. Throws InputError where the
+/// support, and index 3 with a tolerance on supports, is replaced by the one it prefers.
+/// A tolerance is kept if the integrator controls its error. Throws InputError where the
 /// model cannot do the scene or the integrator cannot drive the model.
 Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry);
 

@@ -75,7 +75,8 @@ std::optional<StabilityRun> judge(Scene scene, double t_end, double& left) {
 /// Stability is not monotone, so steps between those of the search are tried as well:
 /// these parts of the limit. Where one is unstable, the limit falls below it, and the
 /// parts of the new one are tried.
-constexpr double parts_of_limit[] = {1, 0.95, 0.9, 0.8, 0.7};
+constexpr double parts_of_limit[] = {1,    0.99, 0.97, 0.95, 0.92, 0.9,
+                                     0.87, 0.84, 0.8,  0.75, 0.7};
 constexpr double after_unstable = 0.9;
 
 /// Runs the parts of the limit that the runs show, first as in the search, then for

@@ -127,6 +127,14 @@ std::vector<std::string> stability_answer(const std::vector<Row>& rows) {
         row->text("study") == "tolerance" ? by_tolerance(*row) : by_step(*row);
     lines.push_back(fmt::format("{}: {}", subject(*row), line));
   }
+  const bool steps = std::ranges::any_of(sorted, [&](const Row* row) {
+    return step(row) > 0 && row->number("stable_runs") > 1;
+  });
+  if (steps) {
+    lines.emplace_back(
+        "steps between those that were tried may be unstable: stability is not monotone "
+        "in the step");
+  }
   for (const auto& [of, methods] : cannot) {
     lines.push_back(fmt::format("{}: not driven by {} (--list prints the reason)", of,
                                 fmt::join(methods, ", ")));

@@ -23,8 +23,8 @@ using Eigen::VectorXd;
 constexpr double eigenvalue_rounding = 64 * std::numeric_limits<double>::epsilon();
 
 /// A mode of the path is no longer neutral where its eigenvalue exceeds the limit of
-/// neutral ones by this factor: the balance that Newton's method leaves moves that of a
-/// spin.
+/// neutral ones by this factor. The residual that Newton's method leaves moves the
+/// eigenvalue of a spin.
 constexpr double lift = 10;
 
 /// Neutral modes have eigenvalues up to this one.

@@ -51,9 +51,9 @@ void check_reach(const SupportedEnd& a, const SupportedEnd& b, bool inextensible
   }
   if (inextensible && farthest >= (1 - rounding) * arc) {
     throw InputError(
-        fmt::format("a support as far from the {} at t = {:g} s as the strand between "
-                    "them is long, {:g} m: the strand is inextensible and cannot move",
-                    a.name, at, farthest),
+        fmt::format("the strand is inextensible, and {:g} m long between its support and "
+                    "the {}, which are as far apart at t = {:g} s",
+                    farthest, a.name, at),
         where, "move the support closer, give slack, or use [model] id = \"der\"");
   }
 }

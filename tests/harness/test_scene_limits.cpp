@@ -118,7 +118,7 @@ TEST_F(SceneLimit, HoldsOverFiveTimesTheScene) {
   EXPECT_TRUE(row.has("at_1_5"));
   EXPECT_NE(row.text("at_1_5"), "stable");
 
-  const auto lines = stability_answer(found);
+  ASSERT_EQ(lines.size(), 2u);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0],
               HasSubstr("springs, mass_spring: rk4 (jacobian exact): stable at every one "
@@ -126,6 +126,7 @@ TEST_F(SceneLimit, HoldsOverFiveTimesTheScene) {
                         std::string(row.text("stable_runs")) + " steps tried from "));
   EXPECT_THAT(lines[0], HasSubstr(", unstable at 1.5 times that ("));
   EXPECT_THAT(lines[0], HasSubstr("; judged over 250 ms at the longest step; "));
+  EXPECT_THAT(lines[1], HasSubstr("may be unstable"));
 }
 
 // Stability is not monotone for a string of springs that falls on a sphere: some steps
@@ -158,7 +159,7 @@ centre_m = [0.03, 0, -0.07]
   const double dt = found.front().number("dt_max_s");
   const double t_end = found.front().number("t_end_s");
   EXPECT_DOUBLE_EQ(t_end, 2.5);
-  for (const double part : {1.0, 0.95, 0.9, 0.8, 0.7}) {
+  for (const double part : {1.0, 0.99, 0.95, 0.9, 0.84, 0.8, 0.7}) {
     EXPECT_TRUE(holds(text, part * dt, t_end)) << part << " of " << dt;
   }
 }

@@ -206,9 +206,10 @@ TEST(Supports, AreRefusedInOneLineWithPlaceAndRemedy) {
   far.supports = "[[supports]]\n";
   EXPECT_EQ(
       refused(far),
-      "a support as far from the root at t = 0 s as the strand between them is long, "
-      "1 m: the strand is inextensible and cannot move (held.toml:18:1): move the "
-      "support closer, give slack, or use [model] id = \"der\"");
+      "the strand is inextensible, and 1 m long between its support and the root, which "
+      "are as far apart at t = 0 s (held.toml:18:1): move the support closer, give "
+      "slack, "
+      "or use [model] id = \"der\"");
   far.model = "id = \"der\"";
   EXPECT_EQ(refused(far), "");
   Text planar;
