@@ -47,9 +47,8 @@ constexpr Parameter settings_of_rows[] = {
     {.name = "most_depth_m",
      .help =
          "largest accepted depth in a body beyond the initial one, scene files (m); 0: "
-         "the radius and 0.07 of the last element, or more in a soft regularised body: "
-         "the "
-         "depth that a fall from the strand's length reaches",
+         "the radius and 0.07 of the last element. In a soft regularised body, the depth "
+         "that a fall by the length of the strand reaches, if that is more",
      .number = 0,
      .min = 0},
     {.name = "most_energy_gain_j",

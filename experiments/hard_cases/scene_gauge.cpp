@@ -27,8 +27,8 @@ struct Fall {
     }
   }
 
-  /// Depth at which a strand that falls by its length comes to rest in the body: its
-  /// energy there is that of the springs, m g L = k L d^2 / 2.
+  /// Depth at which a strand that falls by its length comes to rest in the body, where
+  /// the springs have its energy: m g L = k L d^2 / 2.
   double depth(const Strand& strand) const {
     return std::sqrt(2 * strand.mass() * gravity / stiffness);
   }
