@@ -92,18 +92,29 @@ Status AdjointRun::begin(std::size_t method, double t, In q, In v) {
 
 Status AdjointRun::advance(double t_end) {
   Status s = on_tape_ + 1 == parts_.size() ? Status::ok : repeat(parts_.size() - 1);
-  if (damping_ && s == Status::ok) {
-    s = advance_by(DampedStart::end(time(), t_end, method_.options.step));
-    damping_ = false;
-    if (s == Status::ok) {
-      const std::vector<double> q(this->q().begin(), this->q().end());
-      const std::vector<double> v(this->v().begin(), this->v().end());
-      s = begin(1, time(), q, v);
-    }
+  const EqualSteps steps(t_end - time(), method_.options, method_.parts);
+  if ((!damping_ && method_.parts == 1) || !steps.allowed) {
+    if (s == Status::ok) s = advance_by(t_end);
+  } else {
+    if (damping_ && s == Status::ok) s = damped_start(steps.h);
+    if (s == Status::ok) s = advance_in(steps.count, t_end);
   }
-  if (s == Status::ok) s = advance_by(t_end);
   if (s == Status::ok) stop();
   return s;
+}
+
+Status AdjointRun::damped_start(double h) {
+  Status s = advance_in(DampedStart::steps, DampedStart::end(time(), h));
+  damping_ = false;
+  if (s != Status::ok) return s;
+  const std::vector<double> q(this->q().begin(), this->q().end());
+  const std::vector<double> v(this->v().begin(), this->v().end());
+  return begin(1, time(), q, v);
+}
+
+Status AdjointRun::advance_in(double count, double t_end) {
+  return take_equal_steps(count, time(), t_end,
+                          [this](double t) { return advance_by(t); });
 }
 
 /// The record goes on in a new part when it is full.

@@ -88,6 +88,8 @@ class AdjointRun {
 
   Status begin(std::size_t method, double t, In q, In v);
   Status advance_by(double t_end);
+  Status advance_in(double count, double t_end);
+  Status damped_start(double h);
   void note(Event event, const RecordedRun& run);
   void stop();
   Status fail(Status s, std::string why);

@@ -205,14 +205,22 @@ Status GradientRun::begin(std::string_view method, const Options& options) {
 }
 
 Status GradientRun::advance(double t_end) {
+  const EqualSteps steps(t_end - t_, method_.options, method_.parts);
+  if ((!damping_ && method_.parts == 1) || !steps.allowed) {
+    return advance_by(*run_, *columns_, t_end);
+  }
   if (damping_) {
-    Status s =
-        advance_by(*run_, *columns_, DampedStart::end(t_, t_end, method_.options.step));
+    Status s = advance_in(DampedStart::steps, DampedStart::end(t_, steps.h));
     damping_ = false;
     if (s == Status::ok) s = begin(method_.id, method_.options);
     if (s != Status::ok) return s;
   }
-  return advance_by(*run_, *columns_, t_end);
+  return advance_in(steps.count, t_end);
+}
+
+Status GradientRun::advance_in(double count, double t_end) {
+  return take_equal_steps(count, t_, t_end,
+                          [this](double t) { return advance_by(*run_, *columns_, t); });
 }
 
 Status GradientRun::advance_by(Integrator& run, Integrator& columns, double t_end) {

@@ -42,6 +42,7 @@ class GradientRun {
     std::string_view id;                          // id of the integrator
     Options options;                              // Options::step: the longest step
     GradientStart start = GradientStart::as_run;  // treatment of the start
+    int parts = 1;                                // of every step until the next stop
     KnownForces forces = {};                      // properties of the forces
   };
 
@@ -92,6 +93,7 @@ class GradientRun {
   void forget();
   Status set_off();
   Status advance_by(Integrator& run, Integrator& columns, double t_end);
+  Status advance_in(double count, double t_end);
   Status begin(std::string_view method, const Options& options);
   Status advance_columns(Integrator& columns, double t, In q, In v);
   Status shift_columns(Integrator& columns, double t, In q, In v, double sign);

@@ -1,11 +1,36 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "contract/integrator.h"
 
 namespace tress::integrators {
+
+/// The steps of a run until its next stop: equal ones, each divided into equal parts.
+struct EqualSteps {
+  double count, h;  // number of parts, length of a part in s
+  bool allowed;     // by Options::max_steps
+
+  /// Those of FixedStep over a span, with its 1e-9 for rounding.
+  EqualSteps(double span, const Options& options, int parts) {
+    const double whole = std::max(1.0, std::ceil(span / options.step - 1e-9));
+    count = parts * whole;
+    h = span / count;
+    allowed = whole <= static_cast<double>(options.max_steps);
+  }
+};
+
+/// Advances from t to t_end by this number of equal steps, one after the other.
+template <class Advance>
+Status take_equal_steps(double count, double t, double t_end, Advance advance) {
+  Status s = Status::ok;
+  for (double i = 1; i <= count && s == Status::ok; ++i) {
+    s = advance(i == count ? t_end : t + i * ((t_end - t) / count));
+  }
+  return s;
+}
 
 /// The method of a damped start (GradientStart): some steps of a part of the step each.
 struct DampedStart {
@@ -20,10 +45,8 @@ struct DampedStart {
     of_run.own.clear();
     return of_run;
   }
-  /// End of these steps before a run from t to t_end, or a part of it.
-  static double end(double t, double t_end, double step) {
-    return t + steps * part * std::min(step, t_end - t);
-  }
+  /// End of these steps before a run that begins at t with steps of h.
+  static double end(double t, double h) { return t + steps * part * h; }
 };
 
 /// Options of linear equations that a method solves in the steps of a run: the first

@@ -59,7 +59,7 @@ class StrandRun {
     method_.options = options_beside_supports(*system_, method_.options);
     if (chosen_) accepted_ = accepted_steps(scene, strand, task.times);
     stops_ = chosen_ ? divided(accepted_.stops, task.parts) : stops_at(task.times);
-    if (!chosen_) divide_steps();
+    if (!chosen_) method_.parts = task.parts;
     found_.by.resize(task.parameters.size());
     found_.unfinished = accepted_.unfinished;
   }
@@ -84,16 +84,6 @@ class StrandRun {
   }
 
  private:
-  /// Divides the steps that the run takes, which end at stops.
-  void divide_steps() {
-    double before = 0, longest = 0;
-    for (const RunStop& stop : stops_) {
-      longest = std::max(longest, stop.t - before);
-      before = stop.t;
-    }
-    double& step = method_.options.step;
-    if (task_.parts > 1) step = std::min(step, longest) / task_.parts;
-  }
   bool from_start() const { return !task_.times.empty() && task_.times.front() <= 0; }
 
   /// see(k) at every time, where k advances have led to it.
