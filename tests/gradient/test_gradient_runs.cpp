@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <ostream>
 
 #include "tests/gradient/strand_runs.h"
@@ -58,21 +59,50 @@ StrandRun run_of(const Case& c) {
   return run;
 }
 
-bool drives(const Case& c) {
+/// Why the method cannot run the model; empty: it can.
+std::string reason_against(const Case& c) {
   const StrandRun run = run_of(c);
-  return refusal(find_integrator(c.method), *run.make(), run.options.formulation).empty();
+  return refusal(find_integrator(c.method), *run.make(), run.options.formulation);
 }
 
-std::vector<Case> cases() {
+/// Every model of strands with every method with stages.
+std::vector<Case> pairs() {
   std::vector<Case> all;
   for (const ModelEntry& model : model_catalogue()) {
     if (model.on_strand == nullptr) continue;
-    for (const std::string& method : stage_methods()) {
-      const Case c{&model, method};
-      if (drives(c)) all.push_back(c);
-    }
+    for (const std::string& method : stage_methods()) all.push_back({&model, method});
   }
   return all;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all = pairs();
+  std::erase_if(all, [](const Case& c) { return !reason_against(c).empty(); });
+  return all;
+}
+
+/// Pairs that cannot run, with the reason: models with constraints, which only index3
+/// differentiates (test_constraints.cpp).
+const std::map<std::string, std::string> left_out{
+    {"dynamic_spline_implicit_midpoint", "Gauss methods are unstable on index 3"},
+    {"inextensible_strand_implicit_midpoint", "Gauss methods are unstable on index 3"}};
+
+TEST(GradientPairs, LeaveOutThoseThatCannotRunAlone) {
+  std::map<std::string, std::string> found;
+  std::size_t models = 0;
+  for (const ModelEntry& model : model_catalogue()) {
+    models += model.on_strand != nullptr ? 1 : 0;
+  }
+  for (const Case& c : pairs()) {
+    const std::string reason = reason_against(c);
+    if (!reason.empty()) found[c.name()] = reason;
+    const StrandRun run = run_of(c);
+    EXPECT_EQ(no_gradient(c.method, *run.make(), run.options).has_value(),
+              !reason.empty())
+        << c.name();
+  }
+  EXPECT_EQ(found, left_out);
+  EXPECT_EQ(cases().size() + left_out.size(), models * stage_methods().size());
 }
 
 class GradientOf : public testing::TestWithParam<Case> {};
