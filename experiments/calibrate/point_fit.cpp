@@ -60,7 +60,13 @@ void check_distances(const PointRecord& record, const Scene& scene) {
 }  // namespace
 
 bool are_points(const std::vector<std::string>& files) {
-  return !files.empty() && has_points(read_csv(files.front()).header);
+  if (files.empty()) return false;
+  const std::string& file = files.front();
+  const CsvTable table = read_csv(file);
+  refuse_if(table.header.empty(), "the file is empty", file + ":1:1",
+            "give the columns time_s, x_m, y_m, z_m of points, or t_s, amplitude_m of "
+            "oscillations");
+  return has_points(table.header);
 }
 
 PointFit point_fit(const CommandLine& line, const Settings& settings) {

@@ -12,6 +12,17 @@ namespace {
 
 constexpr const char* repair = "repair or delete the file; it must be RFC 4180 CSV";
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::string_view other_separators = ";\t |";
+
+[[noreturn]] void refuse_separator(char found, const std::string& file,
+                                   const CellPlace& at) {
+  throw InputError(fmt::format("columns are separated by {}",
+                               found == ' '    ? "spaces"
+                               : found == '\t' ? "tabs"
+                                               : fmt::format("'{}'", found)),
+                   fmt::format("{}:{}:{}", file, at.line, at.column),
+                   "separate columns by ',' and write decimals with '.'");
+}
 
 class Reader {
  public:
@@ -30,6 +41,9 @@ class Reader {
     }
     if (!done() && peek() == '\r') step();
     if (!done()) {
+      if (other_separators.find(peek()) != other_separators.npos) {
+        refuse_separator(peek(), file_, {line_, column_});
+      }
       if (peek() != '\n') fail("unexpected character after a cell");
       step();
     }
@@ -111,11 +125,31 @@ std::string to_csv(std::span<const std::string> header, std::span<const Row> row
   return text;
 }
 
+namespace {
+
+/// Refuses a line of one cell that has parts: names of columns and numbers have none.
+void check_separator(const std::vector<std::string>& cells, const std::string& file,
+                     CellPlace begin) {
+  const std::string_view text = cells.front();
+  const std::size_t first = text.find_first_not_of(other_separators),
+                    at = text.find_first_of(other_separators, first),
+                    next = text.find_first_not_of(other_separators, at);
+  if (cells.size() > 1 || std::max({first, at, next}) == text.npos) return;
+  begin.column += static_cast<int>(at);
+  refuse_separator(text[at], file, begin);
+}
+
+}  // namespace
+
 CsvTable parse_csv(std::string_view text, const std::string& file) {
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  if (text.find_first_not_of(" \t\r\n") == text.npos) return {};
   Reader reader(text, file);
   CsvTable table;
-  if (!reader.done()) table.header = reader.line(table.places.emplace_back());
+  if (!reader.done()) {
+    table.header = reader.line(table.places.emplace_back());
+    check_separator(table.header, file, table.places.front().front());
+  }
   if (table.header.size() > most_columns) {
     throw InputError(fmt::format("{} columns", table.header.size()), file + ":1",
                      fmt::format("give at most {}", most_columns));
@@ -130,6 +164,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
   while (!reader.done()) {
     const std::vector<std::string> cells = reader.line(table.places.emplace_back());
     if (cells.size() != table.header.size()) {
+      check_separator(cells, file, table.places.back().front());
       throw InputError(fmt::format("a line of {} cells, where the header has {}",
                                    cells.size(), table.header.size()),
                        fmt::format("{}:{}:1", file, table.places.back().front().line),

@@ -35,8 +35,8 @@ constexpr std::size_t most_table_bytes = 16 << 20;
 constexpr std::size_t most_columns = 128;
 
 /// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
-/// unclosed quote, a line of the wrong length, a repeated column name or more than
-/// most_columns columns.
+/// unclosed quote, other separators than commas, a line of the wrong length, a repeated
+/// column name or more than most_columns columns. A blank text is an empty table.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
 /// Reads and parses a file. Throws InputError as parse_csv().

@@ -27,6 +27,10 @@ constexpr double least_part = 0.1;  // of a unit vector: a parameter that belong
 constexpr double largest_shift = 0.25;  // half intervals
 constexpr double deviations = 4;        // standard deviations of an autocorrelation
 constexpr double unlikely = 1e-3;       // probability of a larger sum of squares
+// Of a value from its prior. Records with the standard error t and a prior with s move
+// the value from the prior by s/sqrt(1 + t^2/s^2) on average, less than s: it is farther
+// with a probability of at most 1e-3.
+constexpr double most_sigmas = 3.29;
 // Over the length of a strand: Newton's tolerance and coordinates with nine digits leave
 // less, and no measurement does.
 constexpr double rounding = 1e-8;
@@ -68,6 +72,7 @@ class Fit {
                   const VectorXd& half);
   void add_profiles(SceneFit& fit, const VectorXd& half, double least, double deviation);
   VectorXd shifts(const LinearizedFit& here, const MatrixXd& determined, Finer finer);
+  std::string far_from_priors(const SceneFit& fit) const;
   void judge(SceneFit& fit) const;
 
   const FitTask& task_;
@@ -197,8 +202,24 @@ void Fit::add_intervals(SceneFit& fit, const LinearizedFit& found) {
   if (task_.profile) add_profiles(fit, half, found.r.squaredNorm(), deviation);
 }
 
+/// The values that contradict their priors, in words; empty: none.
+std::string Fit::far_from_priors(const SceneFit& fit) const {
+  std::string all;
+  for (const FitPrior& prior : task_.priors) {
+    const auto one =
+        std::ranges::find(fit.parameters, prior.name, &FittedParameter::name);
+    const double sigmas = std::abs(one->value - prior.value) / prior.sigma;
+    if (!(sigmas > most_sigmas)) continue;
+    all += fmt::format("{}{} = {:.4g} {} is {:.3g} sigma from its prior, {:.4g} {}",
+                       all.empty() ? "" : "; ", one->name, one->value, one->unit, sigmas,
+                       prior.value, one->unit);
+  }
+  return all;
+}
+
 /// The status of each parameter that has none yet, and that of the fit: the first.
 void Fit::judge(SceneFit& fit) const {
+  const std::string far = far_from_priors(fit);
   std::string misfit, unjudged;
   const auto pairs = static_cast<double>(runs_.successive().size());
   const double length = task_.records.front().scene->strands.front().length();
@@ -251,7 +272,14 @@ void Fit::judge(SceneFit& fit) const {
       say("misfit", misfit +
                         ": the scene is not that of the records, and intervals are "
                         "too narrow");
+    } else if (!far.empty()) {
+      say("misfit",
+          "the prior or the scene is not that of the records, and intervals are too "
+          "narrow");
     }
+  }
+  for (FittedParameter& one : fit.parameters) {
+    if (!far.empty()) one.reason = far + ": " + one.reason;
   }
   const auto bad = std::ranges::find_if(
       fit.parameters, [](const FittedParameter& one) { return one.status != "ok"; });

@@ -66,7 +66,8 @@ bool too_small(double reduced_chi2, int degrees);
 ///     space_error     twice the elements do
 ///     misfit          residuals are correlated in time or too large for sigma_m: the
 ///                     scene is not that of the records, and intervals are too narrow.
-///                     Residuals at rounding, or too small for sigma_m, are not judged
+///                     Residuals at rounding, or too small for sigma_m, are not judged.
+///                     Or a value is more than 3.29 sigma from its prior
 ///     solver_error    the fit did not converge, or a run failed
 struct SceneFit {
   std::vector<FittedParameter> parameters = {};  // parameters in the order of FitTask::by

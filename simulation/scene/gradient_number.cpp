@@ -199,6 +199,25 @@ std::string GradientNumber::text(const Parameters& values, double s) const {
   return number_text(v.x) + "," + number_text(v.y) + "," + number_text(v.z);
 }
 
+namespace {
+
+/// Refuses "wind.velocity_m_s.w" of a known key.
+void check_component(std::string_view name, std::string_view key,
+                     std::span<const Parameter> declared, const std::string& place) {
+  const std::size_t dot = key.find('.');
+  const auto p = std::ranges::find(declared, key.substr(0, dot), &Parameter::name);
+  if (dot == key.npos || p == declared.end()) return;
+  const std::string_view whole = name.substr(0, name.find('.') + 1 + dot);
+  if (p->components == 3) {
+    refuse_gradient(name, fmt::format("{} has the components x, y and z", whole), place,
+                    fmt::format("give {}.x, .y or .z", whole));
+  }
+  refuse_gradient(name, fmt::format("{} is one number", whole), place,
+                  "leave out what follows the last dot");
+}
+
+}  // namespace
+
 GradientNumber gradient_number(std::string_view name, std::string_view key,
                                std::span<const Parameter> declared,
                                const Parameters& values, const std::string& place) {
@@ -207,6 +226,7 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
   all.key = key;
   const auto p = std::ranges::find(declared, key, &Parameter::name);
   if (p == declared.end()) {
+    check_component(name, key, declared, place);
     std::vector<std::string_view> known;
     for (const Parameter& one : declared) known.push_back(one.name);
     throw InputError(
@@ -219,7 +239,8 @@ GradientNumber gradient_number(std::string_view name, std::string_view key,
   }
   if (all.component.has_value() != (p->components == 3)) {
     const bool three = p->components == 3;
-    refuse_gradient(name, three ? "it has three components" : "it is one number", place,
+    refuse_gradient(name, three ? "it has the components x, y and z" : "it is one number",
+                    place,
                     three ? fmt::format("give {}.x, .y or .z", name)
                           : "leave out what follows the last dot");
   }

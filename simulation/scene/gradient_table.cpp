@@ -222,11 +222,13 @@ class Finder {
   }
 
   bool of_root(std::string_view name, std::vector<SceneParameter>& to) const {
-    std::string_view base = name;
-    const auto k = take_component(base);
+    const std::string_view base = name.substr(0, name.find('.'));
     if (std::ranges::count(of_roots, base) == 0) return false;
-    if (!k) {
-      refuse(name, "it has three components", fmt::format("give {}.x, .y or .z", name));
+    std::string_view rest = name;
+    const auto k = take_component(rest);
+    if (!k || rest != base) {
+      refuse(name, fmt::format("{} has the components x, y and z", base),
+             fmt::format("give {}.x, .y or .z", base));
     }
     if (scene_.tables->skin != nullptr) {
       refuse(name, "a skin places and turns the root", "leave it out");

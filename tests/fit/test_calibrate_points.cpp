@@ -27,6 +27,7 @@ TEST(CalibratePoints, FindsStiffnessFrictionAndDragOfTheShippedRecord) {
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("youngs_modulus_pa = "));
   EXPECT_THAT(run.out, HasSubstr("75 coordinates; root mean square"));
+  EXPECT_THAT(run.err, Not(HasSubstr("claims of the study")));
   const CsvTable table = parse_csv(calibrate.read("fit.csv"), "fit.csv");
   ASSERT_EQ(table.rows.size(), 3u) << run.err;
   const double truth[] = {3e9, 1e-10, 5e-5};
@@ -115,6 +116,20 @@ TEST(CalibratePoints, RefusesWithPlaceAndRemedyBeforeAnyRun) {
   calibrate.write("short.csv", "time_s,x_m,y_m\n0.1,0,0\n0.2,0\n0.3,0,0\n");
   EXPECT_THAT(refused("--scene " + scene + " --set data=short.csv"),
               HasSubstr("(short.csv:3:1): give one cell for each column"));
+  calibrate.write("empty.csv", "");
+  calibrate.write("blank.csv", "\n\n");
+  for (const char* by : {"", " --set by=radius_m"}) {
+    for (const std::string file : {"empty.csv", "blank.csv"}) {
+      EXPECT_THAT(refused("--scene " + scene + " --set data=" + file + by),
+                  HasSubstr("the file is empty (" + file + ":1:1): give the columns"));
+    }
+  }
+  calibrate.write("semicolons.csv", "time_s;x_m;y_m\n0,1;0,02;0\n");
+  EXPECT_THAT(
+      refused("--scene " + scene + " --set data=semicolons.csv"),
+      HasSubstr("separated by ';' (semicolons.csv:1:7): separate columns by ','"));
+  EXPECT_THAT(refused(both + " --set by=linear_drag.drag_kg_m_s.w"),
+              HasSubstr("linear_drag.drag_kg_m_s is one number (--set by"));
   calibrate.write("header.csv", "t,x,y,z\n0.1,0,0,0\n");
   EXPECT_THAT(refused("--scene " + scene + " --set data=header.csv"),
               HasSubstr("time_s, x_m, y_m, z_m"));

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -131,6 +132,38 @@ TEST(SceneFit, JudgesNoCorrelationOfResidualsFarBelowSigma) {
   EXPECT_TRUE(too_small(found.reduced_chi2, found.degrees));
   EXPECT_FALSE(too_small(1, found.degrees));
   EXPECT_EQ(found.status, "ok") << found.reason;
+}
+
+// Of 225 coordinates with errors of 0.5 mm the modulus has a standard error far below
+// that of its prior. Values of its own record agree with a prior at the truth.
+TEST(SceneFit, ReportsAValueThatContradictsItsPrior) {
+  const Scene scene = Curl{}.scene();
+  const std::vector<std::string> by{four[0], four[2]};
+  const PointRecord record = with_noise(record_of(scene, 75, noise, by), noise, 1);
+  const double truth = gradient_parameters(scene, by, "test")[0].value;
+  const auto with_prior = [&](double sigmas) {
+    const double sigma = 0.05 * truth;
+    return fit_scenes({.records = {{&scene, &record}},
+                       .by = by,
+                       .bounds = {},
+                       .priors = {{four[0], truth + sigmas * sigma, sigma}},
+                       .shifts = false});
+  };
+  EXPECT_EQ(with_prior(0).status, "ok") << with_prior(0).reason;
+  // The value moves towards the prior by a part t^2/(t^2 + s^2) of the distance.
+  const SceneFit far = with_prior(80);
+  EXPECT_EQ(far.status, "misfit");
+  EXPECT_THAT(far.reason, HasSubstr("sigma from its prior"));
+  const double distance = std::abs(far.parameters[0].value - 5 * truth) / (0.05 * truth);
+  EXPECT_GT(distance, 60);
+  EXPECT_THAT(far.reason, HasSubstr(fmt::format(
+                              "youngs_modulus_pa = {:.4g} Pa is {:.3g} sigma from its "
+                              "prior, {:.4g} Pa",
+                              far.parameters[0].value, distance, 5 * truth)));
+  for (const FittedParameter& one : far.parameters) {
+    EXPECT_EQ(one.status, "misfit");
+    EXPECT_EQ(one.reason, far.reason);
+  }
 }
 
 /// Records of the test below: 100, or as many as ./tress test --extremes asks for.
@@ -489,6 +522,9 @@ TEST(PointRecord, RefusesWhatItCannotReadWithThePlace) {
     return refusal([&] { parse_point_record(text, "r.csv"); });
   };
   EXPECT_THAT(refused(""), HasSubstr("empty (r.csv:1:1)"));
+  EXPECT_THAT(refused("\n"), HasSubstr("empty (r.csv:1:1)"));
+  EXPECT_THAT(refused("time_s\tx_m\n0\t1\n"),
+              HasSubstr("separated by tabs (r.csv:1:7): separate columns by ','"));
   EXPECT_THAT(refused("time_s,w_m\n"), HasSubstr("unknown column 'w_m' (r.csv:1:8)"));
   EXPECT_THAT(refused("x_m\n1\n"), HasSubstr("no column 'time_s'"));
   EXPECT_THAT(refused("time_s\n1\n"), HasSubstr("no column 'x_m'"));

@@ -305,6 +305,18 @@ TEST(SceneGradient, NamesWhatIsNoParameterAndWhere) {
             std::string::npos);
   EXPECT_NE(refused("by = [\"wind.velocity_m_s\"]\n").find(".x, .y or .z"),
             std::string::npos);
+  for (const std::string of : {"wind.velocity_m_s", "root_angle_rad"}) {
+    for (const char* wrong : {".w", ".X", ".0", ".x.y"}) {
+      const std::string answer = refused("by = [\"" + of + wrong + "\"]\n");
+      EXPECT_NE(answer.find(of + " has the components x, y and z (s.toml:24:6): give " +
+                            of + ".x, .y or .z"),
+                std::string::npos)
+          << answer;
+    }
+  }
+  EXPECT_NE(refused("by = [\"linear_drag.drag_kg_m_s.w\"]\n")
+                .find("linear_drag.drag_kg_m_s is one number"),
+            std::string::npos);
   EXPECT_NE(refused("by = [\"wind.frequency_hz\"]\n")
                 .find("profile = \"constant\" does not use it"),
             std::string::npos);

@@ -255,7 +255,7 @@ TEST(DrivenGradient, ByNumbersWithoutADerivativeIsRefused) {
   const std::pair<const char*, const char*> cases[] = {
       {"\"point_moment.at\"", "the end of an element"},
       {"\"point_moment_3.moment_n_m.x\"", "unknown parameter"},
-      {"\"point_moment.moment_n_m\"", "it has three components"},
+      {"\"point_moment.moment_n_m\"", "has the components x, y and z"},
       {"\"natural_shape.from\"", "derivatives jump"},
       {"\"natural_shape.curvature_per_m\"", "it is not a number"}};
   for (const auto& [name, reason] : cases) {

@@ -107,6 +107,34 @@ TEST(Csv, ErrorsNameFileLineAndColumn) {
   EXPECT_THAT(message("a,a\n"), HasSubstr("appears twice"));
 }
 
+TEST(Csv, OtherSeparatorsAreNamedWithPlaceAndRemedy) {
+  const auto message = [](std::string_view text) -> std::string {
+    try {
+      static_cast<void>(parse_csv(text, "t.csv"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  for (const auto& [text, problem] :
+       {std::pair("a;b\n0,1;0,2\n", "separated by ';' (t.csv:1:2)"),
+        {"a\tb\n1\t2\n", "separated by tabs (t.csv:1:2)"},
+        {"  a  b\n1 2\n", "separated by spaces (t.csv:1:4)"},
+        {"\"a\";\"b\"\n", "separated by ';' (t.csv:1:4)"},
+        {"a,b\n1;2\n", "separated by ';' (t.csv:2:2)"}}) {
+    EXPECT_THAT(message(text), HasSubstr(problem)) << text;
+    EXPECT_THAT(message(text), HasSubstr("): separate columns by ','")) << text;
+  }
+  EXPECT_EQ(message("a\n1 2\n"), "accepted");
+  EXPECT_THAT(message("a,b\n \n"), HasSubstr("a line of 1 cells"));
+}
+
+TEST(Csv, ABlankFileIsAnEmptyTable) {
+  for (const char* text : {"", "\n", " \r\n\t\n", "\xEF\xBB\xBF\n"}) {
+    EXPECT_TRUE(parse_csv(text, "t.csv").header.empty()) << text;
+  }
+}
+
 TEST(Journal, LineRoundTripKeepsEveryCell) {
   Row row;
   row.set("run_id", "0123")
