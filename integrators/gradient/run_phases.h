@@ -13,7 +13,7 @@ struct EqualSteps {
   double count, h;  // number of parts, length of a part in s
   bool allowed;     // by Options::max_steps
 
-  /// Those of FixedStep over a span, with its 1e-9 for rounding.
+  /// Steps that FixedStep takes over a span, with its 1e-9 for rounding.
   EqualSteps(double span, const Options& options, int parts) {
     const double whole = std::max(1.0, std::ceil(span / options.step - 1e-9));
     count = parts * whole;

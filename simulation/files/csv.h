@@ -34,9 +34,10 @@ constexpr std::size_t most_table_bytes = 16 << 20;
 /// Limit of the columns of a table that is read.
 constexpr std::size_t most_columns = 128;
 
-/// Accepts "\n" and "\r\n". Throws InputError with `file`:line:column on a stray or
-/// unclosed quote, other separators than commas, a line of the wrong length, a repeated
-/// column name or more than most_columns columns. A blank text is an empty table.
+/// Accepts "\n" and "\r\n". A blank text is an empty table. Throws InputError with
+/// `file`:line:column on a stray or unclosed quote and on a line of the wrong length.
+/// Also throws on other separators than commas, on a repeated column name and on more
+/// than most_columns columns.
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
 /// Reads and parses a file. Throws InputError as parse_csv().
