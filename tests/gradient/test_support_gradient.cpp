@@ -180,6 +180,36 @@ TEST(SupportGradient, ByNumbersOfSupportsIsThatOfDifferencesOfRuns) {
   }
 }
 
+/// A sphere below the strand that moves and turns.
+const std::string moving_body =
+    "[effects.body]\nshape = \"sphere\"\nradius_m = 0.005\ncentre_m = [0.05, 0, "
+    "-0.2]\nmoves = \"keyframes\"\naxis = [0, 1, 0.2]\nkeyframes = [[0, 0, 0, 0, 0], "
+    "[0.1, 0, 0.002, 0.003, 0.05]]\n";
+
+// What carries a support moves it, and turns it about its centre.
+TEST(SupportGradient, OfSupportsOnWhatMovesIsThatOfDifferencesOfRuns) {
+  const std::string yields = "stiffness_n_per_m = 0.01\ndamping_n_s_per_m = 1e-5\n";
+  const auto on = [](const std::string& carrier) {
+    return "[[supports]]\nat = \"tip\"\nkind = \"ball\"\non = \"" + carrier + "\"\n";
+  };
+  for (const std::string model : {"super_helix", "der"}) {
+    for (const bool rigid : {false, true}) {
+      SCOPED_TRACE(model + (rigid ? ", rigid" : ", compliant"));
+      const std::string method = rigid ? "bdf2" : "tr_bdf2";
+      const std::string keys = std::string("newton_tolerance = 1e-12\n") +
+                               (rigid ? "formulation = \"index3\"\n" : "");
+      const std::string more = rigid ? "" : yields;
+      const auto scene = [&](const std::string& support, const std::string& by) {
+        return parse_scene(with_steps(with(text(model, support), method, by), keys),
+                           "s.toml");
+      };
+      expect_differences(scene(on("body") + more + moving_body, "\"body.centre_m.x\""),
+                         1e-3, 1e-6);
+      expect_differences(scene(on("head") + more, "\"root.amplitude_m\""), 1e-3, 1e-6);
+    }
+  }
+}
+
 /// A strand held at its tip, and at its middle in one direction.
 const std::string rigid =
     "[[supports]]\nat = \"tip\"\nkind = \"ball\"\n"
