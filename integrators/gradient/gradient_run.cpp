@@ -101,7 +101,7 @@ std::optional<NoGradient> no_gradient(std::string_view method, System& system,
         std::string(method) +
             (find_integrator(method).order(Formulation::index3)
                  ? " starts from accelerations, whose derivatives lose their digits in "
-                   "reduced coordinates with constraints"
+                   "joined strands and in reduced coordinates with constraints"
                  : " does not take constraints as index3, of which derivatives are "
                    "exact"),
         "use " + methods_that(fits)};

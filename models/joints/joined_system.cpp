@@ -110,6 +110,17 @@ void JoinedSystem::make_joints(const std::vector<Joint>& joints,
   }
 }
 
+/// Ends move by 1e-5 of typical sizes: 1e-10 of their derivatives along the motion.
+void JoinedSystem::be_exact() {
+  std::vector<double> q_typ(v_typ_.size()), v_typ(q_typ);
+  scale(q_typ, v_typ);
+  double rate = 0;
+  for (std::size_t i = 0; i < q_typ.size(); ++i) {
+    rate = std::max(rate, v_typ[i] / q_typ[i]);
+  }
+  for (JointPair& joint : joints_) joint.be_exact(1e-5 / rate);
+}
+
 void JoinedSystem::begin_at(In q, In v) {
   for (std::size_t k = 0; k < strands(); ++k) held_[k]->begin_at(part(q, k), part(v, k));
 }

@@ -59,6 +59,9 @@ class JoinedSystem final : public StrandBlock,
   std::size_t first_coordinate(std::size_t k) const { return first_of(k); }
   /// Returns the power of the joints on bodies, W.
   double power_into_bodies(double t, In q, In v);
+  /// Makes S exact, for derivatives of runs: those of joints with friction, and of slack
+  /// springs, are bounded or left out in runs.
+  void be_exact();
   /// The state from which runs begin.
   void begin_at(In q, In v);
 

@@ -60,6 +60,7 @@ JointPair::JointPair(JointEnd a, JointEnd b, const Joint& joint, In q,
   refuse_if(a_.first() == b_.first() && a_.point() == b_.point(),
             "a joint of a point with itself", where, "join two points");
   zero_.assign(q.size(), 0.0);
+  moved_ = zero_;
   std::vector<double> column(q.size());
   add_force(0, q, {1, 2, 3}, column);
   const bool moves = std::ranges::any_of(column, [](double x) { return x != 0; });
@@ -240,9 +241,40 @@ double JointPair::energy_rate(double t, In q, In v) {
   return sum;
 }
 
+template <class Add>
+void JointPair::add_drift(double t, In q, In v, const Vec& load, InOut b,
+                          const Add& add) {
+  for (const double step : {dt_, -dt_}) {
+    for (std::size_t i = 0; i < q.size(); ++i) moved_[i] = q[i] + step * v[i];
+    add(t + step, moved_, (0.5 / step) * load, b);
+  }
+}
+
+/// Row e of the derivative of a spring's pull k (l - l0) n + c (u . n) n by d = l n, with
+/// the weights of S.
+Vec JointPair::along_spring(const Vec& d, const Vec& u, const Vec& e, Weights w) const {
+  const double length = norm(d);
+  const Vec n = length > 0 ? (1 / length) * d : unit[0];
+  const double over_length = 1 / std::max(length, 1e-300);
+  // Bounded in runs: slack springs must not make S indefinite.
+  const double slack =
+      dt_ > 0 ? rest_length_ * over_length : std::min(1.0, rest_length_ * over_length);
+  const Vec along_n = dot(n, e) * n, across = e - along_n;
+  Vec pulled = (w.pos * stiffness_) * (e - slack * across) + (w.vel * damping_) * along_n;
+  if (dt_ > 0) {
+    const Vec u_across = u - dot(u, n) * n;
+    pulled = pulled + (w.pos * damping_ * over_length) *
+                          (dot(n, e) * u_across + dot(u, n) * across);
+  }
+  return pulled;
+}
+
 /// A motion turns the ends by D_a and D_b. The moment M on b changes by B (D_b - D_a) +
 /// D_a x M, where B is its derivative by the turn of b. M turns with both ends if they
 /// turn together. The force of a spring changes by -K (x_b - x_a)' alone.
+///
+/// Exact: velocities u = J v change by J' dq, where J' is the derivative of J along the
+/// motion. Angular velocities w = W v change by W' dq + D x w.
 void JointPair::write_couplings(double t, In q, In v, In lambda, Weights w,
                                 Eigen::Ref<Eigen::MatrixXd> u,
                                 Eigen::Ref<Eigen::MatrixXd> v_of) {
@@ -252,19 +284,19 @@ void JointPair::write_couplings(double t, In q, In v, In lambda, Weights w,
   };
   if (spring_) {
     const Vec d = b_.place(t, q) - a_.place(t, q);
-    const double length = norm(d);
+    const Vec rate = dt_ > 0 ? b_.velocity(t, q, v) - a_.velocity(t, q, v) : Vec{};
     for (const Vec& e : unit) {
-      Vec pulled = (w.pos * stiffness_ + w.vel * damping_) * e;
-      if (rest_length_ > 0) {
-        const Vec n = length > 0 ? (1 / length) * d : unit[0];
-        // Rest length over length, bounded: slack springs must not make S indefinite.
-        const double slack = std::min(1.0, rest_length_ / std::max(length, 1e-300));
-        const Vec along_n = dot(n, e) * n;
-        pulled = (w.pos * stiffness_) * (e - slack * (e - along_n)) +
-                 (w.vel * damping_) * along_n;
-      }
+      const Vec pulled = rest_length_ > 0 ? along_spring(d, rate, e, w)
+                                          : (w.pos * stiffness_ + w.vel * damping_) * e;
       add_force(t, q, e, at(u, column));
       add_force(t, q, pulled, at(v_of, column));
+      if (dt_ > 0 && damping_ > 0) {
+        const Vec damped = rest_length_ > 0 ? (dot(d, e) / dot(d, d)) * d : e;
+        add_drift(t, q, v, (w.pos * damping_) * damped, at(v_of, column),
+                  [this](double at_t, In x, const Vec& f, InOut b) {
+                    add_force(at_t, x, f, b);
+                  });
+      }
       ++column;
     }
   }
@@ -279,6 +311,14 @@ void JointPair::write_couplings(double t, In q, In v, In lambda, Weights w,
     const Vec turn = -w.pos * by.by_turn.row[i] - w.vel * by.by_spin.row[i];
     add_moment(t, q, turn, at(v_of, column));
     a_.add_moment(t, q, -w.pos * cross(by.moment, unit[i]), at(v_of, column));
+    if (dt_ > 0 && norm(friction_) > 0) {
+      const Vec spin = by.by_spin.row[i];
+      add_moment(t, q, -w.pos * cross(section_now.omega, spin), at(v_of, column));
+      add_drift(t, q, v, -w.pos * spin, at(v_of, column),
+                [this](double at_t, In x, const Vec& m, InOut b) {
+                  add_moment(at_t, x, m, b);
+                });
+    }
     ++column;
   }
 }

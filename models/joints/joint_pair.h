@@ -67,9 +67,13 @@ class JointPair {
   /// Returns the rate of the elastic energy, W.
   double energy_rate(double t, In q, In v);
 
+  /// Makes write_couplings() exact, for derivatives of runs. `dt`: time in which the ends
+  /// move a little.
+  void be_exact(double dt) { dt_ = dt; }
   /// Derivative of the load by the motion, w.pos d/dq + w.vel d/dv, as U V^T: writes
   /// couplings() columns of both, so that S += U V^T. It leaves out derivatives of J at a
-  /// constant load, and those of velocities by places. The columns must be 0 before.
+  /// constant load. Without be_exact() it also leaves out those of velocities by places,
+  /// and bounds those of slack springs. The columns must be 0 before.
   void write_couplings(double t, In q, In v, In lambda, Weights w,
                        Eigen::Ref<Eigen::MatrixXd> u, Eigen::Ref<Eigen::MatrixXd> v_of);
 
@@ -95,6 +99,11 @@ class JointPair {
     a_.add_moment(t, q, -1.0 * moment, b);
   }
 
+  /// b += the derivative of add(t, q, load, b) along the motion.
+  template <class Add>
+  void add_drift(double t, In q, In v, const Vec& load, InOut b, const Add& add);
+  Vec along_spring(const Vec& d, const Vec& u, const Vec& e, Weights w) const;
+
   JointEnd a_, b_;
   bool spring_;
   double stiffness_, damping_, rest_length_;  // of a spring
@@ -105,6 +114,8 @@ class JointPair {
   Frame to_wall_;                // the same axes in the section of a, at the start
   Vec elastic_, friction_;       // of c; 0: without half edges
   std::vector<double> zero_;
+  double dt_ = 0;  // of be_exact()
+  std::vector<double> moved_;
 };
 
 }  // namespace tress::models

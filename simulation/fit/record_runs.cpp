@@ -7,7 +7,6 @@
 #include <map>
 #include <tuple>
 
-#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene_changes/changes.h"
@@ -184,8 +183,7 @@ void RecordRuns::add(const FitTask& task, const FitRecord& from) {
 }
 
 void RecordRuns::check_points(const FitRecord& record, const OfStrand& one) const {
-  const auto system = system_of(*record.scene, one.strand);
-  const auto count = static_cast<std::size_t>(system->material_points()->count());
+  const std::size_t count = points_of(*record.scene, one.strand).count;
   for (const Observation& point : record.points->observations) {
     if (point.strand != one.strand || point.point.value_or(0) < count) continue;
     throw InputError(

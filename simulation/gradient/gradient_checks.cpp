@@ -64,19 +64,21 @@ void check_derivatives(const Scene& scene) {
       !scene.strands.front().root.teleports.empty(),
       "no gradient of a strand whose root teleports: derivatives leave out the jump",
       place, "give [root] one row for each time");
-  refuse_if(SceneJoints(scene).any(),
-            "no gradient of strands with [joints]: derivatives of joined strands, which "
-            "move as one system, are not available",
-            place, "leave out [joints]");
   refuse_if(
       has_driven_bodies(scene),
       "no gradient of a strand that drives a body: derivatives of the body's motion "
-      "are not available",
+      "are not implemented",
       place, "use another motion of [effects.body] than moves = \"turns\" or \"free\"");
-  const auto system = exact_system_of(scene, 0);
-  const auto no = integrators::no_gradient(
-      scene.integrator, *system, options_beside_supports(*system, scene.options));
-  if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);
+  const SceneSupports supports(scene);
+  const SceneJoints joints(scene);
+  for (std::size_t k = 0; k < scene.strands.size(); ++k) {
+    // Others are as the first one.
+    if (k > 0 && !supports.hold(k) && joints.beginning_with(k) == nullptr) continue;
+    const auto system = exact_system_of(scene, k);
+    const auto no = integrators::no_gradient(
+        scene.integrator, *system, options_beside_supports(*system, scene.options));
+    if (no) throw InputError("no gradient: " + no->reason, place, no->remedy);
+  }
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     refuse_if(
         begins_inside(scene, k),

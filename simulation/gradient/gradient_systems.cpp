@@ -1,14 +1,20 @@
 #include "simulation/gradient/gradient_systems.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "contract/forms/constraint_form.h"
+#include "contract/forms/material_points.h"
 #include "contract/input_error.h"
 #include "contract/jacobian_choice.h"
+#include "models/joints/joined_system.h"
 #include "models/strand_copies.h"
 #include "simulation/rest/supported_start.h"
+#include "simulation/run/strand_maker.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene/support_table.h"
 #include "simulation/scene_changes/strand_options.h"
 
@@ -22,15 +28,34 @@ Parameters options_of(const Scene& scene, std::size_t strand) {
   return StrandOptions(scene).of(scene.strands[strand]);
 }
 
-/// The same with the exact Jacobian.
-Parameters exact_options(const Scene& scene, std::size_t strand) {
-  Parameters options = options_of(scene, strand);
+/// Sets the exact Jacobian.
+Parameters exact(const Scene& scene, Parameters options) {
   for (const Parameter& p : scene.model->parameters) {
     if (p.name == jacobian_parameter.name) {
       options.set(p.name, words_of(jacobian_parameter.choices).front());
     }
   }
   return options;
+}
+
+void check_start_on_supports(const SupportedStart& start, const std::string& place) {
+  refuse_if(start.steps > 0,
+            "no gradient of a strand that begins off its supports: derivatives of the "
+            "search for a start on them are not available",
+            place, "give the strand a shape that begins on its supports");
+}
+
+/// The strands of a group as World makes them.
+std::unique_ptr<System> joined_system(const Scene& scene,
+                                      const SceneJoints::Group& group) {
+  const StrandMaker maker(scene);
+  std::vector<StrandToMake> strands;
+  for (std::size_t k = group.first; k < group.first + group.count; ++k) {
+    strands.push_back({.strand = scene.strands[k], .number = k});
+  }
+  SteppedSystem made = maker.joined(strands, group);
+  check_start_on_supports(made.supported, maker.joints().place());
+  return std::move(made.system);
 }
 
 /// The model of a strand with its supports.
@@ -42,11 +67,16 @@ std::unique_ptr<System> on_supports(const Scene& scene, std::size_t strand,
       scene.model->on_strand(one, model_options, make_effects(scene)), one, strand);
   if (!supports.hold(strand) || !supports.constrain()) return system;
   const std::string& place = supports.place(strand);
-  refuse_if(begin_on_supports(*system, place).steps > 0,
-            "no gradient of a strand that begins off its supports: derivatives of the "
-            "search for a start on them are not available",
-            place, "give the strand a shape that begins on its supports");
+  check_start_on_supports(begin_on_supports(*system, place), place);
   return system;
+}
+
+/// The location of what holds a strand rigidly; empty: nothing does.
+std::string rigid_place(const Scene& scene, std::size_t strand) {
+  const SceneJoints joints(scene);
+  if (const auto* group = joints.of(strand)) return joints.places(*group).front();
+  const SceneSupports supports(scene);
+  return supports.hold(strand) && supports.constrain() ? supports.place(strand) : "";
 }
 
 /// Of a parameter that places something. Hair at rest sinks into a compliant body by 6e-5
@@ -73,11 +103,35 @@ std::vector<double> gap_at_start(System& system) {
 }  // namespace
 
 std::unique_ptr<System> system_of(const Scene& scene, std::size_t strand) {
+  const SceneJoints joints(scene);
+  if (const auto* group = joints.of(strand)) return joined_system(scene, *group);
   return on_supports(scene, strand, options_of(scene, strand));
 }
 
 std::unique_ptr<System> exact_system_of(const Scene& scene, std::size_t strand) {
-  return on_supports(scene, strand, exact_options(scene, strand));
+  const SceneJoints joints(scene);
+  const auto* const group = joints.of(strand);
+  if (group == nullptr) {
+    return on_supports(scene, strand, exact(scene, options_of(scene, strand)));
+  }
+  Scene changed = scene;
+  changed.model_options = exact(scene, scene.model_options);
+  auto system = joined_system(changed, *group);
+  dynamic_cast<models::JoinedSystem&>(*system).be_exact();
+  return system;
+}
+
+PointRange points_of(const Scene& scene, std::size_t strand) {
+  const SceneJoints joints(scene);
+  const auto* const group = joints.of(strand);
+  if (group == nullptr) {
+    const auto system = system_of(scene, strand);
+    return {0, static_cast<std::size_t>(system->material_points()->count())};
+  }
+  const auto count = [&](std::size_t k) { return scene.strands[k].segments.size() + 1; };
+  std::size_t first = 0;
+  for (std::size_t k = group->first; k < strand; ++k) first += count(k);
+  return {first, count(strand)};
 }
 
 integrators::KnownForces known_forces(const Scene& scene) {
@@ -86,7 +140,9 @@ integrators::KnownForces known_forces(const Scene& scene) {
 }
 
 std::unique_ptr<System> copies_of(const Scene& scene, std::size_t strand) {
-  if (SceneSupports(scene).change(strand)) return nullptr;
+  if (SceneSupports(scene).change(strand) || SceneJoints(scene).of(strand) != nullptr) {
+    return nullptr;
+  }
   return models::strand_copies(*scene.model, scene.strands[strand],
                                options_of(scene, strand), make_effects(scene));
 }
@@ -104,6 +160,7 @@ std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
     all.back().law = parameter.law;
     // Supports and effects may hold what they find at the start.
     all.back().starts = parameter.starts && !SceneSupports(scene).change(strand) &&
+                        SceneJoints(scene).of(strand) == nullptr &&
                         known_forces(scene).quadratic;
     if (parameter.places) {
       all.back().places = distance_of_places(scene, strand, parameter);
@@ -114,8 +171,8 @@ std::vector<RunParameter> run_parameters(const Scene& scene, std::size_t strand,
 
 void check_starts(const Scene& scene, std::size_t strand, System& system,
                   std::span<const SceneParameter> parameters) {
-  const SceneSupports supports(scene);
-  if (!supports.hold(strand) || !supports.constrain()) return;
+  const std::string place = rigid_place(scene, strand);
+  if (place.empty() || system.constraint_form() == nullptr) return;
   // A thousandth of a length, or of a radian, against rounding.
   constexpr double change = 1e-3, moved = 1e-9;
   const std::vector<double> here = gap_at_start(system);
@@ -132,9 +189,13 @@ void check_starts(const Scene& scene, std::size_t strand, System& system,
       off = true;
     }
     if (!off) continue;
+    const bool joined = SceneJoints(scene).any();
     refuse_gradient(
-        parameter.name, "it takes the strand off its rigid supports at the start",
-        supports.place(strand), "leave it out, or give [supports] stiffness_n_per_m");
+        parameter.name,
+        fmt::format("it takes the strand off its {} at the start",
+                    joined ? "joints or rigid supports" : "rigid supports"),
+        place,
+        joined ? "leave it out" : "leave it out, or give [supports] stiffness_n_per_m");
   }
 }
 

@@ -53,6 +53,7 @@ class StrandRun {
         task_(task),
         chosen_(scene.options.tolerance > 0),
         system_(system_of(scene, strand)),
+        own_(points_of(scene, strand)),
         parameters_(run_parameters(scene, strand, task.parameters)),
         method_(method_of(scene, task.damped)) {
     check_starts(scene, strand, *system_, task.parameters);
@@ -70,9 +71,9 @@ class StrandRun {
     found_.not_smooth = not_smooth(*system_);
     const std::size_t first = from_start() ? 1 : 0;
     for (std::size_t f = first; f < found_.points.size() && chosen_; ++f) {
-      found_.moved =
-          std::max(found_.moved, farthest(found_.points[f], accepted_.points[f - first]) /
-                                     scene_.strands[strand_].length());
+      found_.moved = std::max(
+          found_.moved, farthest(found_.points[f], own(accepted_.points[f - first])) /
+                            scene_.strands[strand_].length());
     }
     if (found_.unfinished.empty() && found_.moved > scene_.options.tolerance) {
       found_.unfinished = fmt::format(
@@ -86,12 +87,18 @@ class StrandRun {
  private:
   bool from_start() const { return !task_.times.empty() && task_.times.front() <= 0; }
 
+  /// The coordinates of the strand's points among those of its system.
+  std::vector<double> own(const std::vector<double>& x) const {
+    const auto begin = x.begin() + static_cast<std::ptrdiff_t>(3 * own_.first);
+    return {begin, begin + static_cast<std::ptrdiff_t>(3 * own_.count)};
+  }
+
   /// see(k) at every time, where k advances have led to it.
   template <class Run, class See>
   Status take(Run& run, See see) {
     Status s = run.start();
     const auto note = [&](std::size_t advances) {
-      found_.points.push_back(points_at(*system_, run.time(), run.q()));
+      found_.points.push_back(own(points_at(*system_, run.time(), run.q())));
       see(advances);
     };
     if (s == Status::ok && from_start()) note(0);
@@ -109,12 +116,13 @@ class StrandRun {
   void forward() {
     GradientRun run(*system_, exact_system_of(scene_, strand_), parameters_, method_,
                     copies_of(scene_, strand_));
+    std::vector<double> dx(3 *
+                           static_cast<std::size_t>(system_->material_points()->count()));
     static_cast<void>(take(run, [&](std::size_t) {
       for (std::size_t k = 0; k < found_.by.size(); ++k) {
-        std::vector<double> dx(found_.points.back().size());
         run.points_by(k, dx);
-        for (double& entry : dx) entry /= task_.parameters[k].measure;
-        found_.by[k].push_back(std::move(dx));
+        found_.by[k].push_back(own(dx));
+        for (double& entry : found_.by[k].back()) entry /= task_.parameters[k].measure;
       }
     }));
     for (std::size_t f = 0; f < found_.points.size(); ++f) {
@@ -137,7 +145,7 @@ class StrandRun {
     std::vector<double> by(numbers * parameters_.size());
     const auto seed = [&](std::size_t number, std::size_t stop, Out x_hat) {
       if (advances[first + number / width] != stop) return;
-      x_hat[all - width + number % width] = 1;
+      x_hat[3 * own_.first + all - width + number % width] = 1;
     };
     if (run.sweep(numbers, seed, by) != Status::ok) {
       found_.unfinished = run.failure();
@@ -160,6 +168,7 @@ class StrandRun {
   const GradientTask& task_;
   bool chosen_;  // steps by a tolerance
   std::unique_ptr<System> system_;
+  PointRange own_;
   std::vector<RunParameter> parameters_;
   GradientRun::Method method_;
   AcceptedSteps accepted_;
@@ -186,10 +195,8 @@ StrandGradient strand_gradient(const Scene& scene, std::size_t strand,
   bool adjoint = task.way == GradientWay::adjoint;
   if (task.way == GradientWay::automatic) {
     const auto system = exact_system_of(scene, strand);
-    const auto points = system->material_points()->count();
     const auto numbers =
-        3 * (task.of == GradientOf::points ? static_cast<std::size_t>(points)
-                                           : std::size_t{1});
+        3 * (task.of == GradientOf::points ? points_of(scene, strand).count : 1);
     const std::size_t frames = task.of == GradientOf::last_tip ? 1 : task.times.size();
     adjoint = task.parameters.size() > 3 * numbers * frames &&
               integrators::no_adjoint(*system, scene.integrator, scene.options).empty();
@@ -218,7 +225,7 @@ double count_of_derivatives(const Scene& scene) {
   double points = 0;
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     points +=
-        of == GradientOf::points ? system_of(scene, k)->material_points()->count() : 1;
+        of == GradientOf::points ? static_cast<double>(points_of(scene, k).count) : 1;
   }
   return 3 * points * frames * static_cast<double>(gradient_parameters(scene).size());
 }

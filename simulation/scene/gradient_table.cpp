@@ -273,8 +273,13 @@ class Finder {
                     table.set(of.key, of.text(table.values(), s), table.place());
                     scene.head = head_motion(table);
                     const auto free_root = free_motion(table);
+                    const std::optional own{FreeRoot{}};
                     for (Strand& strand : scene.strands) {
-                      set_root(strand, {scene.head, free_root, tables->skin.get()},
+                      // [[strand]] root = "free"
+                      const bool only_it = strand.free_root && !free_root;
+                      set_root(strand,
+                               {scene.head, only_it ? own : free_root, tables->skin.get(),
+                                only_it},
                                strand.root.position, strand.root.frame);
                     }
                     scene.tables = std::move(tables);
