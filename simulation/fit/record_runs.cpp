@@ -36,8 +36,10 @@ class ChangedScene {
     }
     if (finer_ != Finer::twice_the_elements) return changed;
     const Options options = changed.options;
+    const auto tables = changed.tables;  // with the strands that joints name
     changed = refined(std::move(changed));
     changed.options = options;
+    changed.tables = tables;
     return changed;
   }
   Scene at_values() const { return at(parameters_.size(), 0); }

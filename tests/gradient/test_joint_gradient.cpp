@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "simulation/fit/scene_fit.h"
 #include "simulation/gradient/scene_gradient.h"
 #include "simulation/run/world.h"
 #include "tests/support/apart.h"
@@ -154,6 +155,43 @@ TEST(JointGradientChecks, AMethodThatStartsFromAccelerationsIsRefused) {
   });
   EXPECT_NE(answer.find("joined strands"), std::string::npos) << answer;
   EXPECT_NE(answer.find("use backward_euler, bdf2"), std::string::npos) << answer;
+}
+
+/// The tips of both strands at the frames.
+PointRecord record_of(const Scene& scene) {
+  const GradientTask task{.parameters = {}, .times = times_of_frames(scene)};
+  PointRecord record{.file = "r.csv", .hash = "r"};
+  for (std::size_t strand = 0; strand < scene.strands.size(); ++strand) {
+    const StrandGradient run = strand_gradient(scene, strand, task);
+    for (std::size_t f = 1; f < task.times.size(); ++f) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        Observation& one = record.observations.emplace_back();
+        one.strand = strand;
+        one.t = task.times[f];
+        one.component = c;
+        one.value = run.points[f].end()[static_cast<std::ptrdiff_t>(c) - 3];
+      }
+    }
+  }
+  record.places.resize(1);
+  return record;
+}
+
+// A Gauss-Newton step below the tolerance of the search, 1e-5, leaves its square.
+TEST(JointFit, FindsTheModulusOfJoinedStrands) {
+  const auto scene = [](const char* modulus) {
+    std::string of = text("der", "bdf2", weld, "\"youngs_modulus_pa\"");
+    of.replace(of.find("internal_friction"), 0,
+               std::string("youngs_modulus_pa = ") + modulus + "\n");
+    return parse_scene(of, "s.toml");
+  };
+  const PointRecord record = record_of(scene("3e9"));
+  const Scene start = scene("4e9");
+  const SceneFit fit =
+      fit_scenes({.records = {{&start, &record}}, .by = {"youngs_modulus_pa"}});
+  EXPECT_NEAR(fit.parameters.at(0).value / 3e9, 1, 1e-6) << fit.reason;
+  EXPECT_FALSE(std::isnan(fit.parameters[0].step_shift));
+  EXPECT_FALSE(std::isnan(fit.parameters[0].elements_shift)) << fit.reason;
 }
 
 // Turned about its own root, each strand leaves the point of the other.
