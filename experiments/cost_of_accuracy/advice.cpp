@@ -45,6 +45,23 @@ std::string what(const Row& row) {
                      steps);
 }
 
+/// For scenes with supports or joints, what the errors are.
+void add_measure(const Row& row, std::vector<std::string>& lines) {
+  if (row.text("error_of") != "strand") return;
+  lines.push_back(
+      "errors are the largest along the strands, not of the tip: supports or joints hold "
+      "points");
+}
+
+/// Models and integrators that the search could not take.
+void add_left_out(const std::vector<Row>& rows, std::vector<std::string>& lines) {
+  for (const Row& row : rows) {
+    if (row.text("kind") != "left_out") continue;
+    lines.push_back(
+        fmt::format("left out: {}: {}", row.text("choice"), row.text("reason")));
+  }
+}
+
 /// "0.82 % of the length in 3.2 ms per simulated second (0.053 ms per frame)"
 std::string price(const Row& row) {
   return fmt::format(
@@ -167,7 +184,9 @@ std::vector<std::string> best_so_far(const std::vector<Row>& rows, const Row& be
                   cut(best) ? "so far" : "with any method tried"),
       fmt::format("best so far {}{}{}{}", limits(best), configuration_and_price(best),
                   doubt.empty() ? "" : "; ", doubt)};
+  add_measure(best, lines);
   add_given(rows, best, lines);
+  add_left_out(rows, lines);
   if (cut(best)) lines.push_back(more(best));
   return lines;
 }
@@ -264,6 +283,7 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
                           first.text("reason"))
             : fmt::format("no answer: {}", first.text("reason"))};
     add_given(rows, first, lines);
+    add_left_out(rows, lines);
     if (cut(first)) lines.push_back(more(first));
     return lines;
   }
@@ -279,11 +299,13 @@ std::vector<std::string> advice(const std::vector<Row>& rows) {
   const Row* winner = find(rows, "winner");
   if (winner != best && winner != nullptr && !winner->ok()) winner = nullptr;
   const Row* next = best == winner ? find(rows, "runner_up") : winner;
+  add_measure(*best, lines);
   lines.push_back(next_best(next));
   if (auto avoid = what_not(rows, winner == nullptr ? *best : *winner)) {
     lines.push_back(*std::move(avoid));
   }
   add_failed_given(rows, lines);
+  add_left_out(rows, lines);
   if (cut(*best)) lines.push_back(more(*best));
   return lines;
 }
@@ -314,10 +336,14 @@ std::string advised_text(const Scene& given, const Row& row, double rate) {
   // Beyond, nothing is promised, and it may not run.
   if (row.text("horizon_cut") == "true") made.duration = row.number("horizon_s");
   const std::string doubt = doubts(row);
-  return fmt::format("# {} as advised for {} frames per second: {}, {}.\n# {}{}\n{}\n{}",
-                     given.name, rate, price(row), validity(row), limits(row), what(row),
-                     doubt.empty() ? "" : fmt::format("# No answer: {}.\n", doubt),
-                     scene_text(made));
+  std::vector<std::string> measure;
+  add_measure(row, measure);
+  return fmt::format(
+      "# {} as advised for {} frames per second: {}, {}.\n{}# {}{}\n{}\n{}", given.name,
+      rate, price(row), validity(row),
+      measure.empty() ? "" : fmt::format("# {}.\n", measure.front()), limits(row),
+      what(row), doubt.empty() ? "" : fmt::format("# No answer: {}.\n", doubt),
+      scene_text(made));
 }
 
 }  // namespace tress::experiments::cost_of_accuracy

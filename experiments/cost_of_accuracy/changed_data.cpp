@@ -2,17 +2,19 @@
 #include <functional>
 
 #include "experiments/cost_of_accuracy/scene_measure.h"
-#include "simulation/run/tip_paths.h"
+#include "simulation/scene_changes/changes.h"
 
 namespace tress::experiments::cost_of_accuracy {
 
 Scene changed(Scene scene, Change change) {
   const double factor = change == Change::up ? 1 + data_change : 1 - data_change;
+  // Supports and joints hold places that another length would not reach.
+  const double lengths = held(scene) ? 1 : factor;
   std::vector<Strand> strands = scene.strands;
   for (Strand& strand : strands) {
     strand.material.youngs_modulus *= factor;
     strand.material.shear_modulus *= factor;
-    for (Segment& segment : strand.segments) segment.length *= factor;
+    for (Segment& segment : strand.segments) segment.length *= lengths;
   }
   return with_strands(std::move(scene), std::move(strands));
 }
@@ -27,9 +29,9 @@ SceneReference differences(const Scene& given, const Comparison& comparison,
   const Scene scene =
       compared(trial_scene(given, method, cut.elements, cut.substeps, comparison.rate),
                comparison);
-  const std::vector<double> as_it_is = tip_paths(scene, 0).x;
+  const std::vector<double> as_it_is = compared_paths(scene, comparison).x;
   const auto difference = [&](Change change) {
-    std::vector<double> x = tip_paths(changed(scene, change), 0).x;
+    std::vector<double> x = compared_paths(changed(scene, change), comparison).x;
     std::ranges::transform(x, as_it_is, x.begin(), std::minus<>());
     return x;
   };

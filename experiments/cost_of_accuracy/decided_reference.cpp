@@ -11,13 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "contract/input_error.h"
+#include "experiments/cost_of_accuracy/reference_side.h"
 #include "experiments/run/message.h"
-#include "simulation/run/tip_paths.h"
+#include "simulation/scene_changes/element_unit.h"
 
 namespace tress::experiments::cost_of_accuracy {
 namespace {
 
+/// Rounded up to multiples of element_unit(), and doubled twice at least.
 constexpr int fewest_elements = 10, most_elements = 640;
 
 /// Two limits are compared from here on: three runs of a side.
@@ -36,95 +37,8 @@ constexpr double tighter = 0.1;
 /// close it.
 constexpr double converged_part = 0.1;
 
-/// Steps of a frame; beyond it a run is given up.
-constexpr long most_steps = 20000;
-
-/// The model by the first of these integrators that can drive it; empty: none can.
-std::optional<Method> method_of(const Scene& given, std::string_view model) {
-  for (const std::string_view integrator : {"esdirk43", "tr_bdf2"}) {
-    const MethodChoice choice{.models = {std::string(model)},
-                              .integrators = {std::string(integrator)},
-                              .options = {"none"},
-                              .fixed_steps = false,
-                              .extrapolated = false};
-    for (const Method& method : methods(given, choice)) {
-      if (method.by_tolerance) return method;
-    }
-  }
-  return {};
-}
-
-struct Level {
-  int elements;
-  double tolerance;
-};
-
-/// Runs of one model, and their limit.
-class Side {
- public:
-  Side(const Scene& given, const Comparison& comparison, Method method)
-      : given_(&given), comparison_(&comparison), method_(std::move(method)) {}
-
-  std::string_view model() const { return method_.model->id; }
-
-  std::vector<double> run(const Level& level, double most_s,
-                          std::optional<Change> change = {}) const {
-    Scene scene = compared(trial_scene(*given_, method_, level.elements,
-                                       {.tolerance = level.tolerance}, comparison_->rate),
-                           *comparison_);
-    scene.options.max_step = 1 / comparison_->rate;
-    scene.options.max_steps = most_steps;
-    if (change) scene = changed(std::move(scene), *change);
-    return tip_paths(scene, 0, {.wall_s = most_s}).x;
-  }
-
-  /// The next run, and a limit where there was one before it.
-  void refine(const Level& level, double most_s) {
-    try {
-      std::vector<double> x = run(level, most_s);
-      if (!fine_.empty()) {
-        std::vector<double> limit = x;
-        const double factor = extrapolation(method_, level.elements);
-        for (std::size_t i = 0; i < x.size(); ++i) limit[i] += factor * (x[i] - fine_[i]);
-        change_ = limit_.empty() ? never : compared_error(limit, limit_, *comparison_);
-        limit_ = std::move(limit);
-        coarse_ = std::move(fine_);
-        coarse_level_ = fine_level_;
-      }
-      fine_ = std::move(x);
-      fine_level_ = level;
-    } catch (const std::runtime_error& failure) {  // including refusals
-      failure_ = fmt::format("{}: {}", model(), failure.what());
-      ++failures_;
-      fine_.clear();
-    }
-  }
-
-  int failures() const { return failures_; }
-  const std::string& failure() const { return failure_; }
-  bool has_limit() const { return !limit_.empty(); }
-  const std::vector<double>& limit() const { return limit_; }
-  double change() const { return change_; }  // of the limit, by the last refinement
-
-  /// What changed data do to the tips, by the coarser run of its limit.
-  std::vector<double> moved(Change change, double most_s) const {
-    std::vector<double> x = run(coarse_level_, most_s, change);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] -= coarse_[i];
-    return x;
-  }
-
- private:
-  const Scene* given_;
-  const Comparison* comparison_;
-  Method method_;
-  std::vector<double> coarse_, fine_, limit_;
-  Level coarse_level_{}, fine_level_{};
-  double change_ = never;
-  int failures_ = 0;
-  std::string failure_;
-};
-
-SceneReference pair_of(const Side& a, const Side& b, const Comparison& comparison) {
+SceneReference pair_of(const ReferenceSide& a, const ReferenceSide& b,
+                       const Comparison& comparison) {
   const bool first = a.change() <= b.change();
   SceneReference made{{first ? a.limit() : b.limit(), first ? b.limit() : a.limit()},
                       comparison.frames};
@@ -133,9 +47,10 @@ SceneReference pair_of(const Side& a, const Side& b, const Comparison& compariso
 }
 
 /// Runs sides at the same time.
-void refine_all(const std::vector<Side*>& sides, const Level& level, double most_s) {
+void refine_all(const std::vector<ReferenceSide*>& sides, const Level& level,
+                double most_s) {
   std::vector<std::future<void>> running;
-  for (Side* side : sides) {
+  for (ReferenceSide* side : sides) {
     running.push_back(std::async(
         std::launch::async, [side, &level, most_s] { side->refine(level, most_s); }));
   }
@@ -150,21 +65,34 @@ class Refinement {
         comparison_(comparison),
         wanted_(wanted),
         deadline_(deadline),
-        heartbeat_(heartbeat) {
-    for (const std::string_view model : {"super_helix", "der", "articulated_chain"}) {
-      if (auto method = method_of(given, model)) {
+        heartbeat_(heartbeat),
+        unit_(simulation::element_unit(given)),
+        fewest_(unit_ * ((fewest_elements + unit_ - 1) / unit_)) {
+    std::vector<std::string> models{"super_helix", "der", "articulated_chain"};
+    if (held(given)) models.emplace_back("corde");
+    for (const std::string& model : models) {
+      if (auto method = side_method(given, model)) {
         sides_.emplace_back(given, comparison, std::move(*method));
       }
     }
     if (sides_.size() < 2) {
-      throw std::runtime_error(
-          "fewer than two models take this scene: there is nothing to compare with");
+      std::string why =
+          "fewer than two of the models for references take this scene: there is nothing "
+          "to compare with";
+      for (const LeftOut& one : left_out(given, side_choice(models, {"none"}), {})) {
+        const bool taken = std::ranges::count(sides_, one.id, &ReferenceSide::model) > 0;
+        if (!taken) why += fmt::format("; {}: {}", one.id, one.why);
+      }
+      throw std::runtime_error(why);
     }
   }
 
   DecidedReference result() {
     climb();
-    if (!decided_ && sides_.size() > 2) catch_up(sides_[2]);
+    for (std::size_t k = 2; !decided_ && k < sides_.size(); ++k) {
+      catch_up(sides_[k]);
+      decided_ = agree();
+    }
     const auto best = best_pair();
     if (!best) throw std::runtime_error(why_not());
     const auto& [a, b] = *best;
@@ -183,21 +111,23 @@ class Refinement {
 
   void climb() {
     double took_s = 0;
-    for (int n = fewest_elements; n <= most_elements; n *= 2) {
-      const bool two = n > 2 * fewest_elements;  // a limit takes two runs
+    for (int n = fewest_; n <= std::max(most_elements, 4 * fewest_); n *= 2) {
+      const bool two = n > 2 * fewest_;  // a limit takes two runs
       if (two && dearer * took_s > deadline_.remaining_s()) return;
       const Deadline::Clock::time_point start = Deadline::Clock::now();
       level_ = level_of(n);
       heartbeat_.doing(fmt::format("computing the reference, {} elements", n));
       refine_all({&sides_[0], &sides_[1]}, level_, deadline_.remaining_s());
       took_s = std::chrono::duration<double>(Deadline::Clock::now() - start).count();
-      for (Side* side : {&sides_[0], &sides_[1]}) {
-        if (side->failures() < 2 || sides_.size() < 3 || sides_[2].failures() > 1)
-          continue;
-        std::swap(*side, sides_[2]);
+      for (ReferenceSide* side : {&sides_[0], &sides_[1]}) {
+        const auto spare =
+            std::find_if(sides_.begin() + 2, sides_.end(),
+                         [](const ReferenceSide& other) { return other.failures() < 2; });
+        if (side->failures() < 2 || spare == sides_.end()) continue;
+        std::swap(*side, *spare);
         catch_up(*side);
       }
-      const Side &a = sides_[0], &b = sides_[1];
+      const ReferenceSide &a = sides_[0], &b = sides_[1];
       if (n < fewest_compared || !a.has_limit() || !b.has_limit()) continue;
       const double gap = pair_of(a, b, comparison_).tips.gap;
       const double change = std::max(a.change(), b.change());
@@ -210,15 +140,15 @@ class Refinement {
   }
 
   /// A model that has not run yet, up to where the others are.
-  void catch_up(Side& side) {
+  void catch_up(ReferenceSide& side) {
     heartbeat_.doing(fmt::format("computing the reference, {} as well", side.model()));
     for (const int n : {level_.elements / 4, level_.elements / 2, level_.elements}) {
-      if (n >= 2) side.refine(level_of(n), deadline_.remaining_s());
+      if (n >= 2 && n % unit_ == 0) side.refine(level_of(n), deadline_.remaining_s());
     }
   }
 
-  std::optional<std::pair<const Side*, const Side*>> best_pair() const {
-    std::optional<std::pair<const Side*, const Side*>> best;
+  std::optional<std::pair<const ReferenceSide*, const ReferenceSide*>> best_pair() const {
+    std::optional<std::pair<const ReferenceSide*, const ReferenceSide*>> best;
     std::size_t longest = 0;
     double least = never;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
@@ -236,20 +166,28 @@ class Refinement {
     return best;
   }
 
+  /// Whether some pair is as close as is allowed over all frames.
+  bool agree() const {
+    const auto best = best_pair();
+    if (!best) return false;
+    const SceneReference both = pair_of(*best->first, *best->second, comparison_);
+    return both.tips.gap <= wanted_.allowed;
+  }
+
   std::string why_not() const {
     std::string why =
         deadline_.passed()
             ? "out of time before two models reached the end: continue with a "
               "larger --timeout and --set answer_s"
             : "fewer than two models reached the end";
-    for (const Side& side : sides_) {
+    for (const ReferenceSide& side : sides_) {
       if (!side.failure().empty()) why += "; " + side.failure();
     }
     return why;
   }
 
   /// As of kept_changed_tips.
-  ChangedTips changed_tips(const Side& side, const SceneReference& reference) {
+  ChangedTips changed_tips(const ReferenceSide& side, const SceneReference& reference) {
     heartbeat_.doing("computing the reference with changed data");
     const auto moved = [&](Change change) {
       std::vector<double> x = side.moved(change, never);
@@ -268,7 +206,8 @@ class Refinement {
   const WantedGap wanted_;
   const Deadline& deadline_;
   Heartbeat& heartbeat_;
-  std::vector<Side> sides_;
+  const int unit_, fewest_;  // elements
+  std::vector<ReferenceSide> sides_;
   Level level_{};
   bool decided_ = false;
 };

@@ -25,12 +25,13 @@ struct DecidedReference {
 
 /// Computes the reference with super_helix and der with esdirk43 (tr_bdf2 where some
 /// contact is exact). Each is extrapolated in elements from the last two of 10, 20, 40
-/// ... 640 elements, with a tolerance far below `sought` that falls as well. The two are
-/// done when they are as close as is sought over all frames and the last refinement
-/// changed each by no more than that. They are also done when both have converged and
-/// their distance is allowed. Where time is over before, or both have converged to
-/// different motions, articulated_chain decides: the pair that is closest for longest is
-/// the reference.
+/// ... 640 elements (multiples of element_unit()), with a tolerance far below `sought`
+/// that falls as well. The two are done when they are as close as is sought over all
+/// frames and the last refinement changed each by no more than that. They are also done
+/// when both have converged and their distance is allowed. Where time is over before, or
+/// both have converged to different motions, articulated_chain decides: the pair that is
+/// closest for longest is the reference. In scenes with supports or joints,
+/// corde runs if these three do not decide.
 ///
 /// Both sides run at the same time, each on a thread. Throws std::runtime_error where
 /// fewer than two models reach the end.

@@ -244,6 +244,12 @@ std::vector<Case> cases(const CommandLine& line) {
   std::set<std::string> names;
   for (const std::string& file : scenes_of(settings.experiment())) {
     const Scene given = read_open_scene(file);
+    if (!plan.advise && held(given)) {
+      throw InputError(
+          "supports or joints in a table of several targets, whose references do not "
+          "hold them",
+          file, "use --advise " + file);
+    }
     if (!names.insert(given.name).second) {
       throw InputError("two scenes of one name", file, "rename one of them");
     }
@@ -266,8 +272,9 @@ void check_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
 
 /// An insufficiently known rod, or the absence of an alternative, is a valid result.
 bool finding(const Row& row) {
-  return row.text("kind") == "method" || row.status() == "below_reference" ||
-         row.status() == "not_met" || row.text("kind") == "as_given";
+  return row.text("kind") == "method" || row.text("kind") == "left_out" ||
+         row.status() == "below_reference" || row.status() == "not_met" ||
+         row.text("kind") == "as_given";
 }
 
 void advise(const CommandLine& line, const std::vector<Row>& rows) {

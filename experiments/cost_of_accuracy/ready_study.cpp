@@ -5,13 +5,15 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "experiments/cost_of_accuracy/cost_of_accuracy.h"
 #include "experiments/cost_of_accuracy/decided_reference.h"
 #include "experiments/cost_of_accuracy/study_rows.h"
 #include "experiments/cost_of_accuracy/trial_scene.h"
-#include "experiments/numerics/tip_track.h"
+#include "simulation/run/tip_paths.h"
+#include "simulation/scene_changes/element_unit.h"
 
 namespace tress::experiments::cost_of_accuracy {
 namespace {
@@ -25,14 +27,49 @@ constexpr std::size_t fewest_frames = 12;
 constexpr double least_part = 0.1;
 
 /// How far the sides are apart after the first `frames`.
-double beyond(const SceneReference& whole, std::size_t frames, double length) {
-  const std::size_t per_frame = whole.tips.tip.size() / (whole.frames + 1);
+double beyond(const SceneReference& whole, std::size_t frames,
+              const Comparison& comparison) {
+  const std::size_t size = whole.tips.tip.size(), per_frame = size / (whole.frames + 1);
   const auto rest = [&](const std::vector<double>& x) {
     return std::span(x).subspan(per_frame * (frames + 1));
   };
   return frames < whole.frames
-             ? tip_error(rest(whole.tips.other), rest(whole.tips.tip), length)
+             ? simulation::grouped_distance(rest(whole.tips.other), rest(whole.tips.tip),
+                                            comparison.group(size / 3)) /
+                   comparison.length
              : 0;
+}
+
+/// Equilibria at the start are the same up to this distance, over the length: the errors
+/// of coarse elements are smaller.
+constexpr double same_start = 0.05;
+
+/// Throws std::runtime_error where strands that begin in an equilibrium on their supports
+/// begin in different ones, by the references or by the file as given.
+void check_start(const Study& study, const SceneReference& whole) {
+  const Comparison& comparison = study.comparison;
+  const auto start = [&](const std::vector<double>& x) {
+    return std::span(x).first(x.size() / (whole.frames + 1));
+  };
+  const auto refuse = [&](std::span<const double> a, std::string_view who) {
+    const std::span<const double> b = start(whole.tips.tip);
+    const double apart =
+        simulation::grouped_distance(a, b, a.size() / 3) / comparison.length;
+    if (apart <= same_start) return;
+    throw std::runtime_error(fmt::format(
+        "{} begin in different equilibria on the supports, {:.2g} % of the length apart: "
+        "give [strand] a shape at the start close to the one that you mean",
+        who, 1e2 * apart));
+  };
+  refuse(start(whole.tips.other), "the references (" + study.how + ")");
+  std::vector<double> given;
+  try {
+    given =
+        simulation::points_at_start(compared(study.given, comparison), comparison.read);
+  } catch (const std::runtime_error&) {
+    return;  // the row of the file as given has the reason
+  }
+  refuse(given, "your file and the references");
 }
 
 /// The reference of an own scene, on which the promise of an answer rests.
@@ -44,9 +81,10 @@ void decide(Study& study, const Deadline& deadline, Heartbeat& heartbeat) {
   DecidedReference made = kept_decided(study.given, study.comparison, wanted, enough,
                                        heartbeat, plan.references, study.given.name);
   study.how = std::move(made.how);
+  if (held(study.given)) check_start(study, made.reference);
   study.reference = agreed(made.reference, study.comparison, wanted.allowed);
   const std::size_t frames = study.reference.frames;
-  study.beyond = beyond(made.reference, frames, study.comparison.length);
+  study.beyond = beyond(made.reference, frames, study.comparison);
   if (study.reference.tips.gap > wanted.allowed || frames < study.asked) {
     const auto part = static_cast<std::size_t>(
         std::ceil(least_part * static_cast<double>(study.asked)));
@@ -74,6 +112,8 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity,
   study.comparison = comparison(study.given, plan.rate, plan.horizon, plan.strands);
   study.asked = study.comparison.frames;
   study.methods = methods(study.given, plan.methods);
+  study.left_out = left_out(study.given, plan.methods, study.methods);
+  study.element_unit = simulation::element_unit(study.given);
   if (plan.advise) {
     decide(study, deadline, heartbeat);
     study.comparison.frames = study.reference.frames;
@@ -97,7 +137,7 @@ Study ready(const std::string& file, const StudyPlan& plan, const Row& identity,
   study.reference = agreed(whole, study.comparison, parted);
   study.changed = kept_changed_tips(study.given, study.comparison, study.reference,
                                     plan.reference.halved(), plan.references, name);
-  study.beyond = beyond(whole, study.reference.frames, study.comparison.length);
+  study.beyond = beyond(whole, study.reference.frames, study.comparison);
   study.comparison.frames = study.reference.frames;
   if (fine) study.refined = first_frames(*fine, study.comparison);
   return study;

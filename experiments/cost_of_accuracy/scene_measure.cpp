@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "contract/input_error.h"
@@ -91,13 +92,22 @@ const std::vector<double>& SceneMeasure::reference(std::optional<Neighbour> of) 
 std::function<bool(const std::vector<double>&)> SceneMeasure::useless(
     const std::vector<double>& reference) const {
   if (useless_ == never) return {};
-  const double most = std::pow(useless_ * comparison_.length, 2) *
-                      (static_cast<double>(reference.size()) / 3 - strands());
-  return [&reference, most, seen = std::size_t{0},
+  const std::size_t first = reference.size() / (comparison_.frames + 1);
+  const std::size_t group = comparison_.group(reference.size() / 3);
+  const auto groups = [group](std::size_t values) {
+    return static_cast<double>(values) / static_cast<double>(3 * group);
+  };
+  const double most =
+      std::pow(useless_ * comparison_.length, 2) * groups(reference.size() - first);
+  return [&reference, most, group, groups, seen = first,
           squares = 0.0](const std::vector<double>& x) mutable {
-    for (; seen < std::min(x.size(), reference.size()); ++seen) {
-      squares += (x[seen] - reference[seen]) * (x[seen] - reference[seen]);
-    }
+    const std::size_t end = std::min(x.size(), reference.size());
+    if (end <= seen) return false;
+    const std::span<const double> now(x), exact(reference);
+    const double distance = simulation::grouped_distance(
+        now.subspan(seen, end - seen), exact.subspan(seen, end - seen), group);
+    squares += distance * distance * groups(end - seen);
+    seen = end;
     return !(squares <= most);
   };
 }
@@ -111,11 +121,15 @@ SceneMeasure::Outcome SceneMeasure::outcome(const Method& method, int elements,
     if (as) run = neighbour(std::move(run), *as);
     RunLimit limit{most_iterations * stages(method), most_s, most_own_s};
     if (count == elements) limit.useless = useless(reference(as));
-    return tip_paths(run, 0, limit);
+    return compared_paths(run, comparison_, limit);
   };
   TipPaths fine = of(elements);
+  // Strands without supports and joints may share a system, but not steps.
+  const std::size_t systems = comparison_.read.parts > 0
+                                  ? fine.systems
+                                  : fine.x.size() / 3 / (comparison_.frames + 1);
   Outcome made{std::move(fine.x), fine.once_s, fine.work, fine.indicator,
-               static_cast<double>(fine.stats.steps) / strands()};
+               static_cast<double>(fine.stats.steps) / static_cast<double>(systems)};
   if (!method.extrapolated) return made;
   const int few = coarser(elements);
   if (few == elements) {
@@ -179,7 +193,7 @@ std::optional<Trial> SceneMeasure::best_of(const Scene& given, int count, double
                                            std::string& why) const {
   const Scene run = compared(given, comparison_);
   try {
-    const TipPaths paths = tip_paths(run, 0, {.wall_s = most_s});
+    const TipPaths paths = compared_paths(run, comparison_, {.wall_s = most_s});
     const bool once = paths.once_s > long_run_s;
     Trial made{
         0, 0, 0, compared_error(paths.x, reference_, comparison_),

@@ -91,10 +91,6 @@ class SceneMeasure {
   Scene scene(const Method& method, int elements, int substeps) const;
   Outcome outcome(const Method& method, int elements, int substeps, double most_s = never,
                   std::optional<Neighbour> as = {}, double most_own_s = never) const;
-  double strands() const {  // that are compared
-    return static_cast<double>(reference_.size()) / 3 /
-           static_cast<double>(comparison_.frames + 1);
-  }
   const std::vector<double>& reference(std::optional<Neighbour> of) const;
   /// RunLimit::useless against this reference.
   std::function<bool(const std::vector<double>&)> useless(

@@ -11,11 +11,10 @@
 #include <system_error>
 
 #include "contract/input_error.h"
-#include "experiments/numerics/tip_track.h"
 #include "experiments/run/message.h"
 #include "simulation/files/csv.h"
 #include "simulation/files/files.h"
-#include "simulation/run/tip_paths.h"
+#include "simulation/scene/joint_table.h"
 #include "simulation/scene_changes/typical_strands.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -31,8 +30,8 @@ constexpr double times_within_a_frame = 4, largest_rate = 1e6;
 /// A number of frames is whole up to this.
 constexpr double whole_frame = 1e-9;
 
-constexpr std::string_view columns[] = {"t_s", "strand",    "x_m",       "y_m",
-                                        "z_m", "other_x_m", "other_y_m", "other_z_m"};
+constexpr std::string_view columns[] = {
+    "t_s", "strand", "x_m", "y_m", "z_m", "other_x_m", "other_y_m", "other_z_m", "part"};
 
 const ReferenceSides rod_sides{
     "tips of the rod: super_helix by implicit_midpoint, der by generalized_alpha, "
@@ -40,9 +39,10 @@ const ReferenceSides rod_sides{
     "the tip by super_helix", "the tip by der"};
 
 /// Of `columns`.
-std::array<std::string, 8> help_of(const ReferenceSides& sides) {
-  return {"time",     "counted from 0", sides.one,  "the same",
-          "the same", sides.other,      "the same", "the same"};
+std::array<std::string, 9> help_of(const ReferenceSides& sides) {
+  return {"time",     "counted from 0", sides.one,
+          "the same", "the same",       sides.other,
+          "the same", "the same",       "end of a part of the strand, the root is 0"};
 }
 
 std::string hash(const std::string& text) {
@@ -59,13 +59,15 @@ std::string meta_file(const std::string& folder, const std::string& name) {
 }
 
 std::string text_of(const SceneReference& reference, const Comparison& comparison) {
-  const std::size_t strands = reference.tips.tip.size() / 3 / (reference.frames + 1);
+  const std::size_t points = reference.tips.tip.size() / 3 / (reference.frames + 1);
+  const auto each = static_cast<std::size_t>(comparison.read.parts + 1);
   std::vector<Row> rows;
   for (std::size_t i = 0; i < reference.tips.tip.size(); i += 3) {
-    const std::size_t frame = i / 3 / strands;
+    const std::size_t frame = i / 3 / points, point = i / 3 % points;
     Row row;
     row.set("t_s", comparison.time_of(frame));
-    row.set("strand", i / 3 % strands);
+    row.set("strand", point / each);
+    if (each > 1) row.set("part", point % each);
     for (std::size_t k = 0; k < 3; ++k) {
       row.set(columns[2 + k], reference.tips.tip[i + k]);
       row.set(columns[5 + k], reference.tips.other[i + k]);
@@ -73,6 +75,7 @@ std::string text_of(const SceneReference& reference, const Comparison& compariso
     rows.push_back(std::move(row));
   }
   std::vector<std::string> names(std::begin(columns), std::end(columns));
+  if (each == 1) names.pop_back();
   names.emplace_back("status");
   return to_csv(names, rows);
 }
@@ -91,7 +94,10 @@ Comparison comparison(const Scene& given, double rate, double horizon,
   made.frames = static_cast<std::size_t>(frames);
   if (frames > span * made.rate + whole_frame) made.end = span;
   const std::vector<Strand>& all = given.strands;
-  const std::vector<std::size_t> typical = typical_strands(all, strands);
+  const bool one_system = !simulation::SceneJoints(given).groups().empty();
+  const std::vector<std::size_t> typical =
+      typical_strands(all, one_system ? all.size() : strands);
+  if (held(given)) made.read = simulation::along_strands;
   for (const std::size_t i : typical) made.length += all[i].length();
   made.length /= static_cast<double>(typical.size());
   if (typical.size() < all.size()) made.chosen = typical;
@@ -101,16 +107,23 @@ Comparison comparison(const Scene& given, double rate, double horizon,
 double compared_error(const std::vector<double>& tip,
                       const std::vector<double>& reference,
                       const Comparison& comparison) {
-  if (tip.size() != reference.size()) return std::numeric_limits<double>::infinity();
   const std::size_t per_frame = reference.size() / (comparison.frames + 1);
-  return tip_error(std::span(tip).subspan(per_frame),
-                   std::span(reference).subspan(per_frame), comparison.length);
+  if (tip.size() < per_frame) return std::numeric_limits<double>::infinity();
+  return simulation::grouped_distance(std::span(tip).subspan(per_frame),
+                                      std::span(reference).subspan(per_frame),
+                                      comparison.group(reference.size() / 3)) /
+         comparison.length;
 }
 
 Scene compared(Scene scene, const Comparison& comparison) {
   scene.frame_rate = comparison.rate;
   scene.duration = comparison.horizon();
   return comparison.chosen.empty() ? scene : only(std::move(scene), comparison.chosen);
+}
+
+TipPaths compared_paths(const Scene& scene, const Comparison& comparison,
+                        const simulation::RunLimit& limit) {
+  return tip_paths(scene, 0, limit, comparison.read);
 }
 
 SceneReference scene_reference(const Scene& given, const Comparison& comparison,
@@ -123,7 +136,7 @@ SceneReference scene_reference(const Scene& given, const Comparison& comparison,
     scene.options = options;
     // Fast swings stretch der so quickly that an outdated Newton matrix fails.
     scene.options.refresh = Refresh::every_iteration;
-    return tip_paths(scene, 0).x;
+    return compared_paths(scene, comparison).x;
   };
   const Finest finest{cut.elements, 1 / (comparison.rate * cut.substeps)};
   const SceneReference made{
@@ -203,7 +216,8 @@ void save_reference(const std::string& folder, const std::string& name,
                               {"finest_dt_s", 1 / (comparison.rate * cut.substeps)}};
   nlohmann::ordered_json help;
   const auto texts = help_of(sides);
-  for (std::size_t i = 0; i < texts.size(); ++i) help[std::string(columns[i])] = texts[i];
+  const std::size_t count = texts.size() - (comparison.read.parts > 0 ? 0 : 1);
+  for (std::size_t i = 0; i < count; ++i) help[std::string(columns[i])] = texts[i];
   meta["columns"] = help;
   replace_file(csv_file(folder, name), text);
   replace_file(meta_file(folder, name), meta.dump(2) + '\n');
@@ -214,6 +228,9 @@ std::string reference_key(const Scene& given, const Comparison& comparison,
   std::string chosen;
   for (const std::size_t strand : comparison.chosen) {
     chosen += fmt::format(" {}", strand);
+  }
+  if (comparison.read.parts > 0) {
+    chosen += fmt::format(" parts {}", comparison.read.parts);
   }
   if (std::isfinite(comparison.end)) chosen += fmt::format(" end {}", comparison.end);
   return hash(fmt::format("{} {} {} {}{} {} {}\n{}", reference_version, comparison.rate,

@@ -10,11 +10,12 @@
 
 #include "experiments/cost_of_accuracy/trial_scene.h"
 #include "experiments/problems/strand_reference.h"
+#include "simulation/run/tip_paths.h"
 
 namespace tress::experiments::cost_of_accuracy {
 
-/// Compared quantities: the tips of `strands` strands at all frames up to a horizon, and
-/// at the horizon, which may cut the last frame short.
+/// Compared quantities: the tips of `strands` strands, or points along them, at all
+/// frames up to a horizon, and at the horizon, which may cut the last frame short.
 struct Comparison {
   double rate = 60;         // frames per second
   std::size_t frames = 30;  // times of comparison after t = 0
@@ -26,6 +27,14 @@ struct Comparison {
 
   double end = std::numeric_limits<double>::infinity();  // s, where it is no whole frame
 
+  /// Points along each strand, in place of the tips: a support or a joint may hold these.
+  simulation::ReadPoints read = {};
+
+  /// Returns the number of points that have one error, among those of all frames.
+  std::size_t group(std::size_t points) const {
+    return read.parts > 0 ? points / (frames + 1) : 1;
+  }
+
   /// Returns the time of a frame, s.
   double time_of(std::size_t frame) const {
     return std::min(static_cast<double>(frame) / rate, end);
@@ -33,18 +42,23 @@ struct Comparison {
   double horizon() const { return time_of(frames); }
 };
 /// A horizon of 0 is the scene's duration. A span shorter than a frame is compared at
-/// several times: `rate` is higher then.
+/// several times: `rate` is higher then. Strands that are one system are all compared.
 Comparison comparison(const Scene& given, double rate, double horizon,
                       std::size_t strands);
 
-/// Root mean square distance of tips, frame by frame from t = 0, over strands and times
-/// of comparison, over the length. At t = 0 every run is exact: that frame is left out.
-/// Infinite where a tip is missing or not finite.
+/// Returns the root mean square distance of tips, frame by frame from t = 0, over strands
+/// and times of comparison, over the length. Of points along the strands it is the root
+/// mean square, over the times, of the largest distance. The frame at t = 0 is left out:
+/// tips are exact there. Infinite where a point is missing or not finite.
 double compared_error(const std::vector<double>& tip,
                       const std::vector<double>& reference, const Comparison& comparison);
 
 /// The scene restricted to the comparison's strands and frames.
 Scene compared(Scene scene, const Comparison& comparison);
+
+/// Runs the scene and reads the compared points. Throws as tip_paths does.
+TipPaths compared_paths(const Scene& scene, const Comparison& comparison,
+                        const simulation::RunLimit& limit = {});
 
 /// The tips of the continuous rod, frame by frame from t = 0, on which super_helix and
 /// der agree: models of different families, reduced and maximal coordinates.

@@ -198,7 +198,8 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
       .unit = [&study](std::size_t method) { return steps_unit(study.methods[method]); },
       .orders = [&study](std::size_t method) { return orders_of(study.methods[method]); },
       .kind = [&study](std::size_t method) { return kind_of(study.methods, method); },
-      .slack = 0};
+      .slack = 0,
+      .element_unit = study.element_unit};
   for (const double target : plan.targets) {
     if (target >= study.floor()) search_plan.targets.push_back(target - study.gap());
   }
@@ -277,6 +278,7 @@ std::vector<Row> all_rows(Study& study, const Deadline& deadline, Heartbeat& hea
   add_given(study,
             plan.advise ? std::max(deadline.remaining_s(), given_share * time_s) : never,
             rows);
+  if (plan.advise) add_left_out(study, rows);
   if (search.cut()) how += ", cut while the best runs were compared";
   if (work.cut_by_clock()) how += ", by the clock";
   for (Row& row : rows) {

@@ -106,7 +106,9 @@ bool Search::stopped() {
   return cut_;
 }
 
-const Trial* Search::run(std::size_t method, int elements, int substeps) {
+const Trial* Search::run(std::size_t method, int wanted, int substeps) {
+  const int cells = (wanted + plan_.element_unit / 2) / plan_.element_unit;
+  const int elements = plan_.element_unit * std::max(1, cells);
   const Place place{method, elements, substeps};
   const auto known = seen_.find(place);
   if (known != seen_.end()) {
@@ -145,9 +147,9 @@ double Search::neighbour_error(const Trial& own, Neighbour which) {
   const auto error = [](const Trial* run) { return run == nullptr ? never : run->error; };
   switch (which) {
     case Neighbour::one_more_element:
-      return error(run(own.method, own.elements + 1, own.substeps));
+      return error(run(own.method, own.elements + plan_.element_unit, own.substeps));
     case Neighbour::two_more:
-      return error(run(own.method, own.elements + 2, own.substeps));
+      return error(run(own.method, own.elements + 2 * plan_.element_unit, own.substeps));
     case Neighbour::shorter_steps:
     case Neighbour::longer_steps:
     case Neighbour::data_up:

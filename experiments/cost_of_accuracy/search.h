@@ -33,6 +33,8 @@ struct SearchPlan {
   /// Tolerance for the coarseness of the ladders: a method whose cheapest run on them
   /// costs more than `slack` times the cheapest of all is dropped (see ladder_slack).
   double slack;
+  /// Numbers of elements that are tried are multiples of this.
+  int element_unit = 1;
 };
 
 /// Returns the slack with which the cheapest method is never dropped. Suppose that cost
@@ -101,7 +103,8 @@ class Search {
   /// Returns SearchPlan::unit of the method, 1 by default.
   int unit(std::size_t method) const { return plan_.unit ? plan_.unit(method) : 1; }
 
-  /// One run, measured unless already known; null if it fails.
+  /// One run, measured unless already known, with the multiple of
+  /// SearchPlan::element_unit nearest to `elements`; null if it fails.
   const Trial* run(std::size_t method, int elements, int substeps);
   /// Whether the run, one of runs(), counts for `target`: examines its neighbours one by
   /// one until one does not hold. False also if the search is cut.

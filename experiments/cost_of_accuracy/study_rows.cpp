@@ -45,6 +45,7 @@ std::string first_line(const std::string& text) {
 Row begin(const Study& study, std::string_view kind) {
   Row row = study.identity;
   row.set("kind", kind).set("reference_gap", study.gap());
+  if (held(study.given)) row.set("error_of", "strand");
   if (study.refined) row.set("refined_gap", study.refined->tips.gap);
   row.set("horizon_s", study.comparison.horizon()).set("horizon_cut", study.cut());
   const double horizon = study.plan.horizon, duration = study.given.duration;
@@ -70,7 +71,9 @@ Row row_of(const Study& study, std::string_view kind, const Trial& run) {
   row.set("error_rel", run.error);
   if (run.examined == neighbour_count) {
     row.set("error_neighbours_rel", run.neighbours);
-    row.set("worst_neighbour", name(run.worst, method.by_tolerance));
+    row.set("worst_neighbour", name(run.worst, {.by_tolerance = method.by_tolerance,
+                                                .element_unit = study.element_unit,
+                                                .held = held(study.given)}));
   }
   if (run.indicator > 0) row.set("error_indicator", run.indicator);
   set_wall(study, run.wall_s, row);
@@ -165,6 +168,14 @@ void add_control(const Study& study, Finalists& finalists, double target,
     };
     add("by_step", both.by_step);
     add("by_tolerance", both.by_tolerance);
+  }
+}
+
+void add_left_out(const Study& study, std::vector<Row>& rows) {
+  for (const LeftOut& one : study.left_out) {
+    Row row = begin(study, "left_out");
+    row.set("choice", one.id).failed("refused", first_line(one.why));
+    rows.push_back(std::move(row));
   }
 }
 

@@ -25,6 +25,8 @@ struct Study {
   std::optional<SceneReference> refined = {};
   ChangedTips changed = {};
   std::vector<Method> methods = {};
+  std::vector<LeftOut> left_out = {};  // models and integrators without a method
+  int element_unit = 1;                // every number of elements is a multiple of it
 
   double gap() const { return reference.tips.gap; }
   bool cut() const { return comparison.frames < asked; }
@@ -52,6 +54,8 @@ void add_target(const Study& study, Finalists& finalists, double target,
 /// Error control against steps, on the models for which that is asked.
 void add_control(const Study& study, Finalists& finalists, double target,
                  std::vector<Row>& rows);
+/// A row for each model and integrator without a method, with the reason.
+void add_left_out(const Study& study, std::vector<Row>& rows);
 /// The best run within the time per frame, if requested.
 void add_budget(const Study& study, Finalists& finalists, std::vector<Row>& rows);
 /// Runs the advised scene from its file, and writes the error and the time of that run

@@ -18,11 +18,12 @@ constexpr Column table_columns[] = {
      "without (one choice replaced), budget, front (Pareto) or as_given "
      "(by the scene file). Kinds by_step and by_tolerance: cheapest run "
      "of one model without and with error control. Kind method: "
-     "cheapest run of one model with one integrator"},
+     "cheapest run of one model with one integrator. Kind left_out: a model or an "
+     "integrator that cannot run the scene, of an answer"},
     {"choice",
      "replaced choice, in kind without; elements: twice, dt_s: half (or the "
      "tolerance that halves the steps). radau5, rodas5p: the cheapest run with this "
-     "integrator"},
+     "integrator. In kind left_out: the model or the integrator"},
     {"target_error_rel", "target error"},
     {"budget_ms", "wall time allowed per frame, in kind budget"},
     {"rank", "1 winner, 2 runner-up; 1 as well where the two are tied"},
@@ -48,6 +49,10 @@ constexpr Column table_columns[] = {
     {"error_rel",
      "tip against the continuous rod: rms over strands, frames after t = 0 and the end "
      "of the scene, over the length"},
+    {"error_of",
+     "measure of the errors. strand: largest distance along the strands, at the ends of "
+     "16 equal parts of each, rms over the frames. Empty: tip. Scenes with supports or "
+     "joints have the first"},
     {"error_refined_rel", "error_rel against the reference refined once more"},
     {"error_neighbours_rel",
      "largest error of its neighbours: 1 and 2 elements more, step or tolerance "

@@ -13,23 +13,27 @@ constexpr double front_gain = 0.9;
 
 }  // namespace
 
-std::string name(Neighbour neighbour, bool by_tolerance) {
-  const char* const control = by_tolerance ? "tolerance" : "dt";
+std::string name(Neighbour neighbour, const RunKind& kind) {
+  const char* const control = kind.by_tolerance ? "tolerance" : "dt";
+  const char* const data = kind.held ? "moduli" : "moduli and lengths";
+  const auto more = [](int elements) {
+    return fmt::format("{} element{} more", elements, elements == 1 ? "" : "s");
+  };
   switch (neighbour) {
     case Neighbour::one_more_element:
-      return "1 element more";
+      return more(kind.element_unit);
     case Neighbour::two_more:
-      return "2 elements more";
+      return more(2 * kind.element_unit);
     case Neighbour::shorter_steps:
       return fmt::format("{} x {}", control, shorter);
     case Neighbour::longer_steps:
       return fmt::format("{} x {}", control, longer);
     case Neighbour::data_up:
-      return "moduli and lengths + 2 %";
+      return fmt::format("{} + 2 %", data);
     case Neighbour::data_down:
       break;
   }
-  return "moduli and lengths - 2 %";
+  return fmt::format("{} - 2 %", data);
 }
 
 double Trial::judged() const { return std::max(error, neighbours / neighbour_allowance); }

@@ -37,9 +37,14 @@ enum class Neighbour {
 inline constexpr int neighbour_count = 6;
 inline constexpr double shorter = 0.7, longer = 1.4;
 
-/// "one element more", "tolerance x 1.4" ... of a run with fixed steps or an adaptive
-/// run.
-std::string name(Neighbour neighbour, bool by_tolerance);
+/// Properties of a run, or of its scene, that a name depends on.
+struct RunKind {
+  bool by_tolerance = false;  // adaptive
+  int element_unit = 1;       // SearchPlan::element_unit
+  bool held = false;          // supports or joints keep the lengths
+};
+/// "1 element more", "tolerance x 1.4" ...
+std::string name(Neighbour neighbour, const RunKind& kind);
 
 /// One measured run. A method is a model with its options and an integrator, identified
 /// here by its index.

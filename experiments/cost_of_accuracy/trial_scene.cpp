@@ -10,9 +10,8 @@
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
 #include "simulation/files/run_key.h"
-#include "simulation/scene/joint_table.h"
 #include "simulation/scene/strand_tables.h"
-#include "simulation/scene/support_table.h"
+#include "simulation/scene_changes/element_unit.h"
 #include "simulation/scene_text/write_scene.h"
 
 namespace tress::experiments::cost_of_accuracy {
@@ -29,12 +28,13 @@ Scene read_open_scene(const std::string& file) {
         "strands that touch each other: no two models agree on them for long", file,
         "leave out effects between strands");
   }
-  if (SceneSupports(scene).constrain() || SceneJoints(scene).any()) {
-    throw InputError(
-        "supports or joints: no run of the search holds them", file,
-        "leave them out, or use simulate --error-bars for a run of your own");
-  }
+  static_cast<void>(simulation::element_unit(scene));
   return scene;
+}
+
+bool held(const Scene& scene) {
+  return scene.tables != nullptr &&
+         !(scene.tables->supports.empty() && scene.tables->joints.empty());
 }
 
 namespace {
@@ -71,8 +71,10 @@ double extrapolation(const Method& method, int elements) {
 }
 
 bool may_extrapolate(const Scene& scene) {
-  return std::ranges::none_of(
-      scene.effects, [](const EffectChoice& effect) { return effect.entry->contact; });
+  return !held(scene) &&
+         std::ranges::none_of(scene.effects, [](const EffectChoice& effect) {
+           return effect.entry->contact;
+         });
 }
 
 Scene trial_scene(Scene given, const Method& method, int elements, int substeps,

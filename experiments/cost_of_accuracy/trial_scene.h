@@ -48,13 +48,17 @@ inline int coarser(int elements) { return (elements + 1) / 2; }
 /// and n = 2 m.
 double extrapolation(const Method& method, int elements);
 
-/// Whether the error of a run may be extrapolated in elements.
+/// Whether the error of a run may be extrapolated in elements: nothing touches, and no
+/// point is held, which need not be a point of half the elements.
 bool may_extrapolate(const Scene& scene);
 
 /// A scene whose model, integrator, numbers of elements and steps are left open. Throws
-/// InputError as read_scene does, and where the scene has no strand, strands that touch
-/// each other, or supports or joints that constrain.
+/// InputError as read_scene does, and where the scene has no strand, strands that
+/// touch each other, or a point at which no equal elements end (element_unit).
 Scene read_open_scene(const std::string& file);
+
+/// Returns whether the scene has supports or joints.
+bool held(const Scene& scene);
 
 /// The scene by this method, with `elements` per strand, `rate` frames per second and
 /// this step or tolerance. Throws InputError as with_elements does.
@@ -101,6 +105,14 @@ struct MethodChoice {
 inline constexpr std::string_view always_shown[] = {"radau5", "rodas5p"};
 
 std::vector<Method> methods(const Scene& given, const MethodChoice& choice);
+
+/// A model or an integrator of a choice without a method, and the reason.
+struct LeftOut {
+  std::string id, why;
+};
+/// Returns those without a method among `taken`, which are methods().
+std::vector<LeftOut> left_out(const Scene& given, const MethodChoice& choice,
+                              const std::vector<Method>& taken);
 
 /// Methods that differ from `method` in this one option of the model and can represent
 /// the scene.

@@ -1,13 +1,12 @@
 #include "simulation/errors/error_bars.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "contract/input_error.h"
 #include "integrators/catalogue.h"
-#include "models/strand/arc_lengths.h"
+#include "models/strand/points_along.h"
 #include "simulation/errors/halved_step.h"
 #include "simulation/run/remedy.h"
 #include "simulation/run/timing.h"
@@ -39,49 +38,6 @@ Places by_number(std::size_t points) {
   Places places(points);
   std::iota(places.begin(), places.end(), 0.0);
   return places;
-}
-
-/// Rest length from the root: models show the ends of segments. Throws InputError if this
-/// one does not.
-Places by_length(const Strand& strand, std::size_t points) {
-  if (points != strand.segments.size() + 1) {
-    throw InputError("the model's points are not the ends of its elements", "space error",
-                     "compare runs of two numbers of elements by their tips");
-  }
-  return models::arc_lengths(strand);
-}
-
-/// Point between those of another run, by the cubic through the nearest four. Its error
-/// is of order 4, as the error in space of the most accurate model. With equal elements,
-/// every point is also a point of the run with twice the elements.
-struct Sample {
-  std::size_t first = 0, count = 0;
-  std::array<double, 4> weight{};
-
-  double at(const double* x, std::size_t axis) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      sum += weight[i] * x[3 * (first + i) + axis];
-    }
-    return sum;
-  }
-};
-
-Sample sample(double place, const Places& among) {
-  const auto above =
-      static_cast<std::size_t>(std::ranges::lower_bound(among, place) - among.begin());
-  Sample made;
-  made.count = std::min(among.size(), made.weight.size());
-  made.first = std::min(above > 1 ? above - 2 : 0, among.size() - made.count);
-  for (std::size_t i = 0; i < made.count; ++i) {
-    made.weight[i] = 1;
-    for (std::size_t j = 0; j < made.count; ++j) {
-      if (i == j) continue;
-      const double xi = among[made.first + i], xj = among[made.first + j];
-      made.weight[i] *= (place - xj) / (xi - xj);
-    }
-  }
-  return made;
 }
 
 /// The longest way along the points of each strand, m.
@@ -117,7 +73,8 @@ class Comparison {
   }
 
   void match(std::size_t strand, const Places& given, const Places& finer) {
-    for (const double place : given) samples_[strand].push_back(sample(place, finer));
+    for (const double place : given)
+      samples_[strand].push_back(models::point_between(place, finer));
   }
 
   bool done() const { return bar.parted() == bar.strands.size(); }
@@ -185,7 +142,7 @@ class Comparison {
   Run& finer_;
   double factor_;
   std::vector<double> lengths_;
-  std::vector<std::vector<Sample>> samples_;
+  std::vector<std::vector<models::PointBetween>> samples_;
   std::vector<double> squares_;
   std::vector<std::size_t> counts_;
 };
@@ -277,7 +234,8 @@ ErrorBar distance(const Scene& scene, const Scene& finer, double factor, int thr
   Comparison comparison(given, other, factor);
   for (std::size_t k = 0; k < scene.strands.size(); ++k) {
     const auto places = [k](const Scene& of, const Run& run) {
-      return by_length(of.strands[k], static_cast<std::size_t>(run.world.points()[k]));
+      return models::lengths_of_points(
+          of.strands[k], static_cast<std::size_t>(run.world.points()[k]), "space error");
     };
     comparison.match(k, places(scene, given), places(finer, other));
   }

@@ -1,9 +1,11 @@
 #include "simulation/run/tip_paths.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
 
+#include "models/strand/points_along.h"
 #include "simulation/run/timing.h"
 #include "simulation/run/world.h"
 
@@ -20,20 +22,52 @@ void advance_by_frames(World& world, const Scene& scene) {
   for (std::size_t f = 1; f <= scene.last_frame(); ++f) advance(world, scene.time_of(f));
 }
 
-void add_tips(World& world, std::vector<double>& tips) {
-  const std::vector<double>& x = world.positions();
-  std::size_t end = 0;
-  for (const int points : world.points()) {
-    end += 3 * static_cast<std::size_t>(points);
-    tips.insert(tips.end(), &x[end - 3], &x[end - 3] + 3);
+/// Reads the compared points of a world.
+class Reader {
+ public:
+  Reader(const Scene& scene, const World& world, const ReadPoints& read) {
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < world.strands(); ++k) {
+      const auto points = static_cast<std::size_t>(world.points()[k]);
+      first_.push_back(first);
+      first += points;
+      std::vector<models::PointBetween>& own = places_.emplace_back();
+      if (read.parts == 0) {
+        own.push_back({.first = points - 1, .count = 1, .weight = {1}});
+        continue;
+      }
+      const std::vector<double> s =
+          models::lengths_of_points(scene.strands[k], points, "the error along strands");
+      for (int part = 0; part <= read.parts; ++part) {
+        own.push_back(models::point_between(s.back() * part / read.parts, s));
+      }
+    }
   }
-}
+
+  void add(World& world, std::vector<double>& x) const {
+    const std::vector<double>& all = world.positions();
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      for (const models::PointBetween& place : places_[k]) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          x.push_back(place.at(&all[3 * first_[k]], axis));
+        }
+      }
+    }
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // points of each strand
+  std::vector<std::vector<models::PointBetween>> places_;
+};
 
 }  // namespace
 
-TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
+TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit,
+                   const ReadPoints& read) {
   TipPaths paths;
   World world(scene);
+  const Reader reader(scene, world, read);
+  paths.systems = world.systems();
   const ThreadTimer timer;
   for (std::size_t f = 0; f <= scene.last_frame(); ++f) {
     if (f > 0) advance(world, scene.time_of(f));
@@ -44,7 +78,8 @@ TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
         limit.iterations_per_step * static_cast<double>(stats.steps)) {
       throw std::runtime_error("takes too many iterations");
     }
-    add_tips(world, paths.x);
+    reader.add(world, paths.x);
+    if (f == 0 && read.parts > 0) paths.group = paths.x.size() / 3;
     if (limit.useless && limit.useless(paths.x)) {
       throw std::runtime_error("is too far off");
     }
@@ -66,6 +101,13 @@ TipPaths tip_paths(const Scene& scene, int repeat, const RunLimit& limit) {
   return paths;
 }
 
+std::vector<double> points_at_start(const Scene& scene, const ReadPoints& read) {
+  World world(scene);
+  std::vector<double> x;
+  Reader(scene, world, read).add(world, x);
+  return x;
+}
+
 std::vector<double> wall_times(const Scene& guarded, int runs, double at_least_s) {
   Scene scene = guarded;
   scene.guard = false;
@@ -82,12 +124,30 @@ std::vector<double> wall_times(const Scene& guarded, int runs, double at_least_s
   return times;
 }
 
+double grouped_distance(std::span<const double> a, std::span<const double> b,
+                        std::size_t group) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (a.size() != b.size()) return infinite;
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size();) {
+    double largest = 0;
+    for (const std::size_t end = i + 3 * group; i < end; i += 3) {
+      const double square = std::pow(a[i] - b[i], 2) + std::pow(a[i + 1] - b[i + 1], 2) +
+                            std::pow(a[i + 2] - b[i + 2], 2);
+      if (!std::isfinite(square)) return infinite;
+      largest = std::max(largest, square);
+    }
+    squares += largest;
+  }
+  return std::sqrt(squares * static_cast<double>(3 * group) /
+                   static_cast<double>(a.size()));
+}
+
 double distance_rel(const TipPaths& a, const TipPaths& b, const Scene& scene) {
-  double squares = 0, length = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i) squares += std::pow(a.x[i] - b.x[i], 2);
+  double length = 0;
   for (const Strand& strand : scene.strands) length += strand.length();
   length /= static_cast<double>(scene.strands.size());
-  return std::sqrt(squares / (static_cast<double>(a.x.size()) / 3)) / length;
+  return grouped_distance(a.x, b.x, a.group) / length;
 }
 
 }  // namespace tress::simulation

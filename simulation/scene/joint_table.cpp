@@ -124,9 +124,14 @@ JointKind kind_of(const Table& table) {
                            : JointKind::spring;
 }
 
-/// The strands that [strand] tables describe, by name and by number.
-std::map<std::string, std::size_t> strands_by_name(const StrandTables& tables) {
+/// The strands that [strand] tables describe, by name and by number; `strands` by number
+/// where no table describes them.
+std::map<std::string, std::size_t> strands_by_name(const StrandTables& tables,
+                                                   std::size_t strands) {
   std::map<std::string, std::size_t> all;
+  for (std::size_t i = 0; !describe_strands(&tables) && i < strands; ++i) {
+    all.emplace(std::to_string(i), i);
+  }
   for (std::size_t i = 0; i < tables.sources.size(); ++i) {
     const StrandSource& source = tables.sources[i];
     if (source.groom) break;  // after all [strand]
@@ -153,7 +158,7 @@ Table read_joint(const toml::table& table, const std::string& file) {
 
 SceneJoints::SceneJoints(const Scene& scene)
     : tables_(scene.tables), on_bodies_(SceneSupports(scene).on_bodies()) {
-  if (tables_ != nullptr && !tables().empty()) read_ends();
+  if (tables_ != nullptr && !tables().empty()) read_ends(scene.strands.size());
   std::size_t last = 0;
   for (const Ends& ends : ends_) last = std::max({last, ends.a, ends.b});
   const bool one = scene.strands.size() < 2 && on_bodies_.empty();
@@ -166,8 +171,8 @@ SceneJoints::SceneJoints(const Scene& scene)
   groups_.push_back(std::move(all));
 }
 
-void SceneJoints::read_ends() {
-  const auto strands = strands_by_name(*tables_);
+void SceneJoints::read_ends(std::size_t count) {
+  const auto strands = strands_by_name(*tables_, count);
   std::string known;
   for (const auto& [name, number] : strands) known += (known.empty() ? "" : ", ") + name;
   for (const Table& table : tables()) {

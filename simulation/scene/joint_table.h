@@ -70,7 +70,7 @@ class SceneJoints {
     std::size_t a, b;
   };
   const std::vector<Table>& tables() const;
-  void read_ends();
+  void read_ends(std::size_t strands);
   void find_groups(std::size_t strands);
 
   std::shared_ptr<const StrandTables> tables_;

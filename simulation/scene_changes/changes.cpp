@@ -1,5 +1,7 @@
 #include "simulation/scene_changes/changes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -107,6 +109,21 @@ std::size_t strand_of(const Table& support) {
 
 void set_whole(Table& table, const std::string& key, std::size_t value) {
   table.set(key, std::to_string(value), table.place(key));
+}
+
+/// Replaces the names of strands in joints by their numbers.
+void number_joints(StrandTables& tables) {
+  for (Table& joint : tables.joints) {
+    for (const std::string key : {"a", "b"}) {
+      const std::vector<std::string> end = names_of(joint.values().word(key));
+      const auto named = std::ranges::find_if(tables.sources, [&](const auto& source) {
+        return !source.groom && source.table.values().word("name") == end.front();
+      });
+      if (named == tables.sources.end() || end.size() != 2) continue;
+      joint.set(key, fmt::format("{},{}", named - tables.sources.begin(), end[1]),
+                joint.place(key));
+    }
+  }
 }
 
 /// `part` of `whole`, for `count` of them; one at least.
@@ -217,6 +234,7 @@ Scene with_strands(Scene scene, std::vector<Strand> strands) {
   scene.strands = std::move(strands);
   if (scene.tables != nullptr) {
     auto tables = std::make_shared<StrandTables>(*scene.tables);
+    number_joints(*tables);
     tables->sources.clear();
     scene.tables = std::move(tables);
   }
@@ -265,7 +283,7 @@ Scene bare(Scene scene) {
 }
 
 Scene thinned(Scene scene, std::size_t most) {
-  if (scene.strands_touch() || SceneJoints(scene).any()) return scene;
+  if (scene.strands_touch() || !SceneJoints(scene).groups().empty()) return scene;
   if (scene.strands.size() <= most) return scene;
   const auto typical = typical_strands(scene.strands, most);
   return only(std::move(scene), typical);

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "experiments/cost_of_accuracy/scene_reference.h"
-#include "simulation/run/tip_paths.h"
 
 namespace tress {
 namespace {
@@ -30,7 +29,7 @@ std::vector<double> tips(const Scene& given, const Comparison& compare, const ch
   Scene scene = compared(
       trial_scene(given, method, elements, {.tolerance = to}, compare.rate), compare);
   scene.options.max_step = 0.5 / compare.rate;
-  return tip_paths(scene, 0).x;
+  return compared_paths(scene, compare).x;
 }
 
 /// Where something touches, the instant of contact depends on the elements: the finer run
@@ -53,7 +52,7 @@ int judge(const std::string& given_file, const std::string& advised_file, int st
   const std::vector<double> reference =
       tips(given, compare, "super_clothoid", 48, tolerance);
   const std::vector<double> other = limit_of_corde(given, compare);
-  const TipPaths run = tip_paths(compared(advised, compare), 0);
+  const TipPaths run = compared_paths(compared(advised, compare), compare);
   std::printf("%.6g %.6g\n", compared_error(run.x, reference, compare),
               compared_error(other, reference, compare));
   return 0;

@@ -205,16 +205,6 @@ TEST(Advise, SaysTheBestSoFarWhereTheSearchWasCut) {
               HasSubstr("\n# No answer: its neighbours were not all examined.\n"));
 }
 
-TEST(Advise, RefusesSupportsBeforeAnythingRuns) {
-  Toy process;
-  process.write("held.toml", std::string(sagging) + "[[supports]]\nat = \"tip\"\n");
-  const Toy::Result result = process.run("--advise held.toml" + small);
-  EXPECT_EQ(result.code, 2) << result.out;
-  EXPECT_THAT(result.err, HasSubstr("supports or joints"));
-  EXPECT_THAT(result.err, HasSubstr("simulate --error-bars"));
-  EXPECT_FALSE(process.exists("table.csv"));
-}
-
 TEST(Advise, SaysThatTimeIsOver) {
   Toy process;
   process.write("hair.toml", sagging);

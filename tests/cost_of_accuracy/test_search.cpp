@@ -294,6 +294,23 @@ TEST(Search, SweepFindsWhereErrorsCancel) {
   EXPECT_LE(best()->wall_s, 1.25 * cost(20, 18));
 }
 
+// Points of a strand that are held need the end of an element.
+TEST(Search, TriesMultiplesOfTheElementUnitOnly) {
+  std::mt19937 random(1);
+  Counted counted{some_methods(random)};
+  SearchPlan made = plan({0.01});
+  made.element_unit = 4;
+  Search search(made, counted.methods.size(), counted.measure(), steady, no_end);
+  search.coarse();
+  search.refine();
+  search.sweep();
+  ASSERT_FALSE(search.runs().empty());
+  for (const Trial& run : search.runs()) EXPECT_EQ(run.elements % 4, 0);
+  const Trial* best = search.robust(0.01);
+  ASSERT_NE(best, nullptr);
+  EXPECT_EQ(best->examined, neighbour_count);
+}
+
 TEST(Search, FindsNothingWhereNothingIs) {
   Counted counted{{{100, 1, 0, 1, 1}}};  // never below 100/63
   Search search(plan({0.1}), 1, counted.measure(), steady, no_end);

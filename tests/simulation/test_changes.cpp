@@ -14,6 +14,7 @@
 #include "simulation/scene/scene_tables.h"
 #include "simulation/scene/strand_tables.h"
 #include "simulation/scene_changes/changes.h"
+#include "simulation/scene_changes/element_unit.h"
 #include "simulation/scene_changes/strand_options.h"
 #include "simulation/scene_text/write_scene.h"
 
@@ -264,6 +265,60 @@ TEST(Changes, KeepWhatActsOnTheStrands) {
 }
 
 /// A strand alone has the points that it needs, and beside a curl as many as that.
+const char* const pendulum = R"(
+title = "pendulum"
+duration_s = 0.1
+[model]
+id = "super_helix"
+[integrator]
+id = "tr_bdf2"
+dt_s = 0.002
+[[strand]]
+name = "upper"
+elements = 4
+length_m = 0.1
+root_tangent = [1, 0, 0]
+[[strand]]
+name = "lower"
+elements = 4
+root = "free"
+length_m = 0.1
+position_m = [0.05, 0, 0]
+root_tangent = [0, 0, -1]
+[[joints]]
+a = ["upper", 0.5]
+b = ["lower", "root"]
+[effects.gravity]
+)";
+
+// Names of strands are gone with their tables.
+TEST(Changes, OfStrandsKeepJoints) {
+  World world(refined(parse_scene(pendulum, "pendulum.toml")));
+  ASSERT_EQ(world.systems(), 1u);
+  ASSERT_EQ(world.advance(0.1), Status::ok) << world.failure();
+  const std::vector<double>& x = world.positions();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Points 0 to 8 are of the first strand, which is joined in its middle. Rounding of
+    // 50 steps.
+    EXPECT_NEAR(x[3 * 4 + axis], x[3 * 9 + axis], 1e-10);
+  }
+}
+
+TEST(ElementUnit, HasAnEndAtEveryPoint) {
+  const auto unit = [](const std::vector<std::string>& points) {
+    std::string text =
+        "title = \"held\"\n[model]\nid = \"der\"\n[integrator]\nid = \"tr_bdf2\"\n"
+        "dt_s = 0.002\n[strand]\nelements = 20\n";
+    for (const std::string& at : points) text += "[[supports]]\nat = " + at + "\n";
+    return element_unit(parse_scene(text, "held.toml"));
+  };
+  EXPECT_EQ(unit({}), 1);
+  EXPECT_EQ(unit({"\"tip\""}), 1);
+  EXPECT_EQ(unit({"0.3"}), 10);
+  EXPECT_EQ(unit({"0.3", "0.25"}), 20);
+  EXPECT_EQ(element_unit(parse_scene(pendulum, "pendulum.toml")), 2);
+}
+
 TEST(StrandOptions, HaveTheSamePointsInStrandsOfOneNumberOfElements) {
   const std::string straight = "[[strand]]\nname = \"a\"\nlength_m = 0.1\nelements = 4\n",
                     curl =
