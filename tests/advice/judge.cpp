@@ -1,16 +1,18 @@
 // judge SCENE ADVISED STRANDS: how far is a run of ADVISED, as it is written, from the
 // rod of SCENE? By two models that cost_of_accuracy does not take for its references, by
 // tr_bdf2: super_clothoid, and corde extrapolated from two numbers of elements. Prints
-// "ERROR DOUBT": rms of the tips over the length, at all frames
-// after t = 0 and at the end, of the run and of one
-// reference from the other.
+// "ERROR DOUBT": rms of the tips over the length, at all frames after t = 0 and at the
+// end, of the run and of one reference from the other. Where supports or joints hold
+// points, rms of the largest distance along the strands.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "experiments/cost_of_accuracy/reference_side.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 
 namespace tress {
@@ -24,8 +26,11 @@ constexpr double tolerance = 4e-6;
 
 std::vector<double> tips(const Scene& given, const Comparison& compare, const char* model,
                          int elements, double to) {
-  Method method{{&find_model(model), {}, "tr_bdf2"}};
-  method.by_tolerance = true;
+  std::vector<Method> all = methods(given, side_choice({model}, {"tr_bdf2"}));
+  std::erase_if(all, [](const Method& one) { return !one.by_tolerance; });
+  if (all.empty())
+    throw std::runtime_error(std::string(model) + " does not run the scene");
+  const Method& method = all.front();
   Scene scene = compared(
       trial_scene(given, method, elements, {.tolerance = to}, compare.rate), compare);
   scene.options.max_step = 0.5 / compare.rate;
