@@ -72,10 +72,8 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
     worst.margin = std::max(worst.margin, shown(winner.number("margin")));
     for (const Row& row : rows) {
       if (row.text("kind") == "as_given" || !meets(row, winner)) continue;
-      // As Finalists::tied: poorly repeatable times widen the tie.
-      const double tie = std::max(
-          toss_up, 1 + (row.has("time_scatter") ? row.number("time_scatter") : 0));
-      worst.cheaper = std::min(worst.cheaper, tie * row.number("wall_s_per_sim_s") /
+      const double tied = tie(row.has("time_scatter") ? row.number("time_scatter") : 0);
+      worst.cheaper = std::min(worst.cheaper, tied * row.number("wall_s_per_sim_s") /
                                                   winner.number("wall_s_per_sim_s"));
     }
   }
@@ -93,11 +91,11 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
                        "margin)",
                    worst.margin <= neighbour_allowance, worst.margin);
     // Two times on a loaded machine may differ by more than both scatters: no verdict.
-    verdicts.figure(
-        scene +
-            ": least time of a run that meets a winner's target, times its tie, over "
-            "the winner's time (below 1: the machine was busy)",
-        worst.cheaper);
+    verdicts.figure(scene +
+                        ": time of the cheapest other run within the target over the "
+                        "winner's, times the tie "
+                        "that is allowed (below 1: the machine was busy)",
+                    worst.cheaper);
   }
 }
 

@@ -149,8 +149,9 @@ std::string doubts(const Row& row) {
   const double target = row.number("target_error_rel");
   if (row.status() != "no_answer" || !(row.number("error_rel") <= target)) return "";
   if (!near(row, target)) {
-    return fmt::format("error and gap of the references, {:.2g} %, exceed {:.3g} %",
-                       1e2 * row.number("reference_gap"), 1e2 * target);
+    return fmt::format(
+        "this error and the gap of the references, {:.2g} %, together exceed {:.3g} %",
+        1e2 * row.number("reference_gap"), 1e2 * target);
   }
   if (!row.has("worst_neighbour")) return "its neighbours were not all examined";
   return fmt::format(

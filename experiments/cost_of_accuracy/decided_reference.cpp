@@ -21,6 +21,9 @@ namespace {
 /// Rounded up to multiples of element_unit(), and doubled twice at least.
 constexpr int fewest_elements = 10, most_elements = 640;
 
+/// The model of references whose elements are curved.
+constexpr const char* curved_model = "super_helix";
+
 /// Two limits are compared from here on: three runs of a side.
 constexpr int fewest_compared = 40;
 
@@ -68,7 +71,7 @@ class Refinement {
         heartbeat_(heartbeat),
         unit_(simulation::element_unit(given)),
         fewest_(unit_ * ((fewest_elements + unit_ - 1) / unit_)) {
-    std::vector<std::string> models{"super_helix", "der", "articulated_chain"};
+    std::vector<std::string> models{curved_model, "der", "articulated_chain"};
     if (held(given)) models.emplace_back("corde");
     for (const std::string& model : models) {
       if (auto method = side_method(given, model)) {
@@ -147,13 +150,20 @@ class Refinement {
     }
   }
 
+  /// Models of straight edges have similar errors on curls. One of a pair has curved
+  /// elements, where a model with them has a limit.
   std::optional<std::pair<const ReferenceSide*, const ReferenceSide*>> best_pair() const {
+    const auto curved = [](const ReferenceSide& side) {
+      return side.model() == curved_model && side.has_limit();
+    };
+    const bool choice = std::ranges::any_of(sides_, curved);
     std::optional<std::pair<const ReferenceSide*, const ReferenceSide*>> best;
     std::size_t longest = 0;
     double least = never;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       for (std::size_t j = i + 1; j < sides_.size(); ++j) {
         if (!sides_[i].has_limit() || !sides_[j].has_limit()) continue;
+        if (choice && !curved(sides_[i]) && !curved(sides_[j])) continue;
         const SceneReference both = pair_of(sides_[i], sides_[j], comparison_);
         const std::size_t frames = agreed(both, comparison_, wanted_.allowed).frames;
         if (best && frames < longest) continue;

@@ -30,8 +30,8 @@ struct DecidedReference {
 /// frames and the last refinement changed each by no more than that. They are also done
 /// when both have converged and their distance is allowed. Where time is over before, or
 /// both have converged to different motions, articulated_chain decides: the pair that is
-/// closest for longest is the reference. In scenes with supports or joints,
-/// corde runs if these three do not decide.
+/// closest for longest is the reference. Where super_helix has a limit, it is one of
+/// them. In scenes with supports or joints, corde runs if these three do not decide.
 ///
 /// Both sides run at the same time, each on a thread. Throws std::runtime_error where
 /// fewer than two models reach the end.

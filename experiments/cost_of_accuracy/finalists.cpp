@@ -15,9 +15,7 @@ constexpr std::size_t contenders = 5;
 /// Times of two runs that are compared with each other are taken alternately so often.
 constexpr int turns = 3;
 
-/// A time whose repeats scatter more is taken again, so often at most; what is left of
-/// the scatter does not make a tie.
-constexpr double most_scatter = 0.25;
+/// A time whose repeats scatter more than most_scatter is taken again, so often at most.
 constexpr int most_retimed = 3;
 
 /// If no more methods than this are considered they are tried near the winner, with up to
@@ -55,8 +53,7 @@ bool Finalists::time(const Trial& run) {
 }
 
 bool Finalists::tied(const Trial& run, const Trial& best) const {
-  const double doubt = 1 + std::min(scatter(best), most_scatter);
-  return run.wall_s <= std::max(toss_up, doubt) * best.wall_s;
+  return run.wall_s <= tie(scatter(best)) * best.wall_s;
 }
 
 /// The same elements and substeps by methods with a subset of the options: one may do as

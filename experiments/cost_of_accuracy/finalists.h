@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -21,6 +22,15 @@ namespace tress::experiments::cost_of_accuracy {
 /// defaults, then least elements x substeps, then fewest elements, then the order of the
 /// catalogue.
 inline constexpr double toss_up = resolution;
+
+/// The part of a time by which its repeats may scatter and widen a tie.
+inline constexpr double most_scatter = 0.25;
+
+/// Returns the ratio up to which the times of two runs are tied, where those of the
+/// shorter scatter by this part.
+constexpr double tie(double scatter) {
+  return std::max(toss_up, 1 + std::min(scatter, most_scatter));
+}
 
 /// The answer for one target error.
 struct BestRuns {

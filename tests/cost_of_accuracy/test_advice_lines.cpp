@@ -69,7 +69,7 @@ TEST(Advice, SaysWhatKeepsASmallErrorFromBeingAnAnswer) {
       << advice({best})[1];
   best.set("reference_gap", 0.0095);
   EXPECT_TRUE(advice({best})[1].ends_with(
-      "; error and gap of the references, 0.95 %, exceed 1 %"))
+      "; this error and the gap of the references, 0.95 %, together exceed 1 %"))
       << advice({best})[1];
 }
 
