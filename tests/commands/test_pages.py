@@ -61,7 +61,8 @@ def as_run(command):
 
 def masked(text):
     """Returns the text with every number as '#' and every unit of time as 's'."""
-    return re.sub(r"# ([mµun]?s)\b", "# s", re.sub(r"[0-9][0-9.]*(e[-+]?[0-9]+)?", "#", text))
+    numbers = re.sub(r"[0-9][0-9.]*(e[-+]?[0-9]+)?", "#", text)
+    return re.sub(r"(#|\.\.\.) [mµun]?s\b", r"\1 s", numbers)
 
 
 def not_printed(output, printed):
