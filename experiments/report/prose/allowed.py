@@ -69,7 +69,6 @@ _PATTERNS = [
     (r"\bFour drives\b", "the drives of the family"),
     (r"\bbelow 10\b|\b10 to 100\b|\b100 to 1000\b|\babove 1000\b", "ranges of the gravito-bending number"),
     (r"\((5|50) %\)", "percentiles"),
-    (r"\btwo models of different families\b", "the references of cost_of_accuracy"),
     (r"\blooser than a tenth of the length\b", "the loosest tolerance that is tried"),
     (r"\b1 and 2 elements more\b|\btimes 0\.7 and 1\.4\b|\b2 % up and\s+down\b", "the neighbours of a winner"),
     (r"\b100 s of wall time\b", "the default of answer_s"),
