@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/cost_of_accuracy/decided_reference.h"
 #include "experiments/cost_of_accuracy/scene_measure.h"
 #include "experiments/cost_of_accuracy/scene_reference.h"
 #include "experiments/numerics/tip_track.h"
@@ -263,41 +262,6 @@ TEST(ChangedData, MoveTheTipAsTheRodItself) {
   EXPECT_LT(tip_error(moved.down, down, compare.length), bound);
   EXPECT_TRUE(load_reference(folder.folder(), "s.changed",
                              reference_key(scene, compare, cut.halved())));
-}
-
-const char* const curl = R"(
-title = "the root of a curl is thrown about"
-duration_s = 0.2
-[model]
-id = "der"
-[material]
-name = "custom"
-radius_m = 1.3e-4
-youngs_modulus_pa = 2.3e9
-poisson_ratio = 0.32
-density_kg_m3 = 1140
-internal_friction_kg_m3_s = 4e-8
-[strand]
-elements = 11
-length_m = 1
-shape = "helix"
-curl_radius_m = 0.1
-curl_pitch_m = -0.23
-[root]
-motion = "keyframes"
-keyframes = [[0, 0, 0, 0, 0], [0.125, -0.15, -0.13, -0.2, 0.6], [0.2, 0, 0, 0, 0]]
-[effects.gravity]
-)";
-
-// Chords and edges of equal lengths have nearly the same error on a curl, so that their
-// agreement shows little.
-TEST(DecidedReference, OfACurlHasCurvedElements) {
-  const Scene scene = simulation::parse_scene(curl, "curl.toml");
-  const Comparison compare{.rate = 60, .frames = 12, .length = 1};
-  Heartbeat quiet(ProgressMode::none, "test");
-  const DecidedReference made =
-      decided_reference(scene, compare, {1e-7, 1e-6}, Deadline(1), quiet);
-  EXPECT_NE(made.how.find("super_helix"), std::string::npos) << made.how;
 }
 
 }  // namespace tress::test_scene_reference
