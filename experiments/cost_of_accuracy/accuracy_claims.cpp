@@ -91,11 +91,11 @@ void check_accuracy_claims(const std::vector<Row>& rows, Verdicts& verdicts) {
                        "margin)",
                    worst.margin <= neighbour_allowance, worst.margin);
     // Two times on a loaded machine may differ by more than both scatters: no verdict.
-    verdicts.figure(scene +
-                        ": time of the cheapest other run within the target over the "
-                        "winner's, times the tie "
-                        "that is allowed (below 1: the machine was busy)",
-                    worst.cheaper);
+    verdicts.figure(
+        scene +
+            ": time of the cheapest other run within the target over the "
+            "winner's, times the tie that is allowed (below 1: the machine was busy)",
+        worst.cheaper);
   }
 }
 

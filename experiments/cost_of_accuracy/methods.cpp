@@ -98,10 +98,7 @@ std::unique_ptr<System> on_scene(const ModelEntry& model, const ModelSettings& o
 std::optional<Formulation> formulation_of(const IntegratorEntry& entry, System& system,
                                           const Scene& given, bool by_tolerance) {
   if (held(given) && system.layout().constraints > 0) {
-    Scene scene = given;
-    scene.integrator = entry.id;
-    scene.options.tolerance = by_tolerance ? 1 : 0;
-    const Formulation usual = formulation_of_supports(scene);
+    const Formulation usual = simulation::formulation_of_supports(entry, by_tolerance);
     if (refusal(entry, system, usual).empty()) return usual;
   }
   const auto usable = usable_formulations(entry, system);
@@ -189,11 +186,8 @@ std::vector<LeftOut> left_out(const Scene& given, const MethodChoice& choice,
         std::ranges::count(taken, entry.id, &Method::integrator) > 0) {
       continue;
     }
-    Scene scene = given;
-    scene.integrator = entry.id;
-    scene.options.tolerance = 0;
     const Formulation usual = some->layout().constraints > 0
-                                  ? formulation_of_supports(scene)
+                                  ? simulation::formulation_of_supports(entry, false)
                                   : Formulation::parametric;
     all.push_back({std::string(entry.id), refusal(entry, *some, usual)});
   }

@@ -39,12 +39,14 @@ Scene driven(Scene scene, const ModelEntry& model, const IntegratorEntry& entry)
   if (scene.model != &model) scene = with_method(std::move(scene), {&model, {}, {}, {}});
   scene.options.tolerance = tolerance;
   scene.integrator = entry.id;
-  if (simulation::SceneSupports(scene).constrain() ||
-      simulation::SceneJoints(scene).any()) {
+  if (simulation::has_constraints(scene)) {
     const Formulation given = scene.options.formulation;
     const bool keeps = given != Formulation::parametric && entry.order(given) &&
                        (tolerance == 0 || given != Formulation::index3);
-    if (!keeps) scene.options.formulation = formulation_of_supports(scene);
+    if (!keeps) {
+      scene.options.formulation =
+          simulation::formulation_of_supports(entry, tolerance > 0);
+    }
     return scene;  // its run refuses a method that cannot drive it
   }
   const auto system = scene.strands.empty()

@@ -127,11 +127,6 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
       up_to(times_as_long * scene.duration / least_steps, how.search);
   Scene tried = scene;
   tried.options.tolerance = 0;
-  try {
-    tried = driven(std::move(tried), *scene.model, find_integrator(scene.integrator));
-  } catch (const InputError& refused) {
-    return static_cast<void>(row.failed("refused", refused.what()));
-  }
   const auto confirmed_s = [&](double dt) {
     return judged_s(scene, t_end, dt, confirmed_steps);
   };
@@ -148,6 +143,7 @@ void measure(const Scene& scene, const SceneLimits& how, Row& row) {
   };
   std::optional<FoundLimit> limit;
   try {
+    tried = driven(std::move(tried), *scene.model, find_integrator(scene.integrator));
     SearchedSteps searched = search_steps(search, as_searched(left));
     const bool checked = confirm(
         search, as_searched(left_checking),

@@ -203,10 +203,7 @@ class Follower {
     }
     strand_.recall(from.memory);
     static_cast<void>(strand_.residual(raw));
-    if (to.point.stability.lifted > 0) {
-      to.point.stability =
-          stability(strand_, raw, neutral_modes() - to.point.stability.lifted);
-    }
+    count_lifted(to.point);
     strand_.accept(to.point.at);
     to.memory = strand_.memory();
     newton_.neutral = to.point.stability.neutral;
@@ -215,6 +212,14 @@ class Follower {
     const double ease = std::sqrt(usual_iterations / std::max(1, to.point.iterations));
     step_ *= std::clamp(ease, 0.5, 1.5);
     return to;
+  }
+
+  /// Counts modes that a load has lifted among those that are not neutral.
+  void count_lifted(PathPoint& point) {
+    const int lifted = point.stability.lifted;
+    if (lifted > 0) {
+      point.stability = stability(strand_, point.at, neutral_modes() - lifted);
+    }
   }
 
   /// The end of the range that lies between two values; NaN: none.
@@ -241,9 +246,7 @@ class Follower {
       return from;
     }
     Station last{measured_point(strand_, at, newton, neutral_modes()), {}, {}};
-    if (const int lifted = last.point.stability.lifted; lifted > 0) {
-      last.point.stability = stability(strand_, at, neutral_modes() - lifted);
-    }
+    count_lifted(last.point);
     last.point.event = Event::end;
     last.point.arclength = from.point.arclength + part * step_;
     add(last.point);

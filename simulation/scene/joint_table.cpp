@@ -337,4 +337,8 @@ void SceneJoints::check(const Scene& scene) const {
             "leave out failed_strands");
 }
 
+bool has_constraints(const Scene& scene) {
+  return SceneSupports(scene).constrain() || SceneJoints(scene).any();
+}
+
 }  // namespace tress::simulation

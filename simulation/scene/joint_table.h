@@ -79,4 +79,8 @@ class SceneJoints {
   std::vector<Group> groups_;
 };
 
+/// Whether supports or joints hold strands, so that a run may need a formulation of
+/// constraints.
+bool has_constraints(const Scene& scene);
+
 }  // namespace tress::simulation

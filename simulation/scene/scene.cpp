@@ -233,15 +233,16 @@ class Reader {
       tables.driven = read_driven(*all, file_);
     }
     scene_.tables = std::make_shared<const StrandTables>(std::move(tables));
-    if ((SceneSupports(scene_).constrain() || SceneJoints(scene_).any()) &&
+    if (has_constraints(scene_) &&
         scene_.options.formulation == Formulation::parametric) {
+      const Formulation usual = formulation_of_supports(
+          find_integrator(scene_.integrator), scene_.options.tolerance > 0);
       const auto given = places_.options.find("formulation");
       refuse_if(given != places_.options.end(),
                 "formulation = \"parametric\" does not hold supports or joints",
                 given == places_.options.end() ? "" : given->second,
-                fmt::format("leave it out, or give \"{}\"",
-                            name(formulation_of_supports(scene_))));
-      scene_.options.formulation = formulation_of_supports(scene_);
+                fmt::format("leave it out, or give \"{}\"", name(usual)));
+      scene_.options.formulation = usual;
     }
     series_ = std::make_shared<const StrandSeries>(
         scene_.tables, scene_.head, scene_.seed, outlined ? made_singly : held_at_once);

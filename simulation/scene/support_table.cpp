@@ -278,11 +278,9 @@ std::unique_ptr<System> SceneSupports::on(std::unique_ptr<System> system,
   }
 }
 
-Formulation formulation_of_supports(const Scene& scene) {
-  const IntegratorEntry& entry = find_integrator(scene.integrator);
+Formulation formulation_of_supports(const IntegratorEntry& entry, bool by_tolerance) {
   using enum Formulation;
-  const bool projected =
-      scene.options.tolerance > 0 || entry.order(index3).value_or(0) < entry.order();
+  const bool projected = by_tolerance || entry.order(index3).value_or(0) < entry.order();
   const std::array preferred =
       entry.adaptive ? std::array{index2_ggl, projection, index3, baumgarte, rattle}
       : projected    ? std::array{projection, index3, index2_ggl, baumgarte, rattle}

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/system.h"
+#include "integrators/entry.h"
 #include "models/supports/support_rows.h"
 #include "simulation/driven/body_joints.h"
 #include "simulation/files/toml_text.h"
@@ -93,10 +94,11 @@ class SceneSupports {
   std::vector<std::string> driven_;  // names of the driven bodies
 };
 
-/// Returns the formulation that suits the scene's method. It is index 3 for a method of
-/// fixed step that keeps its order there, and index 2 for IDA. Others, and runs with a
-/// tolerance, have projection.
-Formulation formulation_of_supports(const Scene& scene);
+/// Returns the formulation of supports and joints that suits a method. It is index 3 for
+/// a method of fixed step that keeps its order there, and index 2 for IDA. Others, and
+/// runs with a tolerance, have projection.
+Formulation formulation_of_supports(const integrators::IntegratorEntry& entry,
+                                    bool by_tolerance);
 
 /// Returns the options of one strand of a scene: a strand without constraints, next to
 /// others on supports, has no formulation of them.

@@ -91,15 +91,17 @@ TEST(Csv, BeginsAfterAByteOrderMark) {
   EXPECT_EQ(table.rows[0].text("a"), "1");
 }
 
+/// What parse_csv() refuses a text with.
+std::string message(std::string_view text) {
+  try {
+    static_cast<void>(parse_csv(text, "t.csv"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
 TEST(Csv, ErrorsNameFileLineAndColumn) {
-  const auto message = [](std::string_view text) -> std::string {
-    try {
-      static_cast<void>(parse_csv(text, "t.csv"));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
   EXPECT_THAT(message("a,b\n1,x\"y\n"), HasSubstr("t.csv:2:4"));
   EXPECT_THAT(message("a\n\"open"), HasSubstr("t.csv:2:6"));
   EXPECT_THAT(message("a,b\n1,2\n1\n1,2\n"),
@@ -108,14 +110,6 @@ TEST(Csv, ErrorsNameFileLineAndColumn) {
 }
 
 TEST(Csv, OtherSeparatorsAreNamedWithPlaceAndRemedy) {
-  const auto message = [](std::string_view text) -> std::string {
-    try {
-      static_cast<void>(parse_csv(text, "t.csv"));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
   for (const auto& [text, problem] :
        {std::pair("a;b\n0,1;0,2\n", "separated by ';' (t.csv:1:2)"),
         {"a\tb\n1\t2\n", "separated by tabs (t.csv:1:2)"},
